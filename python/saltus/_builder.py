@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import html
 import typing
 
 import numpy as np
 
 from . import _array
+from ._errors import ModelError
 from ._expression import Expression, Operand, number, refuse
 from ._model import Model
 from ._result import Result
@@ -367,7 +369,11 @@ class Builder(Structure):
             raise refuse("no end time", "say how long: m.simulate(until=10), or m.simulation(until=10) for all runs")
 
     def _repr_html_(self) -> str:
-        return self.model()._repr_html_()
+        try:
+            return self.model()._repr_html_()
+        except ModelError as error:
+            # In a notebook a builder is looked at before it is complete.
+            return f"<div>{html.escape(repr(self))}<br>not yet a model: {html.escape(error.message)}</div>"
 
 
 def _numbers(name: str, values: typing.Any) -> list[float]:

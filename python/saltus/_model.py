@@ -274,7 +274,8 @@ class Model:
     def _swept(self, over: Settings, set: Settings, options: dict[str, Value]) -> dict[str, Value]:
         """All that is swept, by the names of settings; keywords that have several values leave the options."""
         method = self._core.method
-        swept = {sweep_name(name, method): values for name, values in over.items()}
+        named = {getattr(name, "text", name): values for name, values in over.items()}
+        swept = {sweep_name(name, method): values for name, values in named.items()}
         for name in [name for name, value in options.items() if is_several(value) and name != "times"]:
             swept[once(sweep_name(name, method), [*swept, *set])] = options.pop(name)
         self._refuse_parameters(options)

@@ -55,11 +55,18 @@ def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typ
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
         axis.plot(*broken_at_jumps(r, r.t, column), color=LINE, linewidth=1.2)
         _mark_events(axis, r, column)
-        axis.set_ylabel(name)
+        axis.set_ylabel(_caption(r, name))
         axis.margins(x=0)
     axes[0].set_title(r.model)
     axes[-1].set_xlabel("t")
     return axes
+
+
+def _caption(r: Result, name: str) -> str:
+    """The label of a column with its unit: "height [m]"."""
+    caption = r._captions.get(name, {})
+    unit = caption.get("unit", "")
+    return (caption.get("label") or name) + (f" [{unit}]" if unit else "")
 
 
 def _mark_events(axis: typing.Any, r: Result, column: typing.Any) -> None:
@@ -90,7 +97,7 @@ def phase(r: Result, x: str, y: str, axis: typing.Any) -> typing.Any:
         if rows:
             axis.plot(r[x][rows], r[y][rows], mark, color=colour, markersize=5, linestyle="none", label=kind)
     axis.plot(r[x][0], r[y][0], "o", color="black", markersize=4)
-    axis.set_xlabel(x)
-    axis.set_ylabel(y)
+    axis.set_xlabel(_caption(r, x))
+    axis.set_ylabel(_caption(r, y))
     axis.set_title(r.model)
     return axis

@@ -145,6 +145,14 @@ class Result(Columns):
         stored: dict[str, typing.Any] = json.loads(self._run.json(False))
         return stored
 
+    @functools.cached_property
+    def _captions(self) -> dict[str, dict[str, str]]:
+        """`unit` and `label` of columns that have them."""
+        text = self._run.json(False)
+        model, _ = json.JSONDecoder().raw_decode(text, text.index("{", text.index('"model":')))
+        found: dict[str, dict[str, str]] = model.get("captions", {})
+        return found
+
     def to_dict(self) -> dict[str, typing.Any]:
         """Everything, as :meth:`save` writes it (docs/result-file.md).
 

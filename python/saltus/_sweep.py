@@ -7,7 +7,7 @@ import typing
 
 import numpy as np
 
-from . import _core
+from . import _core, _sweep_plot
 from ._outcome import Kept, unknown
 from ._result import Result, needed
 from ._settings import text_of
@@ -150,6 +150,37 @@ class Sweep:
         return xarray.Dataset(
             {name: (swept, values.reshape(self._shape)) for name, values in columns.items()}, coords=coordinates
         )
+
+    def plot(self, name: str, over: str | None = None, axis: typing.Any = None) -> typing.Any:
+        """Draws a column of the table (matplotlib) over what was swept; of several, one line for each value of the
+        others. `over` says what lies along the axis, without it what has the most values. Needs ``keep="final"``.
+
+        >>> s = saltus.catalogue("stick-slip").sweep(belt=np.linspace(0.1, 0.3, 5), q=[0, 0.1], until=5)
+        >>> axis = s.plot("v")
+        >>> axis.get_xlabel(), len(axis.lines)
+        ('belt', 2)
+        """
+        return _sweep_plot.plot(self, name, over, axis)
+
+    def bifurcation(
+        self,
+        name: str,
+        event: str | None = None,
+        after: float = -np.inf,
+        over: str | None = None,
+        axis: typing.Any = None,
+    ) -> typing.Any:
+        """Draws a bifurcation diagram (matplotlib): a column at events, over what was swept, a point for each of them.
+
+        `event` is the name or the kind of the events, without it all are drawn; `after` is the time from which on, as
+        transients are no part of it. Needs ``keep="events"``.
+
+        >>> m = saltus.catalogue("stick-slip")
+        >>> s = m.sweep(belt=np.linspace(0.1, 0.3, 5), until=40, keep="events")
+        >>> s.bifurcation("q", event="leave_sliding", after=20).get_ylabel()
+        'q at leave_sliding'
+        """
+        return _sweep_plot.bifurcation(self, name, event, after, over, axis)
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}

@@ -72,6 +72,7 @@ def test_settings_by_expressions():
     x, k = m.state("x", 1), m.parameter("k", 1)
     m.rate(x, -k * x)
     assert m.simulate(1, set={k: 0}).final["x"] == 1
+    assert m.sweep({k: [0, 1]}, until=1)["k"].tolist() == [0, 1]
 
 
 @pytest.mark.parametrize(
