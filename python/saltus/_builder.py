@@ -35,6 +35,9 @@ class Builder(Structure):
     (``saltus.sign``, ``saltus.if_``, ``saltus.max``), conditions are joined by ``& | ~``.
     """
 
+    def __init__(self, name: str, description: str = "", inclusion: str | None = None) -> None:
+        super().__init__(name, description, inclusion)
+
     # Names ---------------------------------------------------------------------------------------------------------
 
     def parameter(

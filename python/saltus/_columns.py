@@ -130,7 +130,7 @@ class Columns:
         if not isinstance(name, str):
             raise TypeError(f"r[{name!r}]: a column is taken by its name, e.g. r['t']; a row of all states is r.x[i]")
         if name not in columns:
-            raise unknown(name, list(columns))
+            raise unknown(name, list(columns), parameters=[parameter for parameter, _ in self._run.parameters])
         block, index = columns[name]
         found: Array = self.t if index is None else getattr(self._run, block)[:, index]
         return found

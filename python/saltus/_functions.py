@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import typing
 
 from . import _array
@@ -10,9 +11,10 @@ from ._expression import PRIMARY, Expression, Operand, call, entry_by_entry, mak
 
 def _function(name: str, count: int, text: str, argument: str = "x") -> typing.Callable[..., typing.Any]:
     def function(*arguments: Operand) -> typing.Any:
+        if name in ("max", "min") and len(arguments) > 2:
+            return functools.reduce(function, arguments)
         if len(arguments) != count:
-            remedy = f"one in the other: {name}({name}(a, b), c)" if name in ("max", "min") else text
-            raise refuse(f"{name} has {count} argument{'s' * (count > 1)}, found {len(arguments)}", remedy)
+            raise refuse(f"{name} has {count} argument{'s' * (count > 1)}, found {len(arguments)}", text)
         return call(name, *arguments)
 
     function.__name__ = function.__qualname__ = name
@@ -45,8 +47,8 @@ hypot = _function("hypot", 2, "sqrt(a^2 + b^2).")
 step = _function("step", 1, "1 where e > 0, 0 where e < 0, between them on the surface e = 0.")
 sign = _function("sign", 1, "1 where e > 0, -1 where e < 0, between them on the surface e = 0.")
 abs = _function("abs", 1, "The absolute value.")
-max = _function("max", 2, "The larger one of two.")
-min = _function("min", 2, "The smaller one of two.")
+max = _function("max", 2, "The largest one of two or more.")
+min = _function("min", 2, "The smallest one of two or more.")
 floor = _function("floor", 1, "The largest integer not above e, an expression of time and parameters.", "t")
 mod = _function("mod", 2, "e - m floor(e/m), of an expression of time and parameters; of others for outputs only.", "t")
 

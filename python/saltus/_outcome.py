@@ -53,6 +53,7 @@ class Final:
         self.regions: list[list[str]] = values["regions"]
         self._named = dict(zip(run.output_names, self.outputs.tolist()))
         self._named.update(zip(run.states, self.x.tolist()))
+        self._parameters = [parameter for parameter, _ in run.parameters]
 
     def __getitem__(self, name: str) -> float:
         """A state or an output by its name.
@@ -61,7 +62,7 @@ class Final:
         True
         """
         if name not in self._named:
-            raise unknown(name, list(self._named))
+            raise unknown(name, list(self._named), parameters=self._parameters)
         return float(self._named[name])
 
     def __repr__(self) -> str:
@@ -92,8 +93,12 @@ class Kept(typing.NamedTuple):
     events: int
 
 
-def unknown(name: str, known: list[str], what: str = "the result") -> KeyError:
+def unknown(
+    name: str, known: list[str], what: str = "the result", parameters: typing.Iterable[str] = ()
+) -> KeyError:
     """A name that is not there, with those that are near."""
+    if name in parameters:
+        return KeyError(f"{name!r} is a parameter: r.parameters[{name!r}]")
     near = difflib.get_close_matches(str(name), known, 3)
     hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(known)}"
     return KeyError(f"{what} has no {name!r}; {hint}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import numbers
+import os
 import typing
 
 import numpy as np
@@ -11,6 +12,16 @@ import numpy as np
 from . import _core
 from ._expression import Expression, refuse
 
+#: What other programs call what has another name here.
+_ELSEWHERE = {
+    **dict.fromkeys(("t_eval", "saveat", "teval"), "times=[…], or points=100, or every=0.1"),
+    **dict.fromkeys(("t_span", "tspan", "tmax", "t_end", "tend", "T"), "until=10, and from_=0 where it begins"),
+    **dict.fromkeys(("y0", "x0", "u0", "args", "p", "params", "parameters"), 'set={"name": value}, of parameters and states'),
+    **dict.fromkeys(("dt", "step", "stepsize"), "every=0.1 for rows, max_step=0.1 for steps"),
+    **dict.fromkeys(("reltol", "tol", "RelTol"), "rtol=1e-8"),
+    **dict.fromkeys(("abstol", "AbsTol"), "atol=1e-10"),
+    **dict.fromkeys(("solver", "alg"), 'integrator="dopri5", or method="fesd"'),
+}
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
 Option = tuple[str, str, str]
 _SIMULATE = frozenset(_core.simulate_keys())
@@ -184,6 +195,8 @@ def is_option(name: str, method: str) -> bool:
 def parameters_among(options: typing.Mapping[str, Value], known: typing.Container[str], method: str) -> None:
     """Refuses a parameter or state that is given as if it were an option."""
     for name in options:
+        if name in _ELSEWHERE and name not in known and not is_option(name, method):
+            raise refuse(f"'{name}' is no option", f"write {_ELSEWHERE[name]}")
         if name in known and not is_option(name, method):
             raise refuse(
                 f"'{name}' is a name of the model, not an option",
@@ -197,6 +210,8 @@ def _shown(value: Value) -> str:
 
 def check_path(value: typing.Any, what: str) -> None:
     """A mistake that is easily made: a text where a file is expected."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise TypeError(f"{what} expects the name of a file, found {type(value).__name__}; a Builder is a model already")
     if isinstance(value, str) and "\n" in value:
         raise refuse(f"{what} expects the name of a file, found a text of several lines", "write saltus.Model.from_text(text)")
 

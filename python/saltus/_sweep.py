@@ -99,12 +99,17 @@ class Sweep:
     def __len__(self) -> int:
         return len(self.results)
 
+    def __iter__(self) -> typing.Iterator[Result]:
+        return iter(self.results)
+
     def __getitem__(self, name: str) -> Array:
         """A column of the table.
 
         >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)["events"].tolist()
         [1, 2]
         """
+        if not isinstance(name, str):
+            raise TypeError(f"s[{name!r}]: a column is taken by its name, e.g. s['run']; a run is s.results[{name!r}]")
         if name not in self.table:
             raise unknown(name, list(self.table), "the table")
         return self.table[name]

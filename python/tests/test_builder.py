@@ -281,6 +281,7 @@ def test_a_problem_of_optimal_control():
 def test_powers_are_the_language_s(m):
     x = saltus.Expression("x", owner=m)
     assert saltus.pow(x, 3).text == "pow(x,3)"
+    assert saltus.max(x, 1, 2).text == "max(max(x,1),2)"
 
 
 def test_arrays_and_numbers_of_casadi():

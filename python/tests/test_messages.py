@@ -50,6 +50,8 @@ def said_by(call, kind=ValueError):
         ({"initial_mode": {"slipp": 0}}, "in initial_mode.slipp\n  did you mean 'slip'?"),
         ({"inputs": 3}, "inputs=3: expected a dict"),
         ({"inputs": {"u": "sin(t)"}}, 'inputs={"u": …}: expected the name of a control'),
+        ({"t_eval": [0, 1]}, "'t_eval' is no option\n  write times=[…]"),
+        ({"x0": [0, 1]}, 'set={"name": value}'),
         ({"belt": 0.1}, 'write set={"belt": 0.1}'),
         ({"set": {"bel": 1}}, 'set={"bel": 1}: expected the name'),
         ({"set": {"belt": "1+"}}, 'set={"belt": "1+"}: expected a number, a name'),
@@ -135,6 +137,9 @@ def test_results(slip, tmp_path):
     assert "expected a time" in said_by(lambda: r("x"))
     for grid in (0, -3, 2.5):
         assert "whole number of rows" in said_by(lambda grid=grid: r.frame(grid=grid))
+    for wrong in (lambda: r["belt"], lambda: r.final["belt"]):
+        assert "r.parameters['belt']" in said_by(wrong, KeyError)
+    assert "s.results[0]" in said_by(lambda: slip.sweep(belt=[1, 2], until=1)[0], TypeError)
     assert "end in .html" in said_by(lambda: r.report(tmp_path / "r.pdf"))
     assert "did you mean 'belt'" in said_by(lambda: slip.sweep(belt=[1, 2], until=1)["bel"], KeyError)
     assert r.plot("v")[0].get_ylabel() == "v"
@@ -154,6 +159,7 @@ def test_statuses():
 
 def test_files_and_texts(slip):
     assert f'saltus.Model("{slip.path}")' in said_by(lambda: saltus.Model.from_text(slip.path))
+    assert "a Builder is a model already" in said_by(lambda: saltus.Model(saltus.Builder("m")), TypeError)
     assert "saltus.Model.from_text" in said_by(lambda: saltus.Model("[model]\nname = 1"))
 
 

@@ -68,6 +68,11 @@ def test_every_kind_of_setting_is_run_again(slip):
         assert run(until).tobytes() == slip.simulate(until=3, set=values, **options)(until).tobytes()
 
 
+def test_a_sweep_is_gone_through_run_by_run(slip):
+    s = sweep(slip)
+    assert [run is kept for run, kept in zip(s, s.results)] == [True] * 3
+
+
 def test_without_rows_tables_and_pictures_say_so(slip):
     run = sweep(slip).results[0]
     for show in (run.frame, run.dataset, run.plot, lambda: run.phase("q", "v")):
