@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import pathlib
 import sys
-import tempfile
 import typing
 import warnings
 
@@ -365,6 +364,8 @@ class _started_at:
             if not isinstance(self._start, (str, os.PathLike)):
                 raise refuse(f"start={self._start!r}: expected a result, or the file of one", 'start=r, or start="r.json"')
             return os.fspath(self._start)
+        import tempfile
+
         handle, name = tempfile.mkstemp(suffix=".json")
         os.close(handle)
         self._written = pathlib.Path(name)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import typing
 
 import numpy as np
@@ -99,6 +98,8 @@ def unknown(
     """A name that is not there, with those that are near."""
     if name in parameters:
         return KeyError(f"{name!r} is a parameter: r.parameters[{name!r}]")
+    import difflib
+
     near = difflib.get_close_matches(str(name), known, 3)
     hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(known)}"
     return KeyError(f"{what} has no {name!r}; {hint}")
