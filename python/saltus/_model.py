@@ -24,6 +24,7 @@ from ._settings import (
     check_together,
     count_of,
     is_several,
+    names_no_keys,
     is_option,
     once,
     optimize_options,
@@ -194,6 +195,7 @@ class Model:
         >>> round(m.optimize(control_intervals=4).optimization["horizon"], 6)
         2.0
         """
+        names_no_keys(options, {**self.states, **self.parameters} if options else {})
         typed, chosen = optimize_options(options)
         warned: list[str] = []
         with _started_at(start) as file, own_results():

@@ -52,6 +52,8 @@ def text_of(value: Value, name: str = "") -> str:
         return text_of(value.item(), name)
     if is_list(value) or isinstance(value, np.ndarray):
         return "[" + ", ".join(text_of(entry, name) for entry in value) + "]"
+    if hasattr(value, "save"):
+        raise refuse(f"{name}: a result is no value", 'save it, and give its file: r.save("r.json"), {"result": "r.json"}')
     raise TypeError(f"a number, a text or a list of numbers is expected, found {type(value).__name__}")
 
 
@@ -67,7 +69,8 @@ def _one_value(name: str, value: Value) -> Value:
     if value is None:
         raise refuse(f"{name}=None: that is no value", f"leave {name} out, or write a number or an expression")
     if "." not in name and not isinstance(value, str) and np.ndim(value) > 0:
-        raise refuse(f"{name}={_shown(value)}: expected one value", f"many values are for a sweep: m.sweep({name}=[…])")
+        shown = _shown(value) if np.size(value) < 10 else f"[… {np.size(value)} values]"
+        raise refuse(f"{name}={shown}: expected one value", f"many values are for a sweep: m.sweep({name}=[…])")
     return value
 
 
@@ -202,6 +205,13 @@ def parameters_among(options: typing.Mapping[str, Value], known: typing.Containe
                 f"'{name}' is a name of the model, not an option",
                 f'write set={{"{name}": {_shown(options[name])}}}; in a sweep {name}=[…] has its values',
             )
+
+
+def names_no_keys(options: typing.Mapping[str, Value], known: typing.Container[str]) -> None:
+    """Refuses a name of the model among the keywords of an optimisation."""
+    for name in options:
+        if name in known and name not in _OPTIMIZE:
+            raise refuse(f"'{name}' is a name of the model, not an option", f'write set={{"{name}": {_shown(options[name])}}}')
 
 
 def _shown(value: Value) -> str:

@@ -116,6 +116,10 @@ def test_the_end_is_swept_like_any_option(slip):
 
 def test_optimisations(block, slip):
     assert "did you mean 'control_intervals'" in said_by(lambda: block.optimize(control_interval=3))
+    assert 'set={"q": 0.3}' in said_by(lambda: block.optimize(q=0.3))
+    solved = block.optimize(control_intervals=2)
+    assert '{"result": "r.json"}' in said_by(lambda: block.simulate(until=1, inputs={"u": solved}))
+    assert "u=[… " in said_by(lambda: block.simulate(until=1, set={"u": solved.u}))
     assert "or run m.simulate()" in said_by(lambda: slip.optimize())
     assert "start=3: expected a result" in said_by(lambda: block.optimize(start=3))
     m = saltus.Builder("m")
