@@ -22,9 +22,12 @@ _shared = _pathlib.Path(__file__).parent / "share"
 if _shared.is_dir():
     _core.set_shared_folder(str(_shared))
 
+from ._array import Array, array  # noqa: E402
 from ._builder import Builder  # noqa: E402
-from ._expression import (  # noqa: E402
-    Expression,
+from ._catalogue import catalogue, compare, models, order  # noqa: E402
+from ._events import Alternative, Event, Events  # noqa: E402
+from ._expression import Expression  # noqa: E402
+from ._functions import (  # noqa: E402
     abs,
     acos,
     asin,
@@ -52,14 +55,18 @@ from ._expression import (  # noqa: E402
     tan,
     tanh,
 )
-from ._model import Model, catalogue, compare, models, order  # noqa: E402
-from ._result import Event, Final, Result, Status, load  # noqa: E402
+from ._model import Model  # noqa: E402
+from ._outcome import Final, Sensitivities, Status  # noqa: E402
+from ._result import Result, load  # noqa: E402
 from ._sweep import Sweep  # noqa: E402
 
 __version__: str = _core.version
 __all__ = [
+    "Alternative",
+    "Array",
     "Builder",
     "Event",
+    "Events",
     "Expression",
     "Final",
     "Model",
@@ -68,7 +75,9 @@ __all__ = [
     "Result",
     "Status",
     "Stopped",
+    "Sensitivities",
     "Sweep",
+    "array",
     "catalogue",
     "compare",
     "load",

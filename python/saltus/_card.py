@@ -29,7 +29,7 @@ def card(r: Result) -> str:
         "<div style='font:13px/1.45 system-ui,sans-serif;max-width:580px'>"
         f"<b>{html.escape(r.model)}</b> &nbsp; {html.escape(r.method)} &nbsp; "
         f"<span style='color:{colour}'>{html.escape(str(r.status))}</span> at t = {r.status.time_reached:.6g} &nbsp; "
-        f"{len(r.events)} events, {len(r.t)} rows{message}{_picture(r, shown)}{_events(r)}</div>"
+        f"{r._counts}{message}{_picture(r, shown)}{_events(r)}</div>"
     )
 
 
@@ -116,7 +116,7 @@ def _curve(r: Result, name: str, across: typing.Callable[[typing.Any], typing.An
 
 
 def _events(r: Result) -> str:
-    if not r.events:
+    if r._lost_events or not r.events:
         return ""
     rows = "".join(
         f"<tr><td style='text-align:right'>{event.t:.8g}</td><td style='text-align:left'>{html.escape(event.kind)}</td>"

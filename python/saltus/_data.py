@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numbers
 import typing
 
 import numpy as np
@@ -16,8 +17,10 @@ def frame(r: Result, grid: typing.Any = None) -> typing.Any:
 
     pandas = needed("pandas", "data")
     if grid is not None:
-        span = r.span
-        r = r.at(np.linspace(*span, int(grid)) if np.ndim(grid) == 0 else grid)
+        if np.ndim(grid) == 0 and (not isinstance(grid, numbers.Integral) or grid < 2):
+            raise ValueError(f"grid={grid!r}: expected a whole number of rows from 2 on, or a list of times")
+        r = r.at(np.linspace(*r.span, int(grid)) if np.ndim(grid) == 0 else grid)
+    need_rows(r)
     columns = {name: np.array(r[name]) for name in r.names if name != "t"}
     return pandas.DataFrame(columns, index=pandas.Index(np.array(r.t), name="t"))
 
@@ -27,6 +30,7 @@ def dataset(r: Result) -> typing.Any:
     from ._result import needed
 
     xarray = needed("xarray", "data")
+    need_rows(r)
     variables = {name: ("row", np.array(r[name])) for name in r.names if name != "t"}
     attributes = {
         "model": r.model,
@@ -35,3 +39,12 @@ def dataset(r: Result) -> typing.Any:
         **{f"parameter.{name}": value for name, value in r.parameters.items()},
     }
     return xarray.Dataset(variables, coords={"t": ("row", np.array(r.t))}, attrs=attributes)
+
+
+def need_rows(r: Result, least: int = 1) -> None:
+    """Refuses a result of a sweep that kept no rows."""
+    if len(r.t) < least:
+        raise ValueError(
+            'this result has no trajectory: of a sweep ask for it with keep="trajectory", or simulate its parameters once '
+            "more"
+        )

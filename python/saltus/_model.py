@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 import pathlib
 import sys
-import tempfile
 import typing
 import warnings
 
 from . import _core
 from ._card import model_card
-from ._errors import ModelWarning, in_python
+from ._errors import ModelWarning
 from ._expression import refuse
 from ._progress import progress_line, progress_of_runs
 from ._result import Result, own_results
@@ -20,8 +19,12 @@ from ._settings import (
     Value,
     axis,
     check_path,
+    check_sweep,
+    check_text,
+    check_together,
     count_of,
-    is_list,
+    is_several,
+    names_no_keys,
     is_option,
     once,
     optimize_options,
@@ -29,8 +32,8 @@ from ._settings import (
     settings_of,
     simulate_options,
     sweep_name,
-    whole,
 )
+from ._spelling import in_python
 from ._sweep import Sweep, SweepArguments, sweep_by, with_results
 
 Settings = typing.Mapping[str, Value]
@@ -62,7 +65,13 @@ class Model:
 
     @classmethod
     def from_text(cls, text: str, name: str = "model.toml") -> Model:
-        """A model from the text of a file. `name` is used in messages, and its folder to find files it names."""
+        """A model from the text of a file. `name` is used in messages, and its folder to find files it names.
+
+        >>> m = saltus.Model.from_text('[model]\\nname = "decay"\\n[states]\\nx = 1\\n[dynamics]\\nx = "-x"')
+        >>> round(m.simulate(until=1).final["x"], 6)
+        0.367879
+        """
+        check_text(text)
         model = cls.__new__(cls)
         model._core = _core.Model(text, name)
         model._made = (Model.from_text, (text, name))
@@ -70,17 +79,29 @@ class Model:
 
     @property
     def name(self) -> str:
-        """The name that the file states."""
+        """The name that the file states.
+
+        >>> saltus.catalogue("stick-slip").name
+        'stick-slip'
+        """
         return self._core.name
 
     @property
     def description(self) -> str:
-        """One sentence of the file, or an empty text."""
+        """One sentence of the file, or an empty text.
+
+        >>> saltus.catalogue("stick-slip").description
+        'a block on a moving belt sticks and slips'
+        """
         return self._core.description
 
     @property
     def path(self) -> str:
-        """The file it was read from."""
+        """The file it was read from.
+
+        >>> saltus.catalogue("stick-slip").path.endswith("stick-slip.toml")
+        True
+        """
         return self._core.path
 
     def simulate(
@@ -126,8 +147,19 @@ class Model:
         set: Settings | None = None,
         **options: Value,
     ) -> Result:
-        """Measures how errors fall with the step; ``order`` of the result has a series for every scheme."""
-        more = (",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps))
+        """Measures how errors fall with the step; ``order`` of the result has a series for every scheme.
+
+        >>> m = saltus.catalogue("stick-slip")
+        >>> series = m.order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]).order["series"]
+        >>> series[0]["stages"]
+        2
+        """
+        try:
+            more = (",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps))
+        except (TypeError, ValueError):
+            raise refuse(
+                f"schemes={schemes!r}, steps={steps!r}: expected lists", 'e.g. schemes=[("radau_iia", 2)], steps=[50, 100]'
+            ) from None
         return Result(self._run("order", until, set, options, None, more)[0])
 
     def optimize(
@@ -143,7 +175,27 @@ class Model:
         `options` are the keys of [optimize] (docs/optimal-control.md): ``control_intervals=20``, ``time_limit=60``,
         ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file. ``optimization`` of the result
         has costs, parameters, multipliers and what was verified.
+
+        >>> m = saltus.Model.from_text('''
+        ... [model]
+        ... name = "car"
+        ... [states]
+        ... q = 0
+        ... v = 0
+        ... [controls]
+        ... u = { lower = -1, upper = 1 }
+        ... [dynamics]
+        ... q = "v"
+        ... v = "u"
+        ... [optimize]
+        ... horizon = { free = true, initial = 2.5, lower = 1, upper = 5 }
+        ... minimize_time = true
+        ... terminal_constraints = ["q == 1", "v == 0"]
+        ... ''')
+        >>> round(m.optimize(control_intervals=4).optimization["horizon"], 6)
+        2.0
         """
+        names_no_keys(options, {**self.states, **self.parameters} if options else {})
         typed, chosen = optimize_options(options)
         warned: list[str] = []
         with _started_at(start) as file, own_results():
@@ -164,7 +216,7 @@ class Model:
         keep: str = "final",
         jobs: int = 0,
         yes: bool = False,
-        until: float | None = None,
+        until: Value = None,
         set: Settings | None = None,
         progress: bool = False,
         executor: typing.Any = None,
@@ -186,18 +238,12 @@ class Model:
         >>> len(s), s.done, s["belt"].tolist()
         (3, True, [0.1, 0.2, 0.3])
         """
-        whole("jobs", jobs, 0)
-        whole("seed", seed, 0)
-        if runs is not None:
-            whole("runs", runs, 1)
-        if sample is not None and not isinstance(sample, typing.Mapping):
-            raise refuse(f"sample={sample!r}: expected a dict", 'e.g. sample={"v": "normal(3, 0.1)"}')
-        lists = {name: options.pop(name) for name in list(options) if is_list(options[name]) and name != "times"}
-        swept = {sweep_name(name, self._core.method): values for name, values in (over or {}).items()}
-        for name, values in lists.items():
-            swept[once(sweep_name(name, self._core.method), [*swept, *(set or {})])] = values
-        self._refuse_parameters(options)
-        typed, chosen = simulate_options({"until": until, **options}, self._core.method)
+        check_sweep(over, sample, runs, seed, jobs)
+        options = {"until": until, **options}
+        swept = self._swept(over or {}, set or {}, options)
+        if not swept and not sample:
+            raise refuse("nothing is changed from run to run", "e.g. m.sweep(mu=np.linspace(0.1, 0.5, 50), until=10)")
+        typed, chosen = simulate_options(options, self._core.method)
         axes = {name: axis(name, values) for name, values in swept.items()}
         # Of values that the tool counts the shape is not known here.
         counts = tuple(count_of(values) for values in swept.values())
@@ -221,10 +267,20 @@ class Model:
                 found = self._core.sweep(*arguments, jobs, (1, 1), tell, warned)
             except BaseException as stopped:
                 if isinstance(getattr(stopped, "result", None), tuple):
-                    stopped.result = Sweep(with_results(stopped.result), shape)  # type: ignore[attr-defined]
+                    stopped.result = Sweep(with_results(stopped.result, self, arguments), shape)  # type: ignore[attr-defined]
                 raise
         _warn(warned)
-        return Sweep(with_results(found), shape)
+        return Sweep(with_results(found, self, arguments), shape)
+
+    def _swept(self, over: Settings, set: Settings, options: dict[str, Value]) -> dict[str, Value]:
+        """All that is swept, by the names of settings; keywords that have several values leave the options."""
+        method = self._core.method
+        named = {getattr(name, "text", name): values for name, values in over.items()}
+        swept = {sweep_name(name, method): values for name, values in named.items()}
+        for name in [name for name, value in options.items() if is_several(value) and name != "times"]:
+            swept[once(sweep_name(name, method), [*swept, *set])] = options.pop(name)
+        self._refuse_parameters(options)
+        return swept
 
     def equations(self, *, latex: bool = False) -> list[tuple[str, str, str]]:
         """The equations as they were read: left side, right side, and where or when they hold; at most 1000.
@@ -285,6 +341,7 @@ class Model:
 
     def _refuse_parameters(self, options: Settings) -> None:
         """Of keywords that are no options those that the model knows; the rest is the tool's to say."""
+        check_together(options)
         if any(not is_option(name, self._core.method) for name in options):
             parameters_among(options, {**self.states, **self.parameters}, self._core.method)
 
@@ -306,7 +363,11 @@ class _started_at:
         if self._start is None:
             return ""
         if not isinstance(self._start, Result):
+            if not isinstance(self._start, (str, os.PathLike)):
+                raise refuse(f"start={self._start!r}: expected a result, or the file of one", 'start=r, or start="r.json"')
             return os.fspath(self._start)
+        import tempfile
+
         handle, name = tempfile.mkstemp(suffix=".json")
         os.close(handle)
         self._written = pathlib.Path(name)
@@ -329,31 +390,3 @@ def _warn(messages: list[str]) -> None:
         depth, frame = depth + 1, frame.f_back
     for message in messages:
         warnings.warn(in_python(message), ModelWarning, stacklevel=depth)
-
-
-def models() -> list[str]:
-    """Names of the shipped models.
-
-    >>> "stick-slip" in saltus.models()
-    True
-    """
-    return _core.models()
-
-
-def catalogue(name: str) -> Model:
-    """A shipped model.
-
-    >>> saltus.catalogue("stick-slip")
-    <saltus.Model 'stick-slip'>
-    """
-    return Model(_core.find_catalogue(name))
-
-
-def compare(model: Model, until: float | None = None, **options: Value) -> Result:
-    """:meth:`Model.compare` as a function."""
-    return model.compare(until, **options)
-
-
-def order(model: Model, until: float | None = None, **options: Value) -> Result:
-    """:meth:`Model.order` as a function."""
-    return model.order(until, **options)

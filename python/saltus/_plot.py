@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import typing
 
+from ._data import need_rows
 from ._shape import broken_at_jumps, slides, sliding_spans
 
 if typing.TYPE_CHECKING:
@@ -36,8 +37,9 @@ def _matplotlib() -> typing.Any:
 
 def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typing.Any:
     """A row of axes for every name; sliding is shaded, every event marked at its value."""
-    _need_rows(r)
+    need_rows(r, 2)
     pyplot = _matplotlib()
+    names = [names] if isinstance(names, str) else names
     wanted = list(names) if names is not None else [*r.states, *r.controls, *r.output_names]
     columns = {name: r[name] for name in wanted}
     if axes is None:
@@ -53,19 +55,18 @@ def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typ
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
         axis.plot(*broken_at_jumps(r, r.t, column), color=LINE, linewidth=1.2)
         _mark_events(axis, r, column)
-        axis.set_ylabel(name)
+        axis.set_ylabel(_caption(r, name))
         axis.margins(x=0)
     axes[0].set_title(r.model)
     axes[-1].set_xlabel("t")
     return axes
 
 
-def _need_rows(r: Result) -> None:
-    if len(r.t) < 2:
-        raise ValueError(
-            'this result has no trajectory to draw: of a sweep ask for it with keep="trajectory", or simulate its '
-            "parameters once more"
-        )
+def _caption(r: Result, name: str) -> str:
+    """The label of a column with its unit: "height [m]"."""
+    caption = r._captions.get(name, {})
+    unit = caption.get("unit", "")
+    return (caption.get("label") or name) + (f" [{unit}]" if unit else "")
 
 
 def _mark_events(axis: typing.Any, r: Result, column: typing.Any) -> None:
@@ -81,7 +82,7 @@ def _row_before(r: Result, t: float) -> int:
 
 def phase(r: Result, x: str, y: str, axis: typing.Any) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
-    _need_rows(r)
+    need_rows(r, 2)
     pyplot = _matplotlib()
     if axis is None:
         _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")
@@ -96,7 +97,7 @@ def phase(r: Result, x: str, y: str, axis: typing.Any) -> typing.Any:
         if rows:
             axis.plot(r[x][rows], r[y][rows], mark, color=colour, markersize=5, linestyle="none", label=kind)
     axis.plot(r[x][0], r[y][0], "o", color="black", markersize=4)
-    axis.set_xlabel(x)
-    axis.set_ylabel(y)
+    axis.set_xlabel(_caption(r, x))
+    axis.set_ylabel(_caption(r, y))
     axis.set_title(r.model)
     return axis

@@ -6,15 +6,19 @@ import contextlib
 import functools
 import json
 import os
+import re
 import typing
 
 import numpy as np
 
 from . import _card, _core, _data, _plot
+from ._columns import Columns
 from ._errors import Stopped
+from ._events import Event, Events
+from ._expression import refuse
+from ._outcome import Final, Kept, Sensitivities, Status
 
 Array = np.ndarray
-Event = _core.Event
 
 
 _OF_OPTIMUM = (
@@ -23,78 +27,11 @@ _OF_OPTIMUM = (
 ).split()
 
 
-class Status(str):
-    """Why a run ended, as a text: ``"completed"``, ``"iteration_limit"``, …; with the reason and what to try.
-
-    ``done`` says whether it did what was asked, ``time_reached`` how far it came.
-    """
-
-    message: str
-    time_reached: float
-    done: bool
-
-    @classmethod
-    def of(cls, run: _core.Run) -> Status:
-        status = cls(run.termination)
-        status.message, status.time_reached, status.done = run.message, run.time_reached, run.done
-        return status
-
-
-class Final:
-    """The end of a run: ``t``, ``x``, ``mode``, ``alpha``, and every value by its name, ``final["v"]``."""
-
-    def __init__(self, run: _core.Run) -> None:
-        values = run.final
-        self.t: float = values["t"]
-        self.x: Array = values["x"]
-        self.mode: list[int] = values["mode"]
-        self.alpha: Array = values["alpha"]
-        self.outputs: Array = values["outputs"]
-        self.regions: list[list[str]] = values["regions"]
-        self._named = dict(zip(run.output_names, self.outputs.tolist()))
-        self._named.update(zip(run.states, self.x.tolist()))
-
-    def __getitem__(self, name: str) -> float:
-        if name not in self._named:
-            raise _unknown(name, list(self._named))
-        return float(self._named[name])
-
-    def __repr__(self) -> str:
-        values = ", ".join(f"{name} = {value:.6g}" for name, value in self._named.items())
-        return f"<t = {self.t:.6g}: {values}>"
-
-
-class Events(list[_core.Event]):
-    """The events of a run, in their order."""
-
-    def table(self) -> typing.Any:
-        """A table of pandas: a row for every event."""
-        pandas = needed("pandas", "data")
-        return pandas.DataFrame(
-            {
-                "t": [event.t for event in self],
-                "kind": [event.kind for event in self],
-                "name": [event.name for event in self],
-                "surfaces": [", ".join(event.surfaces) for event in self],
-                "unique": [event.unique for event in self],
-                "reason": [event.reason for event in self],
-            }
-        )
-
-
-class Sensitivities(typing.NamedTuple):
-    """Derivatives of the end state by the initial state (``x0``) and by parameters (``p``); rows are states."""
-
-    x0: Array
-    p: Array
-    parameters: list[str]
-
-
 #: The model, settings and options of a simulation, with which it can be run once more.
 Again = tuple[typing.Any, list[str], list[tuple[str, str, str]]]
 
 
-class Result:
+class Result(Columns):
     """What a run computed: rows, events, the end, and why it ended.
 
     Arrays are read-only views of what the library holds. Every event has two rows of one time, before and behind it.
@@ -106,130 +43,95 @@ class Result:
     False
     """
 
-    def __init__(self, run: _core.Run, again: Again | None = None) -> None:
-        self._run = run
+    def __init__(self, run: _core.Run, again: Again | None = None, kept: Kept | None = None) -> None:
+        super().__init__(run)
         self._again = again
+        self._kept = kept
 
     # What was computed ---------------------------------------------------------------------------------------------
 
     @property
-    def t(self) -> Array:
-        """Times of all rows, ascending; two of one value at every event."""
-        return self._run.t
-
-    @property
-    def x(self) -> Array:
-        """States, (rows, n_x), in the order of ``states``; of a run with ``output={"states": …}`` only those."""
-        return self._run.x
-
-    @property
-    def u(self) -> Array:
-        """Controls, (rows, n_u)."""
-        return self._run.u
-
-    @property
-    def alpha(self) -> Array:
-        """Step selections, (rows, n_psi), in the order of ``switching_functions``; NaN where one is not determined."""
-        return self._run.alpha
-
-    @property
-    def mode(self) -> Array:
-        """Signs of the switching functions, (rows, n_psi); 0 while the solution slides on the surface."""
-        return self._run.mode
-
-    @property
-    def outputs(self) -> Array:
-        """[outputs] of the model, (rows, n_y)."""
-        return self._run.outputs
-
-    @property
-    def states(self) -> list[str]:
-        """Names of the states."""
-        return self._run.states
-
-    @property
-    def controls(self) -> list[str]:
-        """Names of the controls."""
-        return self._run.controls
-
-    @property
-    def switching_functions(self) -> list[str]:
-        """Names of the switching functions."""
-        return self._run.switching_functions
-
-    @property
-    def output_names(self) -> list[str]:
-        """Names of the outputs."""
-        return self._run.output_names
-
-    @property
     def parameters(self) -> dict[str, float]:
-        """Parameters and the values they had."""
+        """Parameters and the values they had.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1, set={"belt": 0.3}).parameters
+        {'belt': 0.3}
+        """
         return dict(self._run.parameters)
 
     @property
     def model(self) -> str:
-        """The name of the model."""
+        """The name of the model.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).model
+        'stick-slip'
+        """
         return self._run.model
 
     @property
     def method(self) -> str:
-        """The method that ran."""
+        """The method that ran.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1, method="fesd", steps=10).method
+        'fesd'
+        """
         return self._run.method
-
-    def __getitem__(self, name: str) -> Array:
-        """A column by its name: ``"t"``, a state, a control, an output, ``"alpha(slip)"`` or ``"mode(slip)"``."""
-        columns = self._columns
-        if not isinstance(name, str):
-            raise TypeError(f"r[{name!r}]: a column is taken by its name, e.g. r['t']; a row of all states is r.x[i]")
-        if name not in columns:
-            raise _unknown(name, list(columns))
-        block, index = columns[name]
-        return self.t if index is None else getattr(self._run, block)[:, index]
-
-    @property
-    def names(self) -> list[str]:
-        """All names of columns: ``t``, states, controls, outputs, modes and selections."""
-        return list(self._columns)
-
-    @functools.cached_property
-    def _columns(self) -> dict[str, tuple[str, int | None]]:
-        columns: dict[str, tuple[str, int | None]] = {"t": ("t", None)}
-        for block, names in (
-            ("x", self._run.states_in_rows),
-            ("u", self.controls),
-            ("outputs", self.output_names),
-            ("mode", [f"mode({name})" for name in self._run.functions_in_rows]),
-            ("alpha", [f"alpha({name})" for name in self._run.functions_in_rows]),
-            ("theta", [f"theta({name})" for name in self._run.regions]),
-        ):
-            for index, name in enumerate(names):
-                columns.setdefault(name, (block, index))
-        return columns
 
     @functools.cached_property
     def events(self) -> Events:
-        """All events, in their order; ``events.table()`` is a table of pandas."""
+        """All events, in their order; ``events.table()`` is a table of pandas.
+
+        >>> r = saltus.catalogue("stick-slip").simulate(until=2)
+        >>> r.events[0]
+        <enter_sliding of slip at t = 0.244688802>
+        """
+        if self._lost_events:
+            raise ValueError(
+                f'events not kept; {self._lost_events} happened: sweep(…, keep="events") or keep="trajectory" keeps them'
+            )
         return Events(self._run.events)
+
+    @property
+    def _lost_events(self) -> int:
+        """How many events happened that are not here."""
+        return self._kept.events if self._kept is not None and self._kept.what == "final" else 0
 
     @functools.cached_property
     def status(self) -> Status:
-        """Why the run ended."""
-        return Status.of(self._run)
+        """Why the run ended.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).status
+        'completed'
+        """
+        return Status._of(self._run)
 
     @functools.cached_property
     def final(self) -> Final:
-        """The end of the run."""
+        """The end of the run.
+
+        >>> saltus.catalogue("bouncing-ball").simulate(until=1).final
+        <t = 1: y = 5.1, v = -9.8>
+        """
         return Final(self._run)
 
     @functools.cached_property
     def branches(self) -> list[Result]:
-        """Other motions that were followed (``branches="all"``), each with its own branches."""
+        """Other motions that were followed (``branches="all"``), each with its own branches.
+
+        >>> r = saltus.catalogue("stay-or-leave").simulate(branches="all")
+        >>> len(r.branches) > 0
+        True
+        """
         return [Result(branch) for branch in self._run.branches]
 
     @functools.cached_property
     def sensitivities(self) -> Sensitivities | None:
-        """Derivatives of the end state, if they were asked for (``method="fesd", sensitivities=True``)."""
+        """Derivatives of the end state, if they were asked for (``method="fesd", sensitivities=True``).
+
+        >>> r = saltus.catalogue("stick-slip").simulate(until=1, method="fesd", steps=10, sensitivities=True)
+        >>> r.sensitivities.p.shape, r.sensitivities.parameters
+        ((2, 1), ['belt'])
+        """
         found = self._run.sensitivities
         if found is None:
             return None
@@ -243,8 +145,20 @@ class Result:
         stored: dict[str, typing.Any] = json.loads(self._run.json(False))
         return stored
 
+    @functools.cached_property
+    def _captions(self) -> dict[str, dict[str, str]]:
+        """`unit` and `label` of columns that have them."""
+        text = self._run.json(False)
+        model, _ = json.JSONDecoder().raw_decode(text, text.index("{", text.index('"model":')))
+        found: dict[str, dict[str, str]] = model.get("captions", {})
+        return found
+
     def to_dict(self) -> dict[str, typing.Any]:
-        """Everything, as :meth:`save` writes it (docs/result-file.md)."""
+        """Everything, as :meth:`save` writes it (docs/result-file.md).
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1, rtol=1e-6).to_dict()["options"]["simulate.rtol"]
+        1e-06
+        """
         stored: dict[str, typing.Any] = json.loads(self._run.json(True))
         return stored
 
@@ -254,6 +168,9 @@ class Result:
 
         ``objective``, ``horizon``, ``parameters``, ``u`` (rows are control intervals), ``grid``, ``multipliers``,
         ``homotopy``, ``certificate``, ``verification``, …
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).optimization is None
+        True
         """
         if self._run.command != "optimize":
             return None
@@ -261,20 +178,44 @@ class Result:
 
     @property
     def comparison(self) -> dict[str, typing.Any] | None:
-        """The runs of :meth:`Model.compare`."""
+        """The runs of :meth:`Model.compare`.
+
+        >>> [run["method"] for run in saltus.catalogue("stick-slip").compare(until=1).comparison["runs"]][:1]
+        ['event']
+        """
         return self._stored.get("comparison")
 
     @property
     def order(self) -> dict[str, typing.Any] | None:
-        """The series of :meth:`Model.order`."""
+        """The series of :meth:`Model.order`.
+
+        >>> study = saltus.catalogue("stick-slip").order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]).order
+        >>> study["series"][0]["scheme"]
+        'radau_iia'
+        """
         return self._stored.get("order")
 
     # Between the rows ----------------------------------------------------------------------------------------------
 
     @property
     def span(self) -> tuple[float, float]:
-        """First and last time of the solution."""
-        return float(self.t[0]), float(self.status.time_reached)
+        """First and last time of the solution.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=2).span
+        (0.0, 2.0)
+        """
+        return self._begin, float(self.status.time_reached)
+
+    @functools.cached_property
+    def _begin(self) -> float:
+        """The first time; of a run whose rows were not kept that of its first step, taken once more."""
+        if len(self.t):
+            return float(self.t[0])
+        if self._again is None:
+            raise ValueError('the rows of this run were not kept: sweep(…, keep="trajectory") keeps them')
+        model, settings, options = self._again
+        first = [*options, ("simulate.max_steps", "1", "max_steps=1")]
+        return float(model._core.simulate(settings, first, None, []).t[0])
 
     def __call__(self, t: typing.Any, side: str = "right") -> Array:
         """The state at any time, or at several, from the polynomials of the steps; at an event `side` says which of both.
@@ -297,11 +238,14 @@ class Result:
         """
         if side not in ("left", "right"):
             raise ValueError(f"side={side!r}: expected 'left' or 'right', of an event at this time")
-        times = np.atleast_1d(np.asarray(t, dtype=float)).ravel()
+        try:
+            times = np.atleast_1d(np.asarray(t, dtype=float)).ravel()
+        except (TypeError, ValueError):
+            raise ValueError(f"t={t!r}: expected a time, or a list of times") from None
         if self._again is None:
             raise ValueError(
                 "this result has its rows only (it was loaded, optimised, or is one of several): simulate its model to "
-                "have it at other times"
+                "have values at other times"
             )
         model, settings, options = self._again
         with own_results():
@@ -322,11 +266,27 @@ class Result:
         raise Stopped(f"stopped early: {self.status}{place}{reason}", self)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the result: ``.json`` all of it, ``.csv`` the trajectory, ``.events.csv`` the events, ``.npz`` both."""
+        """Writes the result: ``.json`` all of it, ``.csv`` the trajectory, ``.events.csv`` the events, ``.npz`` both.
+
+        >>> import tempfile, pathlib
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "r.csv"
+        >>> saltus.catalogue("stick-slip").simulate(until=1).save(file)
+        >>> file.read_text().split(",")[0]
+        't'
+        """
         self._run.save(os.fspath(path))
 
     def report(self, path: str | os.PathLike[str] | None = None) -> Page | None:
-        """Writes the page with all pictures, which works offline; without a path shows it in the notebook."""
+        """Writes the page with all pictures, which works offline; without a path shows it in the notebook.
+
+        >>> import tempfile, pathlib
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "r.html"
+        >>> saltus.catalogue("stick-slip").simulate(until=1).report(file)
+        >>> file.exists()
+        True
+        """
+        if path is not None and not os.fspath(path).lower().endswith((".html", ".htm")):
+            raise refuse(f"{os.fspath(path)}: the name of a page must end in .html", "pictures for papers: r.plot()")
         page = self._run.page()
         if path is None:
             return Page(page)
@@ -364,24 +324,35 @@ class Result:
         return _data.frame(self, grid)
 
     def dataset(self) -> typing.Any:
-        """A data set of xarray: the columns over ``row``, with ``t`` as a coordinate."""
+        """A data set of xarray: the columns over ``row``, with ``t`` as a coordinate.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).dataset()["v"].dims
+        ('row',)
+        """
         return _data.dataset(self)
 
     def _repr_html_(self) -> str:
         return _card.card(self)
 
     def __repr__(self) -> str:
-        return (
-            f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, "
-            f"{len(self.events)} events, {len(self.t)} rows>"
-        )
+        return f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, {self._counts}>"
+
+    @property
+    def _counts(self) -> str:
+        """How many events and rows there are."""
+        if self._lost_events:
+            return f"events not kept; {self._lost_events} happened"
+        return f"{len(self.events)} events, " + ("rows not kept" if self._kept else f"{len(self.t)} rows")
 
     def __str__(self) -> str:
         """The table of the tool."""
-        return self._run.table()
+        table = self._run.table()
+        if not self._lost_events:
+            return table
+        return re.sub(r"(?m)^(events +)none$", rf"\1not kept; {self._lost_events} happened", table)
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
-        return _restored, (self._run.json(True), self._again)
+        return _restored, (self._run.json(True), self._again, self._kept)
 
 
 @contextlib.contextmanager
@@ -409,20 +380,19 @@ class Page:
 
 
 def load(path: str | os.PathLike[str]) -> Result:
-    """A result that was saved as .json."""
+    """A result that was saved as .json.
+
+    >>> import tempfile, pathlib
+    >>> file = pathlib.Path(tempfile.mkdtemp()) / "r.json"
+    >>> saltus.catalogue("stick-slip").simulate(until=1, output="steps").save(file)
+    >>> saltus.load(file).final.t
+    1.0
+    """
     return Result(_core.load(os.fspath(path)))
 
 
-def _restored(text: str, again: Again | None = None) -> Result:
-    return Result(_core.parse_result(text), again)
-
-
-def _unknown(name: str, known: list[str]) -> KeyError:
-    import difflib
-
-    near = difflib.get_close_matches(name, known, 3)
-    hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(known)}"
-    return KeyError(f"the result has no {name!r}; {hint}")
+def _restored(text: str, again: Again | None = None, kept: Kept | None = None) -> Result:
+    return Result(_core.parse_result(text), again, kept)
 
 
 def needed(package: str, extra: str) -> typing.Any:

@@ -4,14 +4,24 @@ from __future__ import annotations
 
 import math
 import numbers
+import os
 import typing
 
 import numpy as np
 
 from . import _core
-from ._errors import ModelError
 from ._expression import Expression, refuse
 
+#: What other programs call what has another name here.
+_ELSEWHERE = {
+    **dict.fromkeys(("t_eval", "saveat", "teval"), "times=[…], or points=100, or every=0.1"),
+    **dict.fromkeys(("t_span", "tspan", "tmax", "t_end", "tend", "T"), "until=10, and from_=0 where it begins"),
+    **dict.fromkeys(("y0", "x0", "u0", "args", "p", "params", "parameters"), 'set={"name": value}, of parameters and states'),
+    **dict.fromkeys(("dt", "step", "stepsize"), "every=0.1 for rows, max_step=0.1 for steps"),
+    **dict.fromkeys(("reltol", "tol", "RelTol"), "rtol=1e-8"),
+    **dict.fromkeys(("abstol", "AbsTol"), "atol=1e-10"),
+    **dict.fromkeys(("solver", "alg"), 'integrator="dopri5", or method="fesd"'),
+}
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
 Option = tuple[str, str, str]
 _SIMULATE = frozenset(_core.simulate_keys())
@@ -42,6 +52,8 @@ def text_of(value: Value, name: str = "") -> str:
         return text_of(value.item(), name)
     if is_list(value) or isinstance(value, np.ndarray):
         return "[" + ", ".join(text_of(entry, name) for entry in value) + "]"
+    if hasattr(value, "save"):
+        raise refuse(f"{name}: a result is no value", 'save it, and give its file: r.save("r.json"), {"result": "r.json"}')
     raise TypeError(f"a number, a text or a list of numbers is expected, found {type(value).__name__}")
 
 
@@ -49,11 +61,24 @@ def settings_of(values: typing.Mapping[str, Value] | None) -> list[str]:
     """NAME=VALUE of `set`; tables inside become dotted names."""
     if values is not None and not isinstance(values, typing.Mapping):
         raise TypeError(f'set={values!r}: expected a dict, e.g. set={{"mu": 0.5}}')
-    return [f"{name}={text_of(value, name)}" for name, value in _flat(values or {})]
+    return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(values or {})]
+
+
+def _one_value(name: str, value: Value) -> Value:
+    """What a setting can be: of a name of the model one number or expression."""
+    if value is None:
+        raise refuse(f"{name}=None: that is no value", f"leave {name} out, or write a number or an expression")
+    if "." not in name and not isinstance(value, str) and np.ndim(value) > 0:
+        shown = _shown(value) if np.size(value) < 10 else f"[… {np.size(value)} values]"
+        raise refuse(f"{name}={shown}: expected one value", f"many values are for a sweep: m.sweep({name}=[…])")
+    return value
 
 
 def _flat(values: typing.Mapping[str, Value], before: str = "") -> typing.Iterator[tuple[str, Value]]:
-    for name, value in values.items():
+    for key, value in values.items():
+        name = key.text if isinstance(key, Expression) else key
+        if not isinstance(name, str) or not name:
+            raise refuse(f"{key!r} is no name of a model or option", 'names are texts: {"mu": 0.5}')
         if isinstance(value, typing.Mapping):
             yield from _flat(value, f"{before}{name}.")
         else:
@@ -79,6 +104,15 @@ def simulate_options(
         key = next((key for key in keys if key in _SIMULATE), by_surface)
         options.append((f"simulate.{key}", text_of(value, name), f"{name}={_shown(value)}"))
     return settings, options
+
+
+def check_together(keywords: typing.Mapping[str, Value]) -> None:
+    """What keywords cannot be, or cannot be beside each other."""
+    if not isinstance(keywords.get("inputs") or {}, typing.Mapping):
+        raise refuse(f"inputs={keywords['inputs']!r}: expected a dict", 'e.g. inputs={"u": "sin(t)"}')
+    grids = [name for name in ("every", "points", "times") if keywords.get(name) is not None]
+    if len(grids) > 1:
+        raise refuse(f"{' and '.join(grids)} say twice when there are rows", "give one of every, points and times")
 
 
 def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], list[Option]]:
@@ -111,6 +145,8 @@ def axis(name: str, values: Value) -> str:
     """The values of a swept name, as the tool reads them: a list, or the text FROM:TO:NUMBER."""
     if isinstance(values, str):
         return values
+    if np.ndim(values) > 1:
+        raise refuse(f"{name}: expected a list of values, found an array of shape {np.shape(values)}", "values.ravel()")
     if not is_list(values):
         raise refuse(f"{name}: expected a list of values, found {values!r}", f"{name}=[0.1, 0.2], or set={{...}} for one")
     if len(values) == 0:
@@ -118,10 +154,27 @@ def axis(name: str, values: Value) -> str:
     return text_of(values, name)[1:-1]
 
 
+def is_several(value: Value) -> bool:
+    """Whether a keyword of a sweep is swept; arrays of several axes are, to be refused."""
+    return is_list(value) or isinstance(value, np.ndarray) and value.ndim > 1
+
+
+def check_sweep(over: Value, sample: Value, runs: Value, seed: Value, jobs: Value) -> None:
+    """What a sweep is asked for has the right kind."""
+    whole("jobs", jobs, 0)
+    whole("seed", seed, 0)
+    if runs is not None:
+        whole("runs", runs, 1)
+    if sample is not None and not isinstance(sample, typing.Mapping):
+        raise refuse(f"sample={sample!r}: expected a dict", 'e.g. sample={"v": "normal(3, 0.1)"}')
+    if over is not None and not isinstance(over, typing.Mapping):
+        raise refuse(f"over={over!r}: expected a dict", 'e.g. over={"mu": [0.1, 0.2]}, or mu=[0.1, 0.2]')
+
+
 def whole(name: str, value: Value, least: int) -> None:
     """Refuses what is no whole number from `least` on."""
     if not isinstance(value, numbers.Integral) or value < least:
-        raise refuse(f"{name}={value!r}: expected a whole number", f"at least {least}")
+        raise refuse(f"{name}={value!r}: expected a whole number >= {least}", f"e.g. {name}={max(least, 1)}")
 
 
 def count_of(values: Value) -> int:
@@ -145,11 +198,20 @@ def is_option(name: str, method: str) -> bool:
 def parameters_among(options: typing.Mapping[str, Value], known: typing.Container[str], method: str) -> None:
     """Refuses a parameter or state that is given as if it were an option."""
     for name in options:
+        if name in _ELSEWHERE and name not in known and not is_option(name, method):
+            raise refuse(f"'{name}' is no option", f"write {_ELSEWHERE[name]}")
         if name in known and not is_option(name, method):
             raise refuse(
                 f"'{name}' is a name of the model, not an option",
                 f'write set={{"{name}": {_shown(options[name])}}}; in a sweep {name}=[…] has its values',
             )
+
+
+def names_no_keys(options: typing.Mapping[str, Value], known: typing.Container[str]) -> None:
+    """Refuses a name of the model among the keywords of an optimisation."""
+    for name in options:
+        if name in known and name not in _OPTIMIZE:
+            raise refuse(f"'{name}' is a name of the model, not an option", f'write set={{"{name}": {_shown(options[name])}}}')
 
 
 def _shown(value: Value) -> str:
@@ -158,6 +220,15 @@ def _shown(value: Value) -> str:
 
 def check_path(value: typing.Any, what: str) -> None:
     """A mistake that is easily made: a text where a file is expected."""
+    if not isinstance(value, (str, os.PathLike)):
+        raise TypeError(f"{what} expects the name of a file, found {type(value).__name__}; a Builder is a model already")
     if isinstance(value, str) and "\n" in value:
-        message, remedy = f"{what} expects the name of a file, found a text of several lines", "write saltus.Model.from_text(text)"
-        raise ModelError(f"{message}; {remedy}", message, remedy)
+        raise refuse(f"{what} expects the name of a file, found a text of several lines", "write saltus.Model.from_text(text)")
+
+
+def check_text(text: typing.Any) -> None:
+    """The opposite mistake."""
+    if not isinstance(text, str):
+        raise TypeError(f"expected the text of a model file, found {type(text).__name__}")
+    if "\n" not in text and text.endswith(".toml"):
+        raise refuse(f"'{text}' is the name of a file, not its text", f'write saltus.Model("{text}")')

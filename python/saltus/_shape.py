@@ -15,13 +15,20 @@ JUMPS = frozenset({"jump", "impact", "accumulation"})
 
 
 def broken_at_jumps(r: Result, *columns: Array) -> list[Array]:
-    """The columns with a NaN between the two rows of every jump, so that no line joins them."""
+    """The columns with a NaN between the two rows of every jump, so that no line joins them: of jumps of the state, and
+    where a column itself is not continuous, as an output that switches."""
     jumps = sorted({event.t for event in r.events if event.kind in JUMPS})
-    if not jumps:
-        return list(columns)
     # Behind the first row of a time: the other rows of it lie on the other side.
-    places = np.searchsorted(r.t, jumps, side="left") + 1
-    return [np.insert(column.astype(float), places, np.nan) for column in columns]
+    places = set((np.searchsorted(r.t, jumps, side="left") + 1).tolist())
+    twice = np.flatnonzero(np.diff(r.t) == 0)
+    for column in columns:
+        finite = column[np.isfinite(column)]
+        if len(twice) and len(finite):
+            step = np.abs(np.diff(column.astype(float))[twice])
+            places.update((twice[step > 1e-6 * np.ptp(finite)] + 1).tolist())
+    if not places:
+        return list(columns)
+    return [np.insert(column.astype(float), sorted(places), np.nan) for column in columns]
 
 
 def sliding_spans(r: Result) -> list[tuple[float, float]]:

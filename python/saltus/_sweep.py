@@ -7,8 +7,10 @@ import typing
 
 import numpy as np
 
-from . import _core
+from . import _core, _sweep_plot
+from ._outcome import Kept, unknown
 from ._result import Result, needed
+from ._settings import text_of
 
 Array = np.ndarray
 
@@ -20,15 +22,35 @@ SweepArguments = tuple[
 ]
 
 
-def with_results(found: tuple[dict[str, typing.Any], list[_core.Run], list[str]]) -> Found:
-    """What the library found, with its runs as results."""
+def with_results(
+    found: tuple[dict[str, typing.Any], list[_core.Run], list[str]], model: typing.Any, arguments: SweepArguments
+) -> Found:
+    """What the library found, with its runs as results that know how they can be run once more."""
     columns, runs, names = found
-    return columns, [Result(run) for run in runs], names
+    settings, options, keep = arguments[0], arguments[1], arguments[7]
+    swept = [(name, columns[column]) for name, column in zip(names, list(columns)[1:])]
+    results = []
+    row = 0
+    for run in runs:
+        rows = 1 if keep == "final" else len(run.events) if keep == "events" else len(run.t)
+        again = None
+        if rows > 0:  # of a run without a row the values are not known here
+            again = (model, [*settings, *(f"{name}={_text(column[row])}" for name, column in swept)], options)
+        events = int(columns["events"][row]) if keep == "final" else rows
+        results.append(Result(run, again, None if keep == "trajectory" else Kept(keep, events)))
+        row += rows
+    return columns, results, names
+
+
+def _text(value: typing.Any) -> str:
+    """A value of the table, as it was stated: whole numbers without a point."""
+    whole = not isinstance(value, str) and value != 0 and abs(value) < 1e15 and value == int(value)
+    return text_of(int(value) if whole else value)
 
 
 def share_of(model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]) -> Found:
     """One share of a sweep, in whatever process."""
-    return with_results(model._core.sweep(*arguments, jobs, share, None, []))
+    return with_results(model._core.sweep(*arguments, jobs, share, None, []), model, arguments)
 
 
 def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments, jobs: int) -> Found:
@@ -57,11 +79,19 @@ class Sweep:
 
     ``table`` has a column for the number of the run, for what was changed (``"v(0)"`` for the initial value of a state
     v), for the status, and what was kept of the runs: values at the end, events, or rows of trajectories.
+
+    >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)
+    >>> s
+    <saltus.Sweep of 2 runs over belt: 2 completed>
+    >>> list(s.table)
+    ['run', 'belt', 'status', 't', 'q', 'v', 'events']
+    >>> s.results[1]
+    <saltus.Result 'stick-slip': completed at t = 5, events not kept; 2 happened>
     """
 
     def __init__(self, found: Found, shape: tuple[int, ...]) -> None:
         columns, results, names = found
-        self.table: dict[str, Array] = {name: np.asarray(values) for name, values in columns.items()}
+        self.table: dict[str, Array] = {name: _column(name, values) for name, values in columns.items()}
         self.results: list[Result] = results
         self.names: list[str] = names
         self._shape = shape
@@ -69,23 +99,47 @@ class Sweep:
     def __len__(self) -> int:
         return len(self.results)
 
+    def __iter__(self) -> typing.Iterator[Result]:
+        return iter(self.results)
+
     def __getitem__(self, name: str) -> Array:
-        """A column of the table."""
+        """A column of the table.
+
+        >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)["events"].tolist()
+        [1, 2]
+        """
+        if not isinstance(name, str):
+            raise TypeError(f"s[{name!r}]: a column is taken by its name, e.g. s['run']; a run is s.results[{name!r}]")
         if name not in self.table:
-            raise KeyError(f"{name!r} is no column; there are {', '.join(self.table)}")
+            raise unknown(name, list(self.table), "the table")
         return self.table[name]
 
     @property
     def done(self) -> bool:
-        """Whether all runs did what was asked."""
+        """Whether all runs did what was asked.
+
+        >>> saltus.catalogue("stick-slip").sweep(max_steps=[3, 1000], until=5).done
+        False
+        """
         return all(result.status.done for result in self.results)
 
     def frame(self) -> typing.Any:
-        """The table as one of pandas."""
+        """The table as one of pandas.
+
+        >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5).frame()[["run", "belt", "events"]]
+           run  belt  events
+        0    1   0.1       1
+        1    2   0.2       2
+        """
         return needed("pandas", "data").DataFrame(self.table)
 
     def dataset(self) -> typing.Any:
-        """A data set of xarray: of a grid with its axes as dimensions, else over ``run``. Needs ``keep="final"``."""
+        """A data set of xarray: of a grid with its axes as dimensions, else over ``run``. Needs ``keep="final"``.
+
+        >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], q=[0, 0.1, 0.2], until=5)
+        >>> s.dataset()["events"].dims
+        ('belt', 'q(0)')
+        """
         xarray = needed("xarray", "data")
         columns = dict(self.table)
         if len(columns["run"]) != len(self) or len(columns["run"]) and columns["run"][-1] != len(self):
@@ -102,6 +156,37 @@ class Sweep:
             {name: (swept, values.reshape(self._shape)) for name, values in columns.items()}, coords=coordinates
         )
 
+    def plot(self, name: str, over: str | None = None, axis: typing.Any = None) -> typing.Any:
+        """Draws a column of the table (matplotlib) over what was swept; of several, one line for each value of the
+        others. `over` says what lies along the axis, without it what has the most values. Needs ``keep="final"``.
+
+        >>> s = saltus.catalogue("stick-slip").sweep(belt=np.linspace(0.1, 0.3, 5), q=[0, 0.1], until=5)
+        >>> axis = s.plot("v")
+        >>> axis.get_xlabel(), len(axis.lines)
+        ('belt', 2)
+        """
+        return _sweep_plot.plot(self, name, over, axis)
+
+    def bifurcation(
+        self,
+        name: str,
+        event: str | None = None,
+        after: float = -np.inf,
+        over: str | None = None,
+        axis: typing.Any = None,
+    ) -> typing.Any:
+        """Draws a bifurcation diagram (matplotlib): a column at events, over what was swept, a point for each of them.
+
+        `event` is the name or the kind of the events, without it all are drawn; `after` is the time from which on, as
+        transients are no part of it. Needs ``keep="events"``.
+
+        >>> m = saltus.catalogue("stick-slip")
+        >>> s = m.sweep(belt=np.linspace(0.1, 0.3, 5), until=40, keep="events")
+        >>> s.bifurcation("q", event="leave_sliding", after=20).get_ylabel()
+        'q at leave_sliding'
+        """
+        return _sweep_plot.bifurcation(self, name, event, after, over, axis)
+
     def __repr__(self) -> str:
         counts: dict[str, int] = {}
         for result in self.results:
@@ -109,3 +194,12 @@ class Sweep:
         return f"<saltus.Sweep of {len(self)} runs over {', '.join(self.names)}: " + ", ".join(
             f"{count} {status}" for status, count in sorted(counts.items())
         ) + ">"
+
+
+def _column(name: str, values: typing.Any) -> Array:
+    """Numbers of runs, of events and of modes are whole."""
+    column = np.asarray(values)
+    counts = name in ("run", "event", "events") or name.startswith("mode(")
+    if counts and column.dtype == float and np.all(np.mod(column, 1) == 0):
+        return column.astype(np.int64)
+    return column

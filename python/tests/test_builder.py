@@ -161,6 +161,7 @@ def test_what_python_must_not_decide(m):
     refused(lambda: float(x), "saltus.sin")
     refused(lambda: x > 0 & y > 0, "(x > 0) & (y > 0)")
     refused(lambda: list(x), "arrays")
+    refused(lambda: np.array([x, y]) > 0, "saltus.array([x, v]) > 0")
     refused(lambda: x + "1", "'1'")
     refused(lambda: x + float("nan"), "finite")
     refused(lambda: saltus.max(x), "2 arguments")
@@ -280,6 +281,7 @@ def test_a_problem_of_optimal_control():
 def test_powers_are_the_language_s(m):
     x = saltus.Expression("x", owner=m)
     assert saltus.pow(x, 3).text == "pow(x,3)"
+    assert saltus.max(x, 1, 2).text == "max(max(x,1),2)"
 
 
 def test_arrays_and_numbers_of_casadi():
@@ -307,3 +309,41 @@ def test_arrays_and_numbers_of_casadi():
             m.state(wrong, 1)
     with pytest.raises(saltus.ModelError, match="compare"):
         saltus.if_(x, 1, 2)
+
+
+def test_files_options_and_words(tmp_path):
+    (tmp_path / "u.csv").write_text("t,u\n0,1\n1,3\n")
+    (tmp_path / "f.csv").write_text("0,0\n1,2\n")
+    m = saltus.Builder("m")
+    x, u = m.state("x", 0, unit="m"), m.control("u", unit="N", label="force")
+    double = m.table("double", file=str(tmp_path / "f.csv"))
+    speed = m.define("speed", double(x / 4))
+    m.rate(x, u)
+    m.input(u, {"file": str(tmp_path / "u.csv")})
+    m.output("speed", unit="m/s")
+    m.simulation(until=2, output={"points": 3})
+    r = m.simulate()
+    assert r["u"].tolist()[0] == 1 and r["u"].tolist()[-1] == 3
+    assert r["speed"] == pytest.approx(np.minimum(r["x"] / 2, 2))
+    assert m.simulate(until=1).t[-1] == 1
+    captions = r.to_dict()["model"]["captions"]
+    assert captions["speed"]["unit"] == "m/s" and captions["u"] == {"unit": "N", "label": "force"}
+    for wrong in ({}, {"x": [0, 1]}, {"x": [0, 1], "y": [0, 1], "file": "f.csv"}):
+        refused(lambda wrong=wrong: m.table("other", **wrong), "not clear", "file=")
+    refused(lambda: m.table("other", [0, "a"], [0, 1]), "no lists of numbers")
+    assert [str(entry) for entry in double(saltus.array([x, u]))] == ["double(x)", "double(u)"]
+
+
+def test_free_parameters_are_chosen():
+    """The constant acceleration that brings a body 1 m far in 1 s, and the initial speed that needs none."""
+    for free, other, found in (("a", {"v": 0}, 2), ("v", {"a": 0}, 1)):
+        m = saltus.Builder("throw")
+        bounds = {"lower": -5, "upper": 5, "free": True}
+        a = m.parameter("a", 1, **(bounds if free == "a" else {}))
+        q, v = m.state("q", 0), m.state("v", 0.5 if free == "v" else 0, **(bounds if free == "v" else {}))
+        m.rate(q, v)
+        m.rate(v, a)
+        m.optimal_control(horizon=1, control_intervals=1, running_cost=a**2, terminal_constraints=[q == 1])
+        best = m.optimize(set={"a": 0} if free == "v" else {}).require()
+        value = best.optimization["parameters"]["a"] if free == "a" else best["v"][0]
+        assert value == pytest.approx(found, abs=1e-5)

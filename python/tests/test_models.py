@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import saltus
-from saltus._errors import in_python
+from saltus._spelling import in_python
 
 
 def test_a_file_and_its_text_are_the_same_model(brake, tmp_path):
@@ -74,7 +74,7 @@ def test_options_by_keyword(brake):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"rtoll": 1e-8}, ["rtoll", "did you mean 'simulate.rtol'"]),
+        ({"rtoll": 1e-8}, ["rtoll", "did you mean 'rtol'"]),
         ({"rtol": -1}, ["rtol=-1", "> 0"]),
         ({"integrator": "dopri"}, ["integrator='dopri'", "dopri5"]),
         ({"until": float("nan")}, ["until"]),

@@ -58,6 +58,70 @@ def test_the_sides_of_a_jump_are_not_joined(ball):
     assert np.isnan(y).sum() == len({e.t for e in ball.events if e.kind in ("jump", "accumulation")})
 
 
+def relay():
+    m = saltus.Builder("relay")
+    x, v = m.state("x", 1, unit="m", label="way"), m.state("v", 0, unit="m/s")
+    m.rate(x, v)
+    m.rate(v, -saltus.sign(x) - 0.1 * v)
+    m.output("u", -saltus.sign(x))
+    return m
+
+
+def test_an_output_that_switches_is_not_joined():
+    r = relay().simulate(until=5)
+    way, _, u = r.plot()
+    assert np.isnan(u.lines[0].get_ydata()).sum() == len(r.events) > 1
+    assert not np.isnan(way.lines[0].get_ydata()).any()
+
+
+def test_axes_have_labels_and_units():
+    r = relay().simulate(until=5)
+    assert [axis.get_ylabel() for axis in r.plot()] == ["way [m]", "v [m/s]", "u"]
+    axis = r.phase("x", "v")
+    assert (axis.get_xlabel(), axis.get_ylabel()) == ("way [m]", "v [m/s]")
+
+
+def test_pictures_of_sweeps(slip):
+    m = saltus.catalogue("stick-slip")
+    s = m.sweep(belt=np.linspace(0.3, 0.1, 5), q=[0, 0.1], until=5)
+    axis = s.plot("v")
+    assert (axis.get_xlabel(), axis.get_ylabel()) == ("belt", "v")
+    first = axis.lines[0]
+    assert first.get_xdata().tolist() == sorted(np.linspace(0.3, 0.1, 5).tolist())
+    assert first.get_ydata().tolist() == s["v"][s["q(0)"] == 0][::-1].tolist()
+    assert [line.get_label() for line in axis.lines] == ["q(0) = 0", "q(0) = 0.1"]
+    assert len(s.plot("events", over="q").lines) == 5
+    with pytest.raises(KeyError, match="belt"):
+        s.plot("v", over="mu")
+    with pytest.raises(KeyError, match="has no 'w'"):
+        s.plot("w")
+    with pytest.raises(ValueError, match='keep="events"'):
+        s.bifurcation("v")
+
+
+def test_bifurcation_diagrams():
+    m = saltus.catalogue("stick-slip")
+    s = m.sweep(belt=[0.1, 0.2, 0.3], until=40, keep="events")
+    points = s.bifurcation("q", event="leave_sliding", after=20).lines[0]
+    kept = (s["kind"] == "leave_sliding") & (s["t"] > 20)
+    assert 0 < kept.sum() < len(s["t"])
+    assert points.get_xdata().tolist() == s["belt"][kept].tolist()
+    assert points.get_ydata().tolist() == s["q"][kept].tolist()
+    assert len(s.bifurcation("v").lines[0].get_xdata()) == len(s["t"])
+    with pytest.raises(KeyError, match="leave_sliding"):
+        s.bifurcation("q", event="leaves_sliding")
+    with pytest.raises(ValueError, match='keep="final"'):
+        s.plot("q")
+
+
+def test_a_builder_in_a_notebook_before_it_is_complete():
+    m = saltus.Builder("m")
+    x = m.state("x", 1)
+    assert "not yet a model: the state &#x27;x&#x27; has no rate" in m._repr_html_()
+    m.rate(x, -x)
+    assert "dot{x}" in m._repr_html_()
+
+
 def test_phase_plane(slip):
     axis = slip.phase("q", "v")
     across, up = axis.lines[0].get_data()

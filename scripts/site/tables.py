@@ -82,30 +82,45 @@ Read [Saltus in Python](../python.md) first.
 
 .. autoclass:: saltus.Builder
    :members:
+   :inherited-members:
 
 .. autoclass:: saltus.Expression
 
+.. autofunction:: saltus.array
+
+.. autoclass:: saltus.Array
+
 .. autoclass:: saltus.Result
    :members:
+   :inherited-members:
    :special-members: __getitem__, __call__
 
 .. autoclass:: saltus.Sweep
    :members:
    :special-members: __getitem__
 
-.. autoclass:: saltus.Event
+.. autoclass:: saltus.Events
    :members:
+
+.. autoclass:: saltus.Event
+
+.. autoclass:: saltus.Alternative
 
 .. autoclass:: saltus.Final
    :members:
+   :special-members: __getitem__
 
 .. autoclass:: saltus.Status
    :members:
+
+.. autoclass:: saltus.Sensitivities
 
 .. autoexception:: saltus.ModelError
    :members:
 
 .. autoexception:: saltus.Stopped
+
+.. autoexception:: saltus.ModelWarning
 
 .. autofunction:: saltus.catalogue
 
@@ -116,8 +131,58 @@ Read [Saltus in Python](../python.md) first.
 .. autofunction:: saltus.compare
 
 .. autofunction:: saltus.order
+```
 
+## Functions of the language
+
+```{eval-rst}
 .. autofunction:: saltus.if_
+
+.. autofunction:: saltus.step
+
+.. autofunction:: saltus.sign
+
+.. autofunction:: saltus.abs
+
+.. autofunction:: saltus.max
+
+.. autofunction:: saltus.min
+
+.. autofunction:: saltus.floor
+
+.. autofunction:: saltus.mod
+
+.. autofunction:: saltus.sin
+
+.. autofunction:: saltus.cos
+
+.. autofunction:: saltus.tan
+
+.. autofunction:: saltus.asin
+
+.. autofunction:: saltus.acos
+
+.. autofunction:: saltus.atan
+
+.. autofunction:: saltus.atan2
+
+.. autofunction:: saltus.sinh
+
+.. autofunction:: saltus.cosh
+
+.. autofunction:: saltus.tanh
+
+.. autofunction:: saltus.exp
+
+.. autofunction:: saltus.log
+
+.. autofunction:: saltus.log10
+
+.. autofunction:: saltus.sqrt
+
+.. autofunction:: saltus.pow
+
+.. autofunction:: saltus.hypot
 ```
 """
 

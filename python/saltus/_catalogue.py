@@ -1,0 +1,45 @@
+"""The shipped models, and methods of models as functions."""
+
+from __future__ import annotations
+
+from . import _core
+from ._model import Model
+from ._result import Result
+from ._settings import Value
+
+
+def models() -> list[str]:
+    """Names of the shipped models.
+
+    >>> "stick-slip" in saltus.models()
+    True
+    """
+    return _core.models()
+
+
+def catalogue(name: str) -> Model:
+    """A shipped model.
+
+    >>> saltus.catalogue("stick-slip")
+    <saltus.Model 'stick-slip'>
+    """
+    return Model(_core.find_catalogue(name))
+
+
+def compare(model: Model, until: float | None = None, **options: Value) -> Result:
+    """:meth:`Model.compare` as a function.
+
+    >>> saltus.compare(saltus.catalogue("stick-slip"), until=1).comparison["runs"][0]["method"]
+    'event'
+    """
+    return model.compare(until, **options)
+
+
+def order(model: Model, until: float | None = None, **options: Value) -> Result:
+    """:meth:`Model.order` as a function.
+
+    >>> study = saltus.order(saltus.catalogue("stick-slip"), until=1, schemes=[("radau_iia", 2)], steps=[10, 20])
+    >>> study.order["series"][0]["stages"]
+    2
+    """
+    return model.order(until, **options)

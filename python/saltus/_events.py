@@ -1,0 +1,182 @@
+"""Events of a run: their list, and how they pickle and copy."""
+
+from __future__ import annotations
+
+import copyreg
+import json
+import math
+import typing
+
+from . import _core
+
+Event = _core.Event
+Alternative = _core.Alternative
+Json = dict[str, typing.Any]
+
+Event.__doc__ = """A change of mode, a jump, an impact, or an event of the user, at time ``t``.
+
+``kind`` is "start", "crossing", "enter_sliding", "leave_sliding", "change_sliding", "jump", "impact", "accumulation",
+"contact", "lift_off", "stick", "slip" or "user"; ``name`` of a jump or an event, ``surfaces`` that changed. ``x`` and
+``x_after`` are the state on both sides, so are ``mode_before`` and ``mode_after``, ``alpha_…``, ``regions_…`` and
+``contact_modes_…``; ``impulse`` of an impact by contact. ``unique`` says whether the solution goes on in one way only
+(None: not decided), ``alternatives`` how else, ``reason`` why it went on as it did.
+
+>>> event = saltus.catalogue("bouncing-ball").simulate(until=2).events[0]
+>>> event
+<jump of bounce at t = 1.42857143>
+>>> event.x[1].round(6).item(), event.x_after[1].round(6).item()
+(-14.0, 12.6)
+"""
+Alternative.__doc__ = """A continuation that was possible at an event: ``mode``, ``alpha`` and ``regions`` behind it.
+
+>>> event = saltus.catalogue("part-ways").simulate().events[0]
+>>> event.unique, event.mode_after, event.alternatives[0].mode
+(False, [0, 0], [-1, 0])
+"""
+
+_OF_EVENT = "t kind name surfaces mode_before mode_after alpha_before alpha_after x x_after unique reason".split()
+_IF_THERE = "regions_before regions_after contact_modes_before contact_modes_after impulse".split()
+
+
+class Events(list[_core.Event]):
+    """The events of a run, in their order; a list that knows its table.
+
+    >>> r = saltus.catalogue("stick-slip").simulate(until=10)
+    >>> [event.kind for event in r.events[:2]]
+    ['enter_sliding', 'leave_sliding']
+    """
+
+    def table(self) -> typing.Any:
+        """A table of pandas: a row for every event.
+
+        >>> r = saltus.catalogue("stick-slip").simulate(until=10)
+        >>> r.events.table()["kind"].tolist()[:2]
+        ['enter_sliding', 'leave_sliding']
+        """
+        from ._result import needed
+
+        pandas = needed("pandas", "data")
+        return pandas.DataFrame(
+            {
+                "t": [event.t for event in self],
+                "kind": [event.kind for event in self],
+                "name": [event.name for event in self],
+                "surfaces": [", ".join(event.surfaces) for event in self],
+                "unique": [event.unique for event in self],
+                "reason": [event.reason for event in self],
+            }
+        )
+
+    def __getitem__(self, which: typing.Any) -> typing.Any:
+        """An event by its number, or several of them as a list of this kind.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=10).events[:1].table()["name"].tolist()
+        [None]
+        """
+        found = super().__getitem__(which)
+        return Events(found) if isinstance(which, slice) else found
+
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        return _restored_events, (_stored(self),)
+
+    def __copy__(self) -> Events:
+        return Events(self)
+
+
+def _stored(events: typing.Sequence[_core.Event]) -> list[Json]:
+    return [_stored_event(event) for event in events]
+
+
+def _stored_event(event: _core.Event) -> Json:
+    entries = {name: _number(getattr(event, name)) for name in _OF_EVENT}
+    entries["alternatives"] = [_stored_alternative(other) for other in event.alternatives]
+    for name in _IF_THERE:
+        value = getattr(event, name)
+        if value:
+            entries[name] = _number(value)
+    return entries
+
+
+def _stored_alternative(alternative: _core.Alternative) -> Json:
+    entries = {"mode": alternative.mode, "alpha": _number(alternative.alpha)}
+    return {**entries, "regions": alternative.regions} if alternative.regions else entries
+
+
+def _number(value: typing.Any) -> typing.Any:
+    """As it is written in a stored result: what is not finite is null."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, list):
+        return [_number(entry) for entry in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _restored_events(stored: list[Json]) -> Events:
+    """Events by the reader of stored results: each is the one of a result that has nothing else."""
+    return Events(_restored_event(entries) for entries in stored)
+
+
+def _restored_event(entries: Json) -> _core.Event:
+    (event,) = _core.parse_result(json.dumps(_result_with(entries))).events
+    return event
+
+
+def _restored_alternative(entries: Json) -> _core.Alternative:
+    width, regions = len(entries["mode"]), entries.get("regions", [])
+    event = dict.fromkeys(_OF_EVENT) | {"t": 0.0, "kind": "crossing", "surfaces": [], "x": [], "x_after": [], "reason": ""}
+    event |= {"mode_after": [0] * width, "alternatives": [entries]}
+    if regions:
+        event["regions_after"] = regions
+    (alternative,) = _restored_event(event).alternatives
+    return alternative
+
+
+def _result_with(event: Json) -> Json:
+    """The smallest result in which an event can stand."""
+    columns = next((len(event[name]) for name in _OF_EVENT[4:8] if event[name] is not None), 0)
+    contacts = event.get("contact_modes_after", [])
+    states = [str(i) for i in range(len(event["x"]))]
+    rows: Json = {name: [] for name in ("t", "x", "u", "alpha", "mode", "outputs")}
+    final = {"t": 0.0, "x": [0.0] * len(states), "mode": [0] * columns, "alpha": [0.0] * columns, "outputs": []}
+    result = {
+        "format": "saltus-result/1",
+        "model": {"name": "", "sha256": "", "parameters": {}},
+        "command": "simulate",
+        "method": "event",
+        "status": {"termination": "completed", "message": "", "time_reached": 0.0},
+        "states": states,
+        "controls": [],
+        "switching_functions": [str(i) for i in range(columns)],
+        "outputs": [],
+        "final": final,
+        "events": [event],
+        "trajectory": rows,
+        "statistics": {"steps": 0, "rejected": 0, "rhs_evaluations": 0, "wall_seconds": 0.0},
+        "options": {},
+    }
+    if contacts:
+        result["contacts"] = [str(i) for i in range(len(contacts))]
+        final["contact_modes"] = contacts
+    groups = _region_groups(event)
+    if groups:
+        result["region_groups"] = groups
+        final["regions"] = [group["modes"] for group in groups]
+        final["theta"] = [0.0] * sum(len(group["modes"]) for group in groups)
+    return result
+
+
+def _region_groups(event: Json) -> list[Json]:
+    """Of every group the modes that the event names."""
+    lists = [event.get("regions_before"), event.get("regions_after")]
+    lists += [other.get("regions") for other in event["alternatives"]]
+    named = [regions for regions in lists if regions]
+    if not named:
+        return []
+    return [
+        {"name": str(group), "modes": list(dict.fromkeys(mode for regions in named for mode in regions[group]))}
+        for group in range(len(named[0]))
+    ]
+
+
+copyreg.pickle(_core.Event, lambda event: (_restored_event, (_stored_event(event),)))
+copyreg.pickle(_core.Alternative, lambda other: (_restored_alternative, (_stored_alternative(other),)))

@@ -1,0 +1,105 @@
+"""How a run ended: status, end, derivatives of the end."""
+
+from __future__ import annotations
+
+import typing
+
+import numpy as np
+
+from . import _core
+from ._spelling import in_python, keywords
+
+Array = np.ndarray
+
+
+class Status(str):
+    """Why a run ended, as a text: ``"completed"``, ``"iteration_limit"``, …; with the reason and what to try.
+
+    ``done`` says whether it did what was asked, ``time_reached`` how far it came, ``message`` the reason.
+
+    >>> status = saltus.catalogue("stick-slip").simulate(until=5, max_steps=9).status
+    >>> status, status.done, status.time_reached < 5
+    ('iteration_limit', False, True)
+    """
+
+    message: str
+    time_reached: float
+    done: bool
+
+    @classmethod
+    def _of(cls, run: _core.Run) -> Status:
+        status = cls(run.termination)
+        status.message = keywords(in_python(run.message))
+        status.time_reached, status.done = run.time_reached, run.done
+        return status
+
+
+class Final:
+    """The end of a run: ``t``, ``x``, ``mode``, ``alpha``, and every value by its name, ``final["v"]``.
+
+    >>> final = saltus.catalogue("stick-slip").simulate(until=4).final
+    >>> final.t, final.mode, round(final["v"], 6)
+    (4.0, [0], 0.2)
+    """
+
+    def __init__(self, run: _core.Run) -> None:
+        values = run.final
+        self.t: float = values["t"]
+        self.x: Array = values["x"]
+        self.mode: list[int] = values["mode"]
+        self.alpha: Array = values["alpha"]
+        self.outputs: Array = values["outputs"]
+        self.regions: list[list[str]] = values["regions"]
+        self._named = dict(zip(run.output_names, self.outputs.tolist()))
+        self._named.update(zip(run.states, self.x.tolist()))
+        self._parameters = [parameter for parameter, _ in run.parameters]
+
+    def __getitem__(self, name: str) -> float:
+        """A state or an output by its name.
+
+        >>> saltus.catalogue("bouncing-ball").simulate(until=1).final["y"] > 0
+        True
+        """
+        if name not in self._named:
+            raise unknown(name, list(self._named), parameters=self._parameters)
+        return float(self._named[name])
+
+    def __repr__(self) -> str:
+        values = ", ".join(f"{name} = {value:.6g}" for name, value in self._named.items())
+        return f"<t = {self.t:.6g}: {values}>"
+
+
+class Sensitivities(typing.NamedTuple):
+    """Derivatives of the end state by the initial state (``x0``) and by parameters (``p``); rows are states.
+
+    >>> m = saltus.Builder("decay")
+    >>> x, k = m.state("x", 2), m.parameter("k", 1)
+    >>> m.rate(x, -k*x)
+    >>> found = m.simulate(until=1, method="fesd", stages=3, steps=10, sensitivities=True).sensitivities
+    >>> found.x0.round(6).tolist(), found.p.round(6).tolist(), found.parameters
+    ([[0.367879]], [[-0.735759]], ['k'])
+    """
+
+    x0: Array
+    p: Array
+    parameters: list[str]
+
+
+class Kept(typing.NamedTuple):
+    """What a sweep kept of a run ("final" or "events"), and how many events happened."""
+
+    what: str
+    events: int
+
+
+def unknown(
+    name: str, known: list[str], what: str = "the result", parameters: typing.Iterable[str] = ()
+) -> KeyError:
+    """A name that is not there, with those that are near."""
+    if name in parameters:
+        return KeyError(f"{name!r} is a parameter: r.parameters[{name!r}]")
+    import difflib
+
+    near = difflib.get_close_matches(str(name), known, 3)
+    hint = f"did you mean {' or '.join(map(repr, near))}?" if near else f"known: {', '.join(known)}"
+    return KeyError(f"{what} has no {name!r}; {hint}")

@@ -1,0 +1,156 @@
+"""What a builder has stated so far: names, their owner, and the text of the model file."""
+
+from __future__ import annotations
+
+import json
+import typing
+
+from ._expression import Expression, Operand, expression, number, owner_of, refuse
+
+Rates = typing.Mapping[typing.Any, Operand]
+Entries = dict[str, typing.Any]
+#: Names that the language has already.
+RESERVED = frozenset(
+    "t pi and or not if step sign abs max min floor mod sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 "
+    "sqrt hypot pow".split()
+)
+
+
+class Statement:
+    """The tables of a model file, filled one after the other; what :class:`saltus.Builder` is made of."""
+
+    def __init__(self, name: str, description: str = "", inclusion: str | None = None) -> None:
+        self.name = name
+        self._model = given({"name": name, "description": description or None, "inclusion": inclusion})
+        self._taken: set[str] = set()
+        self._parts: dict[str, Entries] = {
+            part: {}
+            for part in ("parameters", "states", "controls", "definitions", "switching", "dynamics", "outputs", "tables")
+        }
+        self._lists: dict[str, list[Entries]] = {
+            part: [] for part in ("contacts", "hysteresis", "modes", "jumps", "events")
+        }
+        self._inputs: Entries = {}
+        self._simulate: Entries = {}
+        self._mechanics: Entries = {}
+        self._time_freezing: Entries = {}
+        self._optimize: Entries = {}
+
+    def to_toml(self) -> str:
+        """The model file that states the same.
+
+        >>> m = saltus.Builder("decay")
+        >>> x = m.state("x", 1)
+        >>> m.rate(x, -2*x)
+        >>> print(m.to_toml().strip())
+        [model]
+        name = "decay"
+        <BLANKLINE>
+        [states]
+        x = "1"
+        <BLANKLINE>
+        [dynamics]
+        x = "-2*x"
+        """
+        parts: list[tuple[str, Entries]] = [("[model]", self._model)]
+        parts += [
+            (f"[{part}]", self._parts[part])
+            for part in ("parameters", "states", "controls", "definitions", "switching", "dynamics")
+        ]
+        parts.append(("[mechanics]", self._mechanics))
+        parts += [(f"[[{part}]]", entry) for part, entries in self._lists.items() for entry in entries]
+        parts.append(("[outputs]", self._parts["outputs"]))
+        parts += [(f"[tables.{name}]", table) for name, table in self._parts["tables"].items()]
+        inputs = {"inputs": self._inputs} if self._inputs else {}
+        parts += [
+            ("[simulate]", {**self._simulate, **inputs}),
+            ("[optimize]", self._optimize),
+            ("[time_freezing]", self._time_freezing),
+        ]
+        return "\n".join(f"{head}\n{_lines(entries)}" for head, entries in parts if entries)
+
+    # Names and owners ----------------------------------------------------------------------------------------------
+
+    def _take(self, name: str) -> None:
+        if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
+            raise refuse(f"{name!r} is no name", "letters, digits and _, with a letter first: \"x1\"")
+        if name in RESERVED:
+            raise refuse(f"'{name}' is a word of the language", f"choose another name, e.g. {name}_")
+        if name in self._taken:
+            raise refuse(f"the name '{name}' is taken", "every name of a model is declared once")
+        self._taken.add(name)
+
+    def _declare(self, part: str, name: str, value: typing.Any) -> Expression:
+        if part != "outputs":
+            self._take(name)
+        self._taken.add(name)
+        self._parts[part][name] = value
+        return Expression(name, owner=self)
+
+    def _own(self, value: Operand) -> Expression:
+        made = expression(value)
+        owner_of(Expression("", owner=self), made)
+        return made
+
+    def _own_or_none(self, value: Operand) -> Expression | None:
+        return None if value is None else self._own(value)
+
+    def _own_all(self, value: typing.Any) -> typing.Any:
+        """The same of tables and lists; texts and truths stay as they are."""
+        if isinstance(value, typing.Mapping):
+            return {name: self._own_all(entry) for name, entry in value.items()}
+        if isinstance(value, (list, tuple)):
+            return [self._own_all(entry) for entry in value]
+        if hasattr(value, "tolist") and not isinstance(value, Expression):
+            return self._own_all(value.tolist())
+        return self._own(value) if isinstance(value, Expression) else value
+
+    def _value(self, main: str, value: Operand, beside: Entries) -> typing.Any:
+        """A value alone, or a table of it where something is given beside it."""
+        own = self._own(value)
+        more = given(beside)
+        return {main: own, **{name: self._own_all(entry) for name, entry in more.items()}} if more else own
+
+    def _name_in(self, part: str, name: Expression | str) -> str:
+        text = name.text if isinstance(name, Expression) else name
+        if isinstance(name, Expression):
+            self._own(name)
+        if text not in self._parts[part]:
+            known = ", ".join(self._parts[part]) or "none"
+            raise refuse(f"'{text}' is none of the {part} of this builder", f"known: {known}")
+        return text
+
+    def _state(self, state: Expression | str) -> str:
+        return self._name_in("states", state)
+
+    def _rates(self, rates: Rates) -> dict[str, Expression]:
+        return {self._state(state): self._own(number(value)) for state, value in rates.items()}
+
+    def _rates_or_none(self, rates: Rates | None) -> dict[str, Expression] | None:
+        return None if rates is None else self._rates(rates)
+
+    def __repr__(self) -> str:
+        return f"<saltus.Builder {self.name!r}: {', '.join(self._parts['states'])}>"
+
+
+def given(entries: Entries) -> Entries:
+    """Those that are not None."""
+    return {name: value for name, value in entries.items() if value is not None}
+
+
+def _lines(entries: typing.Mapping[str, typing.Any]) -> str:
+    return "".join(f"{name} = {_toml(value)}\n" for name, value in entries.items())
+
+
+def _toml(value: typing.Any) -> str:
+    if isinstance(value, Expression):
+        return json.dumps(value.text, ensure_ascii=False)
+    if isinstance(value, typing.Mapping):
+        return "{ " + ", ".join(f"{name} = {_toml(entry)}" for name, entry in value.items()) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_toml(entry) for entry in value) + "]"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    return json.dumps(str(value), ensure_ascii=False)

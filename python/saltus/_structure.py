@@ -1,0 +1,190 @@
+"""What a builder states beside rates: jumps, hysteresis, mechanics, contacts, optimal control."""
+
+from __future__ import annotations
+
+import collections.abc
+import typing
+
+from ._expression import Expression, Operand, refuse
+from ._statement import Entries, Rates, Statement, given
+
+
+class Structure(Statement):
+    """The part of :class:`saltus.Builder` for what has rules of its own."""
+
+    def jump(
+        self,
+        when: Expression | None = None,
+        set: Rates = {},
+        *,
+        direction: str | None = None,
+        at: typing.Sequence[Operand] | None = None,
+        every: Operand = None,
+        name: str | None = None,
+        at_start: bool = False,
+        priority: Operand = None,
+        delay: Operand = None,
+        persistent: bool = True,
+        values: str | None = None,
+    ) -> None:
+        """Gives states new values, all at once: when a condition becomes true, when an expression passes 0 in a
+        `direction`, `at` given times, or `every` so often. All keys: docs/model-file.md.
+
+        >>> m = saltus.Builder("ball")
+        >>> y, v = m.state("y", 1), m.state("v", 0)
+        >>> m.rate(y, v)
+        >>> m.rate(v, -9.81)
+        >>> m.jump(y, {v: -0.8*v}, direction="down", name="bounce")
+        >>> m.simulate(until=0.5).events[0]
+        <jump of bounce at t = 0.451523641>
+        """
+        if not set:
+            raise refuse("the jump changes nothing", "say which states get which values: m.jump(x > 1, {x: 0})")
+        if sum(cause is not None for cause in (when, at, every)) != 1:
+            raise refuse("when the jump happens is not clear", "give one of: a condition, at=[t1, t2], every=T")
+        entry = {
+            "when": self._own_or_none(when),
+            "direction": direction,
+            "at": None if at is None else [self._own(time) for time in at],
+            "every": self._own_or_none(every),
+            "set": self._rates(set),
+            "name": name,
+            "at_start": at_start or None,
+            "priority": self._own_or_none(priority),
+            "delay": self._own_or_none(delay),
+            "persistent": None if persistent else False,
+            "values": values,
+        }
+        self._lists["jumps"].append(given(entry))
+
+    def hysteresis(
+        self, name: str, input: Operand, *, on: Operand, off: Operand, initial: Operand = None
+    ) -> Expression:
+        """A name that is 0 or 1: it becomes 1 where `input` rises through `on`, and 0 where it falls through `off`.
+
+        >>> m = saltus.Builder("room")
+        >>> T = m.state("T", 15)
+        >>> heats = m.hysteresis("heats", -T, on=-18, off=-20, initial=1)
+        >>> m.rate(T, 10*heats - 0.1*T)
+        >>> len(m.simulate(until=10).events) > 5
+        True
+        """
+        self._take(name)
+        entry = given({"input": input, "on": on, "off": off, "initial": initial})
+        self._lists["hysteresis"].append({"name": name, **{key: self._own(value) for key, value in entry.items()}})
+        return Expression(name, owner=self)
+
+    def mechanics(
+        self,
+        positions: typing.Sequence[Expression | str],
+        velocities: typing.Sequence[Expression | str],
+        *,
+        mass: typing.Sequence[typing.Sequence[Operand]] | None = None,
+        force: Rates | None = None,
+        potential: Operand = None,
+        coriolis: str | None = None,
+        draw: typing.Sequence[typing.Mapping[str, typing.Any]] | None = None,
+    ) -> None:
+        """Moves positions and velocities by M(q) v' = force - grad potential; `force` by velocity. Without `mass` M is
+        the identity; ``coriolis="auto"`` adds the terms of a mass matrix that depends on positions. `draw` lists lines
+        and discs for the page of a report: ``[{"point": [0, y], "radius": 0.1}]``.
+
+        >>> m = saltus.Builder("ball")
+        >>> y, v = m.state("y", 1), m.state("v", 0)
+        >>> m.mechanics([y], [v], force={v: -9.81})
+        >>> m.contact("ground", gap=y, restitution=0.5)
+        >>> m.simulate(until=0.5).events[0]
+        <impact of ground at t = 0.451523641>
+        """
+        if self._mechanics:
+            raise refuse("the mechanics are stated twice", "state all positions and velocities at once")
+        entry = {
+            "positions": [self._state(name) for name in positions],
+            "velocities": [self._state(name) for name in velocities],
+            "mass": None if mass is None else [[self._own(value) for value in row] for row in mass],
+            "force": self._rates_or_none(force),
+            "potential": self._own_or_none(potential),
+            "coriolis": coriolis,
+            "draw": None if draw is None else self._own_all(draw),
+        }
+        self._mechanics = given(entry)
+
+    def contact(
+        self,
+        name: str,
+        gap: Operand,
+        *,
+        tangent: Rates | None = None,
+        tangents: collections.abc.Sequence[Rates] | None = None,
+        friction: Operand = None,
+        restitution: Operand = None,
+    ) -> None:
+        """Bodies of :meth:`mechanics` that touch where `gap` is 0.
+
+        `tangent` has the coefficients of velocities by position; in space there are two of them, `tangents`.
+
+        >>> m = saltus.Builder("block")
+        >>> x, y, u, v = m.state("x", 0), m.state("y", 0), m.state("u", 2), m.state("v", 0)
+        >>> m.mechanics([x, y], [u, v], force={v: -10})
+        >>> m.contact("ground", gap=y, tangent={x: 1}, friction=0.5)
+        >>> m.simulate(until=1).events[0]
+        <stick of ground at t = 0.4>
+        """
+        self._take(name)
+        entry = {
+            "name": name,
+            "gap": self._own(gap),
+            "tangent": self._rates_or_none(tangent),
+            "tangents": None if tangents is None else [self._rates(one) for one in tangents],
+            "friction": self._own_or_none(friction),
+            "restitution": self._own_or_none(restitution),
+        }
+        self._lists["contacts"].append(given(entry))
+
+    def optimal_control(self, **problem: typing.Any) -> None:
+        """What is to be optimised, with the keys of [optimize]: expressions, conditions, lists and dicts of them.
+
+        >>> m = saltus.Builder("car")
+        >>> q, v, u = m.state("q", 0), m.state("v", 0), m.control("u", lower=-1, upper=1)
+        >>> m.rate(q, v)
+        >>> m.rate(v, u)
+        >>> m.optimal_control(
+        ...     horizon={"free": True, "initial": 2.5, "lower": 1, "upper": 5}, minimize_time=True, control_intervals=4,
+        ...     terminal_constraints=[q == 1, v == 0],
+        ... )
+        >>> round(m.optimize().optimization["objective"], 6)
+        2.0
+        """
+        if self._optimize:
+            raise refuse("the problem of optimal control is stated twice", "state all of its keys at once")
+        if not problem:
+            raise refuse("the problem of optimal control has no keys", "e.g. horizon=1, objective=x**2")
+        self._optimize = self._keys(problem)
+
+    def time_freezing(self, **keys: typing.Any) -> None:
+        """How time stands still at contacts and hysteresis, with the keys of [time_freezing] (docs/model-file.md).
+
+        >>> m = saltus.Builder("ball")
+        >>> y, v = m.state("y", 1), m.state("v", 0)
+        >>> m.mechanics([y], [v], force={v: -9.81})
+        >>> m.contact("ground", gap=y)
+        >>> m.time_freezing(a_n=20)
+        >>> abs(m.simulate(until=1, method="fesd", steps=20).final["y"]) < 1e-6
+        True
+        """
+        self._time_freezing = self._keys(keys)
+
+    def simulation(self, **options: typing.Any) -> None:
+        """Options that the model file is to have, with the keys of [simulate]; those of :meth:`simulate` come later.
+
+        >>> m = saltus.Builder("decay")
+        >>> x = m.state("x", 1)
+        >>> m.rate(x, -x)
+        >>> m.simulation(until=3, output={"points": 4})
+        >>> m.simulate().t.tolist()
+        [0.0, 1.0, 2.0, 3.0]
+        """
+        self._simulate = self._keys(options)
+
+    def _keys(self, keys: Entries) -> Entries:
+        return {name.rstrip("_"): self._own_all(value) for name, value in given(keys).items()}

@@ -1,0 +1,76 @@
+"""Pictures of sweeps by matplotlib."""
+
+from __future__ import annotations
+
+import typing
+
+import numpy as np
+
+from ._outcome import unknown
+from ._result import needed
+
+if typing.TYPE_CHECKING:
+    from ._sweep import Sweep
+
+
+def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
+    """Lines of a column over what was swept, one for each value of everything else."""
+    if len(s["run"]) != len(s) or "events" not in s.table:
+        raise ValueError('a line has a value for every run: sweep(…, keep="final"), or s.bifurcation(…) for events')
+    column, (x, others) = s[name], _axes(s, over)
+    axis = _axis(axis)
+    rows = np.column_stack([s[other] for other in others]) if others else np.zeros((len(s), 1))
+    _, line_of_run = np.unique(rows, axis=0, return_inverse=True)
+    lines = list(dict.fromkeys(np.ravel(line_of_run).tolist()))
+    for line in lines:
+        runs = np.flatnonzero(np.ravel(line_of_run) == line)
+        runs = runs[np.argsort(s[x][runs], kind="stable")]
+        label = ", ".join(f"{other} = {_shown(s[other][runs[0]])}" for other in others)
+        axis.plot(s[x][runs], column[runs], marker="." if len(runs) < 60 else None, linewidth=1.2, label=label or None)
+    if 1 < len(lines) <= 12:
+        axis.legend()
+    axis.set_xlabel(x)
+    axis.set_ylabel(name)
+    return axis
+
+
+def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str | None, axis: typing.Any) -> typing.Any:
+    """Points: a column at events over what was swept."""
+    if "kind" not in s.table:
+        raise ValueError('a bifurcation diagram is made of events: sweep(…, keep="events")')
+    chosen = s["t"] > after
+    if event is not None:
+        chosen &= (s["name"] == event) | (s["kind"] == event)
+        if not np.any((s["name"] == event) | (s["kind"] == event)):
+            raise unknown(event, sorted({*s["name"].tolist(), *s["kind"].tolist()} - {""}), "the events have a name or kind;")
+    x, _ = _axes(s, over)
+    axis = _axis(axis)
+    axis.plot(s[x][chosen], s[name][chosen], ".", markersize=2.5, color="#1f5fa8")
+    axis.set_xlabel(x)
+    axis.set_ylabel(name if event is None else f"{name} at {event}")
+    return axis
+
+
+def _axes(s: Sweep, over: str | None) -> tuple[str, list[str]]:
+    """What is drawn along the axis, and the rest of what was swept."""
+    swept = list(s.table)[1 : 1 + len(s.names)]
+    numbers = [name for name in swept if s[name].dtype.kind in "if"]
+    if over is not None and over not in numbers:
+        over = dict(zip(s.names, swept)).get(over, over)
+        if over not in numbers:
+            raise unknown(over, numbers, "what was swept")
+    if not numbers:
+        raise ValueError("nothing with numbers was swept")
+    x = over if over is not None else max(numbers, key=lambda name: len(np.unique(s[name])))
+    return x, [name for name in swept if name != x]
+
+
+def _shown(value: typing.Any) -> str:
+    return str(value) if isinstance(value, str) else f"{value:.4g}"
+
+
+def _axis(axis: typing.Any) -> typing.Any:
+    needed("matplotlib", "plot")
+    if axis is None:
+        _, axis = needed("matplotlib.pyplot", "plot").subplots(figsize=(6, 4), layout="constrained")
+    return axis

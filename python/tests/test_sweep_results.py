@@ -1,0 +1,91 @@
+"""Single runs of a sweep: what they say of what was not kept, and that they can be asked like any other run."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import saltus
+
+
+@pytest.fixture(scope="module")
+def slip():
+    return saltus.catalogue("stick-slip")
+
+
+@pytest.fixture(scope="module")
+def alone(slip):
+    return slip.simulate(until=5, set={"belt": 0.2})
+
+
+def sweep(slip, keep="final", **more):
+    return slip.sweep(belt=[0.1, 0.2, 5.0], until=5, keep=keep, **more)
+
+
+def test_events_that_were_not_kept_are_told(slip, alone):
+    run = sweep(slip).results[1]
+    count = len(alone.events)
+    assert count == sweep(slip)["events"][1] == 2
+    for text in (repr(run), str(run), run._repr_html_()):
+        assert f"not kept; {count} happened" in text
+        assert "none" not in text
+    with pytest.raises(ValueError, match=f'not kept; {count} happened.*keep="events"'):
+        run.events
+    assert "not kept; 2 happened" in repr(pickle.loads(pickle.dumps(run)))
+    # Where nothing happened, nothing is missing.
+    still = sweep(slip).results[2]
+    assert list(still.events) == [] and "0 events, rows not kept" in repr(still)
+
+
+def test_events_that_were_kept(slip, alone):
+    run = sweep(slip, "events").results[1]
+    assert [e.t for e in run.events] == [e.t for e in alone.events]
+    assert "2 events, rows not kept" in repr(run)
+    assert repr(sweep(slip, "trajectory").results[1]) == repr(alone)
+
+
+@pytest.mark.parametrize("keep", ["final", "events", "trajectory"])
+def test_spans_and_values_between(slip, alone, keep):
+    for s in (sweep(slip, keep), pickle.loads(pickle.dumps(sweep(slip, keep)))):
+        assert s.results[1].span == alone.span == (0.0, 5.0)
+        assert s.results[1](2.5).tobytes() == alone(2.5).tobytes()
+        assert s.results[1].frame(grid=3).equals(alone.frame(grid=3))
+    assert sweep(slip, keep, from_=1).results[1].span == (1.0, 5.0)
+    # Of a run without a row in the table its values are not known any more.
+    if keep == "events":
+        with pytest.raises(ValueError, match='keep="trajectory"'):
+            sweep(slip, keep).results[2].span
+
+
+def test_every_kind_of_setting_is_run_again(slip):
+    s = slip.sweep(
+        {"v": [-0.1, 0.05]}, sample={"q": "uniform(0, 0.5)"}, runs=2, integrator=["dop853", "radau5"], max_steps=[5, 1000], until=3
+    )
+    for i, run in enumerate(s.results):
+        until = min(0.01, run.status.time_reached)
+        values = {"v": s["v(0)"][i], "q": s["q(0)"][i]}
+        options = {"integrator": str(s["simulate.event.integrator"][i]), "max_steps": int(s["simulate.max_steps"][i])}
+        assert run(until).tobytes() == slip.simulate(until=3, set=values, **options)(until).tobytes()
+
+
+def test_a_sweep_is_gone_through_run_by_run(slip):
+    s = sweep(slip)
+    assert [run is kept for run, kept in zip(s, s.results)] == [True] * 3
+
+
+def test_without_rows_tables_and_pictures_say_so(slip):
+    run = sweep(slip).results[0]
+    for show in (run.frame, run.dataset, run.plot, lambda: run.phase("q", "v")):
+        with pytest.raises(ValueError, match='keep="trajectory"'):
+            show()
+
+
+def test_counts_are_whole_numbers(slip):
+    pytest.importorskip("pandas")
+    for keep, names in (("final", ["run", "events"]), ("events", ["run", "event"]), ("trajectory", ["run", "mode(slip)"])):
+        s = sweep(slip, keep)
+        for name in names:
+            assert s[name].dtype == np.int64
+            assert s.frame()[name].dtype == np.int64
+        assert s["belt"].dtype == np.float64
+    assert sweep(slip).dataset()["events"].dtype == np.int64
