@@ -69,7 +69,7 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
       if (std::this_thread::get_id() == caller) watch.tell(progress, static_cast<double>(done), total);
     };
   }
-  const auto runs = [&] {
+  auto runs = [&] {
     const nb::gil_scoped_release released;
     return pipeline::sweep(
         {count, keep, what.jobs, begin}, [&](std::size_t run) { return cli::state_run(input, plan, begin + run); },
@@ -81,8 +81,8 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
     columns[nb::str(column.name.c_str())] = column_of(std::move(column.values));
   }
   nb::list results;
-  for (const auto& run : *runs) {
-    results.append(nb::cast(Run{std::make_shared<result::Result>(run.result), nullptr, {}, {}, {}}));
+  for (auto& run : *runs) {
+    results.append(nb::cast(Run{std::make_shared<result::Result>(std::move(run.result)), nullptr, {}, {}, {}}));
   }
   nb::object found = nb::make_tuple(columns, results, plan.names());
   watch.raise_what_came(found);

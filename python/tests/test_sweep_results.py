@@ -89,3 +89,20 @@ def test_counts_are_whole_numbers(slip):
             assert s.frame()[name].dtype == np.int64
         assert s["belt"].dtype == np.float64
     assert sweep(slip).dataset()["events"].dtype == np.int64
+
+
+def test_states_called_like_columns_of_the_table():
+    model = saltus.Builder("m")
+    run, status = model.state("run", 1.0), model.state("status", 2.0)
+    model.rate(run, -run)
+    model.rate(status, 0)
+    swept = model.model().sweep(over={"run": [1.0, 2.0]}, until=1.0)
+    frame = swept.frame()
+    assert list(frame["run"]) == [0, 1] or list(frame["run"]) == [1, 2]
+    assert list(frame["status"]) == ["completed", "completed"]
+    assert frame["status (model)"].tolist() == [2.0, 2.0]
+
+
+def test_trajectories_beyond_the_memory_are_refused_behind_the_first_run():
+    with pytest.raises(ValueError, match="need more than 4 GB"):
+        saltus.catalogue("stick-slip").sweep(belt=range(2_000_000), keep="trajectory", points=1000, until=1, jobs=1)

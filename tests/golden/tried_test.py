@@ -123,6 +123,27 @@ cur = "(-24*sign(s) - cur - 0.01*omega)/0.5"
 until = 10
 """
 
+TABLE_OF_INPUT = """
+[model]
+name = "valve"
+[states]
+x = 0
+[controls]
+u = 0
+[dynamics]
+x = "opening(u)"
+[tables.opening]
+x = [0, 1]
+y = [0, 2]
+[[jumps]]
+name = "full"
+when = "x > 3 + 0*opening(u)"
+set = { x = 0 }
+[simulate]
+until = 2
+inputs = { u = { file = "u.csv" } }
+"""
+
 
 class Tried(tool.ToolTest):
     def simulated(self, text, *arguments, code=0):
@@ -136,6 +157,11 @@ class Tried(tool.ToolTest):
         self.assertAlmostEqual(result["final"]["x"][0], 0.8, delta=0.05)
         before = [row for row in zip(result["trajectory"]["t"], result["trajectory"]["x"]) if row[0] < 1.0]
         self.assertTrue(all(abs(x[0]) < 1e-9 and abs(x[1]) < 1e-9 for _, x in before))
+
+    def test_a_control_from_a_file_may_go_through_a_table(self):
+        self.write("u.csv", "t,u\n0,0.25\n1,0.75\n")
+        result, _, _ = self.simulated(TABLE_OF_INPUT)
+        self.assertAlmostEqual(result["final"]["x"][0], 0.5 + 1.5, delta=1e-9)
 
     def test_functions_have_the_names_that_were_written(self):
         result, _, err = self.simulated(NAMES)

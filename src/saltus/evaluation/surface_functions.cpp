@@ -49,15 +49,14 @@ class Composer {
       owners_.insert(owners_.end(), static_cast<std::size_t>(symbols.back().numel()), static_cast<int>(c));
     }
     symbols_ = SX::vertcat(symbols);
-    for (const auto& cell : system.cells) arguments_.push_back(compose(cell.argument));
+    arguments_.resize(system.cells.size());
+    for (std::size_t c = 0; c < system.cells.size(); ++c) compose_argument(static_cast<int>(c));
     // Inner functions have smaller indices, so one pass in order composes all.
     for (const auto& entry : system.switching) composed_.push_back(compose(entry.psi));
   }
 
   [[nodiscard]] Composed compose(const SX& expression) const {
-    SX psi = SX::densify(expression);
-    if (system_.u.numel() > 0) psi = SX::substitute(psi, system_.u, SX::densify(system_.input));
-    if (system_.p.numel() > 0) psi = SX::substitute(psi, system_.p, parameters_);
+    const SX psi = with_inputs(expression);
     Composed result;
     for (const int i : dependencies(psi, system_.x)) result.states.insert(i);
     result.on_time = !dependencies(psi, system_.t).empty();
@@ -84,12 +83,29 @@ class Composer {
     return result;
   }
 
-  /// The arguments of all cells, each over x and the constants of earlier ones.
+  /// The arguments of all cells, over x and the constants of others; these come first in `order`.
   [[nodiscard]] const std::vector<Composed>& arguments() const { return arguments_; }
+  [[nodiscard]] const std::vector<int>& order() const { return order_; }
   [[nodiscard]] const SX& symbols() const { return symbols_; }
   [[nodiscard]] const Composed& function(int j) const { return composed_[at(j)]; }
 
  private:
+  [[nodiscard]] SX with_inputs(const SX& expression) const {
+    SX psi = SX::densify(expression);
+    if (system_.u.numel() > 0) psi = SX::substitute(psi, system_.u, SX::densify(system_.input));
+    if (system_.p.numel() > 0) psi = SX::substitute(psi, system_.p, parameters_);
+    return psi;
+  }
+
+  /// Behind the cells in it. A control may have a table, and its input be another one of a larger index.
+  void compose_argument(int cell) {
+    if (std::find(order_.begin(), order_.end(), cell) != order_.end()) return;
+    const SX& argument = system_.cells[at(cell)].argument;
+    for (const int symbol : dependencies(with_inputs(argument), symbols_)) compose_argument(owners_[at(symbol)]);
+    arguments_[at(cell)] = compose(argument);
+    order_.push_back(cell);
+  }
+
   static void include(const Composed& part, Composed& whole) {
     whole.states.insert(part.states.begin(), part.states.end());
     whole.cells.insert(part.cells.begin(), part.cells.end());
@@ -102,6 +118,7 @@ class Composer {
   SX symbols_;
   std::vector<int> owners_;  ///< the cell of every symbol
   std::vector<Composed> arguments_;
+  std::vector<int> order_;
   std::vector<Composed> composed_;
 };
 
@@ -167,15 +184,14 @@ std::function<double(double, const double*)> value_of(const model::System& syste
   // std::function wants to be copied: the copies share one work space.
   auto function = std::make_shared<PointFunction>();
   function->psi = ModelFunction("surface", arguments, {composed.psi});
-  std::size_t first = 0;
-  for (std::size_t c = 0; c < system.cells.size(); ++c) {
-    if (composed.cells.contains(static_cast<int>(c))) {
-      function->cells.push_back(
-          {ModelFunction("argument", arguments, {composer.arguments()[c].psi}), system.cells[c].table, first});
-    }
-    first += static_cast<std::size_t>(system.cells[c].table->columns);
+  std::vector<std::size_t> first{0};
+  for (const auto& cell : system.cells) first.push_back(first.back() + static_cast<std::size_t>(cell.table->columns));
+  for (const int c : composer.order()) {
+    if (!composed.cells.contains(c)) continue;
+    function->cells.push_back({ModelFunction("argument", arguments, {composer.arguments()[at(c)].psi}),
+                               system.cells[at(c)].table, first[at(c)]});
   }
-  function->constants.resize(first);
+  function->constants.resize(first.back());
   return [function](double t, const double* coordinates) { return (*function)(t, coordinates); };
 }
 

@@ -81,7 +81,10 @@ class Workshop {
     runs_[i].result = std::move(*result);
     leave_what_is_kept(runs_[i], options_.keep);
     const double kept = bytes_of(runs_[i].result.trajectory);
-    if (kept > 0.0 && (kept_bytes_ += kept) > most_kept_bytes) {
+    // One run tells where all of them would go far beyond it.
+    constexpr double far = 10.0;
+    const bool hopeless = kept * static_cast<double>(options_.runs) > far * most_kept_bytes;
+    if (kept > 0.0 && ((kept_bytes_ += kept) > most_kept_bytes || hopeless)) {
       return tl::unexpected(
           Error{ErrorCode::invalid_option,
                 fmt::format("the trajectories of all runs need more than {:.0f} GB", most_kept_bytes / 1e9),

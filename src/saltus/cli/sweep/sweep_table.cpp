@@ -173,6 +173,16 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
+/// A state may be called like a column of the table.
+std::vector<TableColumn> with_distinct_names(std::vector<TableColumn> columns) {
+  std::vector<std::string> names;
+  for (auto& column : columns) {
+    if (contains(names, column.name)) column.name += " (model)";
+    names.push_back(column.name);
+  }
+  return columns;
+}
+
 }  // namespace
 
 std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<SweepRun>& runs, Keep keep,
@@ -183,11 +193,11 @@ std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<Sw
   const Beginning beginning(plan, first, begin);
   switch (keep) {
     case Keep::final:
-      return final_table(beginning, first, runs).columns();
+      return with_distinct_names(final_table(beginning, first, runs).columns());
     case Keep::events:
-      return event_table(beginning, first, runs).columns();
+      return with_distinct_names(event_table(beginning, first, runs).columns());
     case Keep::trajectory:
-      return trajectory_table(beginning, first, runs).columns();
+      return with_distinct_names(trajectory_table(beginning, first, runs).columns());
   }
   __builtin_unreachable();
 }
