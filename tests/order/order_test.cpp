@@ -38,7 +38,7 @@ struct OrderCase {
 };
 
 std::string test_name(const OrderCase& c) {
-  constexpr const char* endings[] = {"_dopri5", "_dop853", "_radau5", "_taylor"};
+  constexpr const char* endings[] = {"_dopri5", "_dop853", "_radau5", "_radau9", "_radau13", "_taylor"};
   std::string text = c.model + endings[static_cast<std::size_t>(c.integrator)];
   std::replace(text.begin(), text.end(), '-', '_');
   return text;
@@ -131,9 +131,12 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(OrderCase{"rotating-oscillator", Integrator::dopri5, 5, 0.015, 1.06},
                     OrderCase{"rotating-oscillator", Integrator::dop853, 8, 0.08, 1.04},
                     OrderCase{"rotating-oscillator", Integrator::radau5, 5, 0.015, 1.06},
+                    OrderCase{"rotating-oscillator", Integrator::radau9, 9, 0.08, 1.04},
+                    OrderCase{"rotating-oscillator", Integrator::radau13, 13, 0.2, 1.02},
                     OrderCase{"relay-oscillator", Integrator::dopri5, 5, 0.4, 1.06},
                     OrderCase{"relay-oscillator", Integrator::dop853, 8, 0.6, 1.04},
                     OrderCase{"relay-oscillator", Integrator::radau5, 5, 0.4, 1.06},
+                    OrderCase{"relay-oscillator", Integrator::radau9, 9, 0.8, 1.04},
                     OrderCase{"dry-friction-oscillator", Integrator::dopri5, 5, 0.4, 1.06},
                     OrderCase{"dry-friction-oscillator", Integrator::dop853, 8, 1.0, 1.04},
                     OrderCase{"dry-friction-oscillator", Integrator::radau5, 5, 0.4, 1.06},
