@@ -13,11 +13,9 @@
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
-namespace {
 
 using casadi::SX;
 
-/// For every row of `expression`, which entries of `variables` it depends on.
 std::vector<std::vector<int>> dependencies_of_rows(const SX& expression, const SX& variables) {
   std::vector<std::vector<int>> rows(at(expression.numel()));
   if (expression.numel() == 0 || variables.numel() == 0) return rows;
@@ -31,8 +29,6 @@ std::vector<std::vector<int>> dependencies_of_rows(const SX& expression, const S
   }
   return rows;
 }
-
-}  // namespace
 
 std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends) {
   std::vector<std::vector<int>> neighbours(depends.size());

@@ -55,6 +55,9 @@ struct Motion {
   std::optional<ode::LinearField> linear_always;  ///< if it is the same in all modes
 };
 
+/// On which of the variables each row of an expression depends, ascending.
+[[nodiscard]] std::vector<std::vector<int>> dependencies_of_rows(const casadi::SX& expression,
+                                                                 const casadi::SX& variables);
 [[nodiscard]] std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends);
 
 /// The model's symbols and expressions; they never change.

@@ -53,7 +53,8 @@ struct IntegrationOptions {
   std::vector<double> scaling;  ///< for SelectionPolicy::scaled: a factor per switching function; empty = ones
   /// Ascending: what to go on with instead of what is decided. The result begins at the last of these decisions.
   std::vector<Choice> choices;
-  ThinLayers layers;  ///< inside them tolerances are tightened to what they bear
+  bool local_steps = true;  ///< where a switch moves few states of many, only these are integrated anew behind it
+  ThinLayers layers;        ///< inside them tolerances are tightened to what they bear
 };
 
 using result::Continue;

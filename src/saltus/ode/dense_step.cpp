@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/ode/bernstein_internal.hpp"
@@ -116,7 +118,79 @@ BernsteinCoefficients bernstein_form(const double* coefficients, std::size_t n, 
   return b;
 }
 
+/// The nested form on [from, to]: a Newton form whose nodes 0, 1, 0, ... (with the sign of the factors 1 - theta) are
+/// replaced by from, to, from, ..., one at a time, the last one first.
+template <std::size_t degree>
+void cut_component(double* coefficients, std::size_t n, std::size_t i, double from, double to) {
+  std::array<double, degree + 1> c;
+  std::array<double, degree> nodes;
+  const auto sign = [](std::size_t k) { return k / 2 % 2 == 0 ? 1.0 : -1.0; };
+  for (std::size_t k = 0; k <= degree; ++k) c[k] = sign(k) * coefficients[k * n + i];
+  for (std::size_t k = 0; k < degree; ++k) nodes[k] = k % 2 == 0 ? 0.0 : 1.0;
+  for (std::size_t next = degree; next-- > 0;) {
+    const double node = next % 2 == 0 ? from : to;
+    for (std::size_t k = degree; k-- > 0;) c[k] += (node - nodes[k]) * c[k + 1];
+    for (std::size_t k = degree - 1; k > 0; --k) nodes[k] = nodes[k - 1];
+    nodes[0] = node;
+  }
+  double power = 1.0;
+  for (std::size_t k = 0; k <= degree; ++k, power *= to - from) coefficients[k * n + i] = sign(k) * power * c[k];
+}
+
+/// Calls with the degree of the nested form as a constant.
+template <class Take>
+auto with_degree(Method method, Take&& take) {
+  switch (method) {
+    case Method::dopri5:
+      return take(std::integral_constant<std::size_t, 4>{});
+    case Method::radau9:
+      return take(std::integral_constant<std::size_t, 5>{});
+    case Method::dop853:
+    case Method::radau13:
+      return take(std::integral_constant<std::size_t, 7>{});
+    case Method::radau5:
+    case Method::taylor:
+      break;
+  }
+  return take(std::integral_constant<std::size_t, 3>{});
+}
+
 }  // namespace
+
+double DenseStep::value(std::size_t i, double theta) const {
+  SALTUS_ASSERT(!is_series());
+  if (theta == 0.0) return coefficients_[i];
+  if (theta == 1.0) return end_[i];
+  const auto n = static_cast<std::size_t>(n_);
+  return with_degree(method_, [&](auto degree) {
+    return theta <= 0.5 ? value_from_start<degree.value>(coefficients_.data(), n, i, theta)
+                        : value_from_end<degree.value>(coefficients_.data(), end_.data(), n, i, theta);
+  });
+}
+
+void DenseStep::cut(double from, double to) {
+  SALTUS_ASSERT(!is_series() && 0.0 <= from && from < to && to <= 1.0);
+  const std::size_t n = end_.size();
+  std::vector<double> start(n), end(n);
+  evaluate(from, start.data());
+  evaluate(to, end.data());
+  with_degree(method_, [&](auto degree) {
+    for (std::size_t i = 0; i < n; ++i) cut_component<degree.value>(coefficients_.data(), n, i, from, to);
+  });
+  std::copy(start.begin(), start.end(), coefficients_.begin());
+  end_ = std::move(end);
+  t += from * h;
+  h *= to - from;
+}
+
+void DenseStep::replace(std::size_t i, const DenseStep& other, std::size_t k) {
+  SALTUS_ASSERT(method_ == other.method_ && !is_series());
+  const auto n = static_cast<std::size_t>(n_), own = static_cast<std::size_t>(other.n_);
+  for (std::size_t c = 0; c * n < coefficients_.size(); ++c) {
+    coefficients_[c * n + i] = other.coefficients_[c * own + k];
+  }
+  end_[i] = other.end_[k];
+}
 
 SeriesCoefficients DenseStep::terms(std::size_t i) const {
   const double* place = coefficients_.data() + series_place(i);

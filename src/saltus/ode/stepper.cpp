@@ -113,6 +113,7 @@ StagesFunction Stepper::stages_function(const StagesFunctions& functions) const 
 Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
                          const Tolerances& tolerances, const RightHandSideStages& stages) {
   const auto n = static_cast<std::size_t>(n_);
+  known_ = nullptr;
   if (series_) {
     took_series_ = stages.linear != nullptr;
     const std::size_t size = n * sizeof(double);
@@ -145,6 +146,21 @@ Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const doubl
   return Attempt::finite;
 }
 
+void Stepper::follow(const DenseStep& known, double h) {
+  SALTUS_ASSERT(!known.is_series() && known.size() == n_);
+  known_ = &known;
+  took_series_ = false;
+  t_ = known.t;
+  // Where times are rounded to it is the end.
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (std::abs(t_) + std::abs(known.h));
+  h_ = std::abs(h - known.h) <= rounding ? known.h : h;
+  const double theta = h_ / known.h;
+  known.evaluate(0.0, start_.data());
+  known.evaluate(theta, x_new_.data());
+  known.derivative(theta, stages_.data() + slope_new_);
+  error_norm_ = 0.0;
+}
+
 Attempt Stepper::attempt_series(RightHandSide f, const LinearField& linear, const Tolerances& tolerances) {
   const auto n = static_cast<std::size_t>(n_);
   if (!series_known_) series_->begin(linear, start_.data(), stages_.data(), h_);
@@ -161,11 +177,16 @@ Attempt Stepper::attempt_series(RightHandSide f, const LinearField& linear, cons
 }
 
 double Stepper::stability_ratio() const {
+  if (known_ != nullptr) return 0.0;
   if (took_series_) return series_->stability_ratio();
   return explicit_ != nullptr ? explicit_->stability_ratio(explicit_step()) : 0.0;
 }
 
 bool Stepper::bounds(double* low, double* high) const {
+  if (known_ != nullptr) {
+    known_->bounds(low, high);
+    return true;
+  }
   if (explicit_ == nullptr) return false;
   if (took_series_) {
     series_->bounds(low, high);
@@ -176,7 +197,7 @@ bool Stepper::bounds(double* low, double* high) const {
 }
 
 bool Stepper::mean_slopes(double* low, double* high) const {
-  if (explicit_ == nullptr) return false;
+  if (explicit_ == nullptr || known_ != nullptr) return false;
   if (took_series_) {
     series_->mean_slopes(h_, low, high);
     return true;
@@ -186,6 +207,11 @@ bool Stepper::mean_slopes(double* low, double* high) const {
 }
 
 Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
+  if (known_ != nullptr) {
+    output = *known_;
+    if (h_ != known_->h) output.cut(0.0, h_ / known_->h);
+    return Attempt::finite;
+  }
   const auto n = static_cast<std::size_t>(n_);
   output.t = t_;
   output.h = h_;

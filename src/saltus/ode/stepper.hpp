@@ -46,6 +46,13 @@ class DenseStep {
   double t = 0.0;
   double h = 0.0;
   void evaluate(double theta, double* x) const;  ///< n doubles
+  /// One component.
+  [[nodiscard]] double value(std::size_t i, double theta) const;
+  /// From now on the part of it from theta = from to `to`, 0 <= from < to <= 1; its end stays where it is if that is
+  /// the old one. Not of a series.
+  void cut(double from, double to);
+  /// Component i is component k of another one of the same method and interval from now on.
+  void replace(std::size_t i, const DenseStep& other, std::size_t k);
   /// Bernstein coefficients of component i on [0, 1]; those at the ends are x_i(t) and x_i(t + h), bit for bit. The
   /// others have a few roundings of the largest one. Cost: some fifty operations.
   /// Not of a series.
@@ -103,6 +110,12 @@ class Stepper {
   /// @return `undefined` at the first stage that is not finite, without evaluating the others.
   Attempt attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
                   const Tolerances& tolerances, const RightHandSideStages& stages = {});
+
+  /// The same along a polynomial that is known, from its beginning: x_new(), dense() and bounds() are its own,
+  /// slope_new() is its derivative, error_norm() is 0. It stays where it is until the next attempt.
+  void follow(const DenseStep& known, double h);
+  /// Whether the last attempt was one of these.
+  [[nodiscard]] bool follows() const { return known_ != nullptr; }
 
   /// Which of the functions attempt() uses, null if none.
   [[nodiscard]] StagesFunction stages_function(const StagesFunctions& functions) const;
@@ -165,6 +178,7 @@ class Stepper {
   std::vector<double> stages_;    ///< k_1, k_2, ..., n doubles each; Radau: the slopes at both ends
   std::unique_ptr<Radau> radau_;
   std::unique_ptr<Series> series_;
+  const DenseStep* known_ = nullptr;  ///< what the last attempt has followed
   bool took_series_ = false;
   bool series_known_ = false;  ///< of start_
 };

@@ -123,6 +123,7 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
   integration.until = *options.until;
   integration.tolerances = {options.rtol, options.atol};
   integration.max_step = options.event.max_step;
+  integration.local_steps = options.event.local_steps;
   integration.max_steps = options.max_steps;
   integration.max_events = options.max_events;
   integration.output = output_times(options.output, integration.from, integration.until);

@@ -165,6 +165,60 @@ TEST_P(DenseOutput, interior_error_of_a_run_falls_with_the_degree) {
   EXPECT_GT(std::log2(error(steps) / error(2 * steps)), dense_degree(GetParam()));
 }
 
+TEST_P(DenseOutput, a_part_of_it_is_the_same_polynomial) {
+  const DenseStep whole = kepler_step(GetParam(), 0.2, 0.3);
+  DenseStep part = whole;
+  part.cut(0.25, 0.75);
+  EXPECT_DOUBLE_EQ(part.t, 0.2 + 0.25 * 0.3);
+  EXPECT_DOUBLE_EQ(part.h, 0.15);
+  std::vector<double> expected(Kepler::n), found(Kepler::n), slope(Kepler::n), slope_found(Kepler::n);
+  for (const double theta : {0.0, 0.1, 0.5, 0.8, 1.0}) {
+    whole.evaluate(0.25 + 0.5 * theta, expected.data());
+    part.evaluate(theta, found.data());
+    whole.derivative(0.25 + 0.5 * theta, slope.data());
+    part.derivative(theta, slope_found.data());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_NEAR(found[i], expected[i], 64 * epsilon) << theta;
+      EXPECT_NEAR(slope_found[i], slope[i], 4096 * epsilon) << theta;
+      EXPECT_EQ(part.value(i, theta), found[i]) << theta;
+    }
+  }
+  DenseStep behind = whole;
+  behind.cut(0.5, 1.0);
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(behind.end(i), whole.end(i));
+}
+
+TEST_P(DenseOutput, components_are_replaced) {
+  DenseStep whole = kepler_step(GetParam(), 0.2, 0.3);
+  const DenseStep other = kepler_step(GetParam(), 1.0, 0.3);
+  whole.replace(1, other, 2);
+  for (const double theta : {0.0, 0.3, 0.9, 1.0}) EXPECT_EQ(whole.value(1, theta), other.value(2, theta));
+}
+
+TEST_P(DenseOutput, an_attempt_may_follow_it) {
+  const DenseStep known = kepler_step(GetParam(), 0.2, 0.3);
+  Stepper stepper(GetParam(), Kepler::n);
+  stepper.follow(known, 0.12);
+  EXPECT_TRUE(stepper.follows());
+  EXPECT_EQ(stepper.error_norm(), 0.0);
+  std::vector<double> expected(Kepler::n), low(Kepler::n), high(Kepler::n);
+  known.evaluate(0.12 / 0.3, expected.data());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(stepper.x_new()[i], expected[i]);
+  DenseStep part;
+  ASSERT_EQ(stepper.dense(Kepler{}, part), Attempt::finite);
+  ASSERT_TRUE(stepper.bounds(low.data(), high.data()));
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    EXPECT_EQ(part.end(i), expected[i]);
+    EXPECT_LE(low[i], part.value(i, 0.5));
+    EXPECT_GE(high[i], part.value(i, 0.5));
+  }
+  const auto x = Kepler::exact(0.2);
+  std::vector<double> slope(Kepler::n);
+  Kepler{}(0.2, x.data(), slope.data());
+  ASSERT_EQ(stepper.attempt(Kepler{}, 0.2, x.data(), slope.data(), 0.12, {}), Attempt::finite);
+  EXPECT_FALSE(stepper.follows());
+}
+
 // x = t^d from t = 1/2 in one step of length 1, at all thetas.
 double power_error(Method method, int degree) {
   const auto f = [&](double t, const double*, double* xdot) { *xdot = degree * std::pow(t, degree - 1); };

@@ -41,6 +41,10 @@ void ModeField::gradients(double t, const double* x) {
 
 ode::Attempt ModeField::attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
                                 const ode::Tolerances& tolerances) {
+  if (known_ != nullptr && t == known_->t && h <= known_->h * (1.0 + 1e-9)) {
+    stepper.follow(*known_, std::min(h, known_->h));
+    return ode::Attempt::finite;
+  }
   const auto f = [this](double t_stage, const double* x_stage, double* xdot) { (*this)(t_stage, x_stage, xdot); };
   auto stages = native_stages();
   if (stepper.wants_linear_field()) {

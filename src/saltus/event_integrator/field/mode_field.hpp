@@ -90,6 +90,9 @@ class ModeField {
   /// evaluation in the mode.
   ode::Attempt attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
                        const ode::Tolerances& tolerances);
+  /// Attempts from its beginning follow this polynomial from now on, until the mode changes. Null: none.
+  void follow_known(const ode::DenseStep* known) { known_ = known; }
+  [[nodiscard]] const ode::DenseStep* known() const { return known_; }
   /// Selections of the last evaluation (those of attempts do not count), n_psi.
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   /// Exit functions at a point, one per sliding surface.
@@ -175,6 +178,7 @@ class ModeField {
   std::vector<double> jump_;                        ///< n_x
   evaluation::SlidingConstants sliding_constants_;  ///< of one surface with a constant gradient
   LinearMotion linear_motion_;
+  const ode::DenseStep* known_ = nullptr;
 };
 
 }  // namespace saltus::event_integrator

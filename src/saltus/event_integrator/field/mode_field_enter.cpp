@@ -11,6 +11,7 @@ namespace saltus::event_integrator {
 
 void ModeField::enter(const ModeState& state) {
   linear_motion_.forget();
+  known_ = nullptr;
   // Alone, a surface is one group whatever happens around it.
   const bool same_single = is_single() && state.sliding == sliding_ && !state.higher && kernel_.region_groups().empty();
   sliding_ = state.sliding;
@@ -70,6 +71,7 @@ void ModeField::find_rooted_rows() {
 
 void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& other) {
   linear_motion_.forget();
+  known_ = nullptr;
   start_alpha_[surface] = alpha_[surface] = other.alpha[surface];
   constants_[0] = other;
 }
@@ -77,6 +79,7 @@ void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& oth
 void ModeField::slide_from_region(std::size_t surface, double selection, Region side,
                                   const evaluation::FieldConstants& other) {
   linear_motion_.forget();
+  known_ = nullptr;
   start_alpha_[surface] = alpha_[surface] = selection;
   if (side == Region::below) std::swap(constants_[0], constants_[1]);
   constants_[side == Region::below ? 0 : 1] = other;
@@ -96,6 +99,7 @@ void ModeField::slide_from_region(std::size_t surface, double selection, Region 
 
 void ModeField::leave_to(Region side) {
   linear_motion_.forget();
+  known_ = nullptr;
   const auto j = at(sliding_.front());
   start_alpha_[j] = alpha_[j] = side == Region::below ? 0.0 : 1.0;
   if (side == Region::above) std::swap(constants_[0], constants_[1]);
@@ -106,6 +110,7 @@ void ModeField::leave_to(Region side) {
 void ModeField::pass(std::size_t surface, double alpha, double selection,
                      FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of) {
   linear_motion_.forget();
+  known_ = nullptr;
   const auto slid = at(sliding_.front());
   start_alpha_[surface] = alpha_[surface] = alpha;
   start_alpha_[slid] = alpha_[slid] = selection;

@@ -53,20 +53,25 @@ bool Run::meet(const Located& located, int surface) {
   here_.state.alpha[j] = 1.0 - alpha;
   const auto& constants = fast_.fields.of(here_.state.alpha, steps_.memory().mark_with(j, -mode));
   here_.state.alpha[j] = alpha;
-  kernel_.prepared_field(t, x, constants, fast_.slope_beyond.data());
+  if (!fast_.local.slope_behind(surface, t, x, constants, here_.slope, fast_.slope_beyond)) {
+    kernel_.prepared_field(t, x, constants, fast_.slope_beyond.data());
+  }
   const auto decision = mode < 0 ? fast_.single.decide(here_.state, surface, t, x, here_.slope, fast_.slope_beyond)
                                  : fast_.single.decide(here_.state, surface, t, x, fast_.slope_beyond, here_.slope);
   if (!decision) return false;
   const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
   if (change.after != 0) {
     std::copy(located.x.begin(), located.x.end(), here_.x.begin());
+    const auto* known = fast_.local.behind(surface, t, here_.x, steps_.dense(), constants);
     field_.cross(j, constants);
+    field_.follow_known(known);
     here_.slope.swap(fast_.slope_beyond);
   } else {
     field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
     if (!begin_at(located)) return false;
   }
   go_on_behind(located, change);
+  if (field_.known() != nullptr) here_.h = field_.known()->h;
   return true;
 }
 

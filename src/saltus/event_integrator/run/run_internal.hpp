@@ -42,6 +42,7 @@
 #include "saltus/event_integrator/search/user_events.hpp"
 #include "saltus/event_integrator/sequences/jump_accumulation.hpp"
 #include "saltus/event_integrator/sequences/switch_accumulation.hpp"
+#include "saltus/event_integrator/steps/local_steps.hpp"
 #include "saltus/event_integrator/steps/step_attempt.hpp"
 #include "saltus/event_integrator/steps/step_tolerances.hpp"
 #include "saltus/ode/step_control.hpp"
@@ -219,15 +220,18 @@ class Run {
   };
   /// What decides and enters ordinary switches without detours.
   struct FastSwitch {
-    explicit FastSwitch(const SwitchingContext& switching_context)
+    FastSwitch(const SwitchingContext& switching_context, const IntegrationOptions& options,
+               const StepTolerances& tolerances)
         : single(switching_context),
           pair(switching_context),
           fields(switching_context.kernel),
+          local(options, switching_context.kernel, tolerances),
           slope_beyond(at(switching_context.kernel.states())) {}
     SingleSurface single;
     SurfacePair pair;
     bool applies = false;  ///< the model and the options have nothing that a switch of one surface might concern
     FieldMemory fields;
+    LocalSteps local;
     std::vector<int> zero_order;       ///< n_psi
     std::vector<double> slope_beyond;  ///< of the region on the other side of a surface
   };

@@ -131,7 +131,8 @@ Run::Step Run::accept(double t_new) {
   note_time_scale(h);
   steps_.accepted(h);
   const bool projected = field_.project(here_.t, here_.x.data());
-  if (holding_.project(here_.t, here_.state.alpha, here_.x) || projected) {
+  const bool follows = steps_.stepper().follows();
+  if (holding_.project(here_.t, here_.state.alpha, here_.x) || projected || follows) {
     field_(here_.t, here_.x.data(), here_.slope.data());
   } else {
     std::copy(steps_.stepper().slope_new(), steps_.stepper().slope_new() + here_.slope.size(), here_.slope.begin());
@@ -139,6 +140,10 @@ Run::Step Run::accept(double t_new) {
   field_.follow(here_.t, here_.x.data());
   limit_beside_coalescence();
   here_.h = steps_.proposed(h);
+  if (follows) {
+    here_.h = std::max(here_.h, fast_.local.common_length());
+    field_.follow_known(nullptr);
+  }
   // A step that was cut short at a time of a jump says nothing against the one that was proposed.
   if (here_.t < options_.until && here_.t == jumps_.next_time()) here_.h = std::max(here_.h, steps_.length());
   steps_.memory().accepted(here_.h);

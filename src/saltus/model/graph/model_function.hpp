@@ -1,4 +1,5 @@
-// A compiled function with its work space, interpreted or as native code: call with raw pointers, no allocation per call.
+// A compiled function with its work space, interpreted or as native code: call with raw pointers, no allocation per
+// call.
 #pragma once
 
 #include <array>
@@ -46,6 +47,8 @@ class ModelFunction {
   using Native = int (*)(const double** arguments, double** results, casadi_int* integers, double* work, int memory);
   void use_native(Native native) { native_ = native; }
   [[nodiscard]] const casadi::Function& function() const { return function_; }
+  /// Null where the function calls others.
+  [[nodiscard]] const std::shared_ptr<const Program>& program() const { return program_; }
   /// Elementary operations of one interpreted evaluation.
   [[nodiscard]] long operations() const { return operations_; }
 

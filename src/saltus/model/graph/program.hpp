@@ -19,6 +19,7 @@ class Program {
   void operator()(const double* const* arguments, double* const* results, double* work) const;
 
  private:
+  friend class ProgramParts;
   struct Operands {
     int first, second;
   };

@@ -26,6 +26,7 @@ constexpr auto max_steps_of = [](auto& o) -> auto& { return o.max_steps; };
 constexpr auto members_of = [](auto& o) -> auto& { return o.event.members; };
 constexpr auto max_events_of = [](auto& o) -> auto& { return o.max_events; };
 constexpr auto integrator_of = [](auto& o) -> auto& { return o.event.integrator; };
+constexpr auto local_steps_of = [](auto& o) -> auto& { return o.event.local_steps; };
 constexpr auto epsilon_of = [](auto& o) -> auto& { return o.smoothed.epsilon; };
 constexpr auto selection_of = [](auto& o) -> auto& { return o.event.selection; };
 
@@ -251,6 +252,9 @@ constexpr std::array fields{
         "Runge-Kutta of order 5, of order 8, of order 5, 9, 13 for stiff models; Taylor series where modes are affine.",
         set_choice<integrator_of, integrators>, record_choice<integrator_of, integrators>},
     OptionField{"event.max_step", "none, or a number > 0", "Longest step.", set_max_step, record_max_step},
+    OptionField{"event.local_steps", "true, false",
+                "Of many states only those that a switch moves are integrated anew behind it.",
+                set_truth<local_steps_of>, record_truth<local_steps_of>},
     OptionField{"event.selection", "active_dominant, passive_dominant, scaled, report",
                 "Which motion, where that depends on how surfaces are scaled.", set_choice<selection_of, selections>,
                 record_choice<selection_of, selections>},

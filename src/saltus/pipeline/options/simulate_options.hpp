@@ -42,8 +42,9 @@ struct EventOptions {
   std::optional<double> max_step;  ///< none by default
   Selection selection = Selection::active_dominant;
   std::vector<std::pair<std::string, double>> scaling;
-  long trajectories = 1;  ///< at most so many along other admissible modes; 1: those are only listed in the events
-  long members = 0;       ///< followed of every family of solutions (later departures, spirals), if others are
+  bool local_steps = true;  ///< of many states only those that a switch moves are integrated anew behind it
+  long trajectories = 1;    ///< at most so many along other admissible modes; 1: those are only listed in the events
+  long members = 0;         ///< followed of every family of solutions (later departures, spirals), if others are
 };
 
 /// [simulate.smoothed]

@@ -1,0 +1,29 @@
+// Rows of a function alone: the operations that they need.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "saltus/model/graph/program.hpp"
+
+namespace saltus::model {
+
+/// Cuts programs for some rows of the first result out of a program; they give the bits of the whole one.
+class ProgramParts {
+ public:
+  /// Cost: once through the program.
+  explicit ProgramParts(std::shared_ptr<const Program> whole);
+
+  /// Takes the same arguments, results and work space as the whole one, and writes these rows only. Cost: that of the
+  /// part.
+  [[nodiscard]] std::shared_ptr<const Program> of(const std::vector<std::size_t>& rows) const;
+
+ private:
+  static constexpr int nowhere = -1;
+  std::shared_ptr<const Program> whole_;
+  std::vector<int> first_, second_;  ///< of every operation: the one that has made its operand
+  std::vector<int> output_;          ///< by row
+};
+
+}  // namespace saltus::model

@@ -1,0 +1,115 @@
+// Steps of a part of a large system: the events of the steps of all of it, at a part of the evaluations.
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "run_model.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+using model::Builder;
+using result::Termination;
+
+/// x_i' = sum of three k step(+-(x_j - threshold)) - x_i + coupling (x_(i-1) + x_(i+1) - 2 x_i), at random.
+struct Network {
+  int genes = 0;
+  double coupling = 0.0;
+  unsigned seed = 1;
+};
+
+Integration run(const Network& network, const IntegrationOptions& options) {
+  std::mt19937 random(network.seed);
+  const auto number = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 0x1p32;
+  };
+  Builder b("network");
+  std::vector<SX> x;
+  for (int i = 0; i < network.genes; ++i) x.push_back(b.state("x" + std::to_string(i), {number(0.0, 1.0)}));
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    SX rate = -x[i];
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t from = random() % x.size();
+      const double threshold = number(0.2, 0.8);
+      const SX psi = random() % 2 == 0 ? x[from] - threshold : threshold - x[from];
+      rate += number(0.2, 0.5) * b.step(b.switching("s" + std::to_string(i) + "_" + std::to_string(k), psi));
+    }
+    if (network.coupling > 0.0 && i > 0) rate += network.coupling * (x[i - 1] - x[i]);
+    if (network.coupling > 0.0 && i + 1 < x.size()) rate += network.coupling * (x[i + 1] - x[i]);
+    b.dynamics("x" + std::to_string(i), rate);
+  }
+  return testing::run_model(b, options);
+}
+
+IntegrationOptions with(ode::Method method, double rtol, bool local) {
+  IntegrationOptions options;
+  options.method = method;
+  options.tolerances = {rtol, 1e-2 * rtol};
+  options.until = 6.0;
+  options.local_steps = local;
+  return options;
+}
+
+void expect_same(const Integration& found, const Integration& expected, double accuracy) {
+  ASSERT_EQ(found.status.termination, Termination::completed) << found.status.message;
+  ASSERT_EQ(expected.status.termination, Termination::completed) << expected.status.message;
+  ASSERT_EQ(found.events.size(), expected.events.size());
+  for (std::size_t i = 0; i < found.events.size(); ++i) {
+    EXPECT_EQ(found.events[i].surfaces, expected.events[i].surfaces) << i;
+    EXPECT_NEAR(found.events[i].t, expected.events[i].t, accuracy) << i;
+  }
+  ASSERT_EQ(found.final.x.size(), expected.final.x.size());
+  for (std::size_t i = 0; i < found.final.x.size(); ++i) {
+    EXPECT_NEAR(found.final.x[i], expected.final.x[i], accuracy) << i;
+  }
+}
+
+TEST(LocalSteps, OfANetworkHaveTheEventsOfAllItsSteps) {
+  for (const ode::Method method : {ode::Method::dopri5, ode::Method::dop853}) {
+    const Network network{200, 0.0, 7};
+    const auto exact = run(network, with(ode::Method::dop853, 1e-12, false));
+    EXPECT_GT(exact.events.size(), 300U);
+    const auto all = run(network, with(method, 1e-8, false));
+    const auto local = run(network, with(method, 1e-8, true));
+    expect_same(local, exact, 1e-7);
+    EXPECT_LT(local.statistics.rhs_evaluations, all.statistics.rhs_evaluations / 2);
+  }
+}
+
+TEST(LocalSteps, CoupledStatesFeelWhatTheToleranceLetsThem) {
+  for (const double rtol : {1e-5, 1e-8, 1e-10}) {
+    const Network network{120, 0.5, 3};
+    const auto exact = run(network, with(ode::Method::dop853, 1e-12, false));
+    expect_same(run(network, with(ode::Method::dopri5, rtol, true)), exact, 20.0 * rtol);
+  }
+}
+
+TEST(LocalSteps, SmallerTolerancesGiveSmallerErrors) {
+  const Network network{100, 0.2, 5};
+  const auto exact = run(network, with(ode::Method::dop853, 1e-13, false));
+  double errors[2];
+  for (const int k : {0, 1}) {
+    const auto found = run(network, with(ode::Method::dopri5, k == 0 ? 1e-5 : 1e-8, true));
+    ASSERT_EQ(found.events.size(), exact.events.size());
+    errors[k] = 0.0;
+    for (std::size_t i = 0; i < found.events.size(); ++i) {
+      errors[k] = std::max(errors[k], std::abs(found.events[i].t - exact.events[i].t));
+    }
+  }
+  EXPECT_LT(errors[1], errors[0] / 30.0);
+}
+
+TEST(LocalSteps, SmallSystemsHaveTheSameBitsWithAndWithout) {
+  const Network network{30, 0.3, 2};
+  const auto all = run(network, with(ode::Method::dopri5, 1e-8, false));
+  const auto local = run(network, with(ode::Method::dopri5, 1e-8, true));
+  EXPECT_EQ(local.final.x, all.final.x);
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
