@@ -127,7 +127,7 @@ class Mistakes(tool.ToolTest):
     def test_all_of_one_jump(self):
         _, err = self.check(JUMP)
         places = [line.split(":")[1:3] for line in err.splitlines() if ": error: " in line]
-        self.assertEqual(places, [["9", "11"], ["10", "7"], ["10", "12"], ["10", "28"], ["11", "10"]], err)
+        self.assertEqual(places, [["9", "13"], ["10", "9"], ["10", "14"], ["10", "25"], ["11", "10"]], err)
         self.assertEqual(err.count("in [[jumps]]"), 5)
 
     def test_options_that_do_not_fit(self):

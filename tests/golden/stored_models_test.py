@@ -109,7 +109,7 @@ class StoredModels(tool.ToolTest):
         self.write("tables.toml", TABLES)
         self.run_tool("simulate", "tables.toml", "--out", "r.json", "--quiet", code=0)
         self.assertIsNone(self.read("r.json")["model"]["files"][0]["text"])
-        self.run_tool("simulate", "r.json", "--quiet", code=0)
+        self.run_tool("simulate", "r.json", "--quiet", "--until", "2", code=0)
         self.write("road.csv", rows + "150000,1\n")
         err = self.run_tool("simulate", "r.json", code=2)[1]
         self.assertIn("road.csv: error: this file is not the one with which the result was computed", err)
@@ -124,10 +124,11 @@ class StoredModels(tool.ToolTest):
         first, again = self.computed("r.json"), self.computed("again.json")
         for key in ("objective", "u", "events", "trajectory", "final", "model"):
             self.assertEqual(first[key], again[key], key)
-        _, err = self.run_tool("simulate", "r.json", "--quiet", code=0)
+        _, err = self.run_tool("simulate", "r.json", "--quiet", "--until", "2", code=0)
         self.assertIn("note: the controls are those of the model; for those that were found add --set "
                       "simulate.inputs.u.result=r.json", err)
-        _, err = self.run_tool("simulate", "r.json", "--quiet", "--set", "simulate.inputs.u.result=r.json", code=0)
+        _, err = self.run_tool("simulate", "r.json", "--quiet", "--until", "2", "--set",
+                               "simulate.inputs.u.result=r.json", code=0)
         self.assertEqual(err, "")
         # Its open form, too: the options of both commands are there.
         self.run_tool("check", "r.json", code=0)

@@ -26,12 +26,7 @@ RadauSteps<Tableau>::RadauSteps(int n)
       w_(n, last + 1),
       slopes_(n, last + 1),
       corrections_(n, last + 1),
-      argument_(n),
-      difference_slope_(n),
-      right_(n),
-      solution_(n),
-      complex_right_(n),
-      complex_solution_(n) {}
+      work_(n) {}
 
 template <class Tableau>
 void RadauSteps<Tableau>::restart() {
@@ -51,8 +46,8 @@ Attempt RadauSteps<Tableau>::attempt(const RadauTrial& trial, double* x_new, dou
   converged_ = all_finite(x_new, static_cast<std::size_t>(n_));
   if (!converged_) return Attempt::undefined;
   error_norm_ = estimate(trial, x_new);
-  argument_ = Eigen::Map<const Vector>(x_new, n_);
-  return evaluate(trial, trial.t + trial.h, argument_, slope_new) ? Attempt::finite : Attempt::undefined;
+  work_.argument = Eigen::Map<const Vector>(x_new, n_);
+  return evaluate(trial, trial.t + trial.h, work_.argument, slope_new) ? Attempt::finite : Attempt::undefined;
 }
 
 /// Tells a retaken step from a new one, which may continue the polynomial of the last.
@@ -148,12 +143,12 @@ double RadauSteps<Tableau>::estimate(const RadauTrial& trial, const double* x_ne
   for (Eigen::Index i = 0; i < n_; ++i) {
     double sum = e[0] * z_(i, 0);
     for (std::size_t j = 1; j < stages; ++j) sum += e[j] * z_(i, static_cast<Eigen::Index>(j));
-    right_[i] = trial.slope[i] + sum / trial.h;
+    work_.right[i] = trial.slope[i] + sum / trial.h;
   }
-  systems_.solve(right_, solution_);
+  systems_.solve(work_.right, work_.solution);
   double largest = 0.0;
   for (Eigen::Index i = 0; i < n_; ++i) {
-    const double ratio = std::abs(solution_[i]) / error_scale(trial.tolerances, trial.x[i], x_new[i]);
+    const double ratio = std::abs(work_.solution[i]) / error_scale(trial.tolerances, trial.x[i], x_new[i]);
     if (std::isnan(ratio)) return std::numeric_limits<double>::infinity();
     largest = std::max(largest, ratio);
   }

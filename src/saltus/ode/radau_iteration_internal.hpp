@@ -56,9 +56,9 @@ auto RadauSteps<Tableau>::iterate(const RadauTrial& trial) -> Outcome {
 template <class Tableau>
 bool RadauSteps<Tableau>::stage_slopes(const RadauTrial& trial) {
   for (Eigen::Index j = 0; j <= last; ++j) {
-    argument_ = start_ + z_.col(j);
+    work_.argument = start_ + z_.col(j);
     const double t = trial.t + Tableau::c[at(j)] * trial.h;
-    if (!evaluate(trial, t, argument_, slopes_.col(j).data())) return false;
+    if (!evaluate(trial, t, work_.argument, slopes_.col(j).data())) return false;
   }
   return true;
 }
@@ -72,21 +72,21 @@ void RadauSteps<Tableau>::solve_systems(double h) {
     for (std::size_t j = 1; j < stages; ++j) sum += weights[j] * slopes_(i, static_cast<Eigen::Index>(j));
     return sum;
   };
-  for (Eigen::Index i = 0; i < n_; ++i) right_[i] = mixed(0, i) - Tableau::gamma / h * w_(i, 0);
-  systems_.solve(right_, solution_);
-  corrections_.col(0) = solution_;
+  for (Eigen::Index i = 0; i < n_; ++i) work_.right[i] = mixed(0, i) - Tableau::gamma / h * w_(i, 0);
+  systems_.solve(work_.right, work_.solution);
+  corrections_.col(0) = work_.solution;
   for (std::size_t k = 0; k < stages / 2; ++k) {
     const auto [alpha, beta] = Tableau::pairs[k];
     const auto real = static_cast<Eigen::Index>(2 * k + 1);
     for (Eigen::Index i = 0; i < n_; ++i) {
       const double u = w_(i, real);
       const double v = w_(i, real + 1);
-      complex_right_[i] = std::complex<double>(mixed(2 * k + 1, i) - (alpha * u - beta * v) / h,
-                                               mixed(2 * k + 2, i) - (beta * u + alpha * v) / h);
+      work_.complex_right[i] = std::complex<double>(mixed(2 * k + 1, i) - (alpha * u - beta * v) / h,
+                                                    mixed(2 * k + 2, i) - (beta * u + alpha * v) / h);
     }
-    systems_.solve(k, complex_right_, complex_solution_);
-    corrections_.col(real) = complex_solution_.real();
-    corrections_.col(real + 1) = complex_solution_.imag();
+    systems_.solve(k, work_.complex_right, work_.complex_solution);
+    corrections_.col(real) = work_.complex_solution.real();
+    corrections_.col(real + 1) = work_.complex_solution.imag();
   }
 }
 
@@ -149,17 +149,17 @@ double RadauSteps<Tableau>::increment(const RadauTrial& trial, Eigen::Index colu
 template <class Tableau>
 bool RadauSteps<Tableau>::difference(const RadauTrial& trial, const std::vector<std::size_t>& columns,
                                      double direction) {
-  argument_ = start_;
+  work_.argument = start_;
   for (const std::size_t column : columns) {
     const auto j = static_cast<Eigen::Index>(column);
-    argument_[j] += direction * increment(trial, j, largest_);
+    work_.argument[j] += direction * increment(trial, j, largest_);
   }
-  if (!evaluate(trial, trial.t, argument_, difference_slope_.data())) return false;
-  difference_slope_ -= Eigen::Map<const Vector>(trial.slope, n_);
+  if (!evaluate(trial, trial.t, work_.argument, work_.difference_slope.data())) return false;
+  work_.difference_slope -= Eigen::Map<const Vector>(trial.slope, n_);
   bool finite = true;
   for (const std::size_t column : columns) {
     const auto j = static_cast<Eigen::Index>(column);
-    finite = systems_.set_column(j, difference_slope_, argument_[j] - start_[j]) && finite;
+    finite = systems_.set_column(j, work_.difference_slope, work_.argument[j] - start_[j]) && finite;
   }
   return finite;
 }

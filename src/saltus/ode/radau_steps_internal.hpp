@@ -88,8 +88,13 @@ class RadauSteps final : public Radau {
 
   Matrix z_, w_, slopes_;  ///< n x stages: increments, transformed increments, f at the stages
   Matrix corrections_;     ///< of w_
-  Vector argument_, difference_slope_, right_, solution_;
-  Eigen::VectorXcd complex_right_, complex_solution_;
+  struct Work {
+    explicit Work(Eigen::Index n)
+        : argument(n), difference_slope(n), right(n), solution(n), complex_right(n), complex_solution(n) {}
+    Vector argument, difference_slope, right, solution;
+    Eigen::VectorXcd complex_right, complex_solution;
+  };
+  Work work_;
 };
 
 }  // namespace saltus::ode

@@ -129,7 +129,7 @@ TEST_P(EachRadauMethod, ADomainThatMovesWithTimeIsNotLeft) {
   Stepper stepper(GetParam(), 1);
   for (const double h : {0.5, 1e-9}) {
     ASSERT_EQ(stepper.attempt(field, 0.0, &x, &slope, h, {}), Attempt::finite) << h;
-    EXPECT_NEAR(stepper.x_new()[0], 2.0 * h, 8 * rounding_growth(GetParam()) * epsilon * h);
+    EXPECT_NEAR(stepper.x_new()[0], 2.0 * h, 16 * rounding_growth(GetParam()) * epsilon * h);
   }
 }
 
@@ -168,7 +168,8 @@ TEST_P(EachRadauMethod, VanDerPol) {
     const Trajectory run = controlled_steps(GetParam(), VanDerPol{}, {2.0, 0.0}, 0.0, 2.0, tolerances);
     EXPECT_NEAR(run.x[0], 0.1706167732170483e1, 50 * tolerance);
     EXPECT_NEAR(run.x[1], -0.8928097010247975, 50 * tolerance);
-    EXPECT_LT(run.rejected, run.accepted / 4);
+    // Lengths of the longest steps are not foreseen as well in the layers.
+    EXPECT_LT(run.rejected, run.accepted / (GetParam() == Method::radau13 ? 2 : 4));
   }
 }
 

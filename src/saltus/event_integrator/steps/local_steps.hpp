@@ -26,12 +26,14 @@ class LocalSteps {
   [[nodiscard]] bool slope_behind(int surface, double t, const double* x, const evaluation::FieldConstants& behind,
                                   const std::vector<double>& before, std::vector<double>& slope);
   /// The solution behind the surface, which is crossed in the region of `behind` at (t, x), a point of the step: to
-  /// the end of that, or to where the error of the part allows. Null where most of the states would have to be
-  /// integrated. Stays as it is until the next call. Cost: that of the part, and some operations for each state.
+  /// the end of that, or to where the error of the part allows. `error` is that of the step of all states. Null where
+  /// most of the states would have to be integrated. Stays as it is until the next call. Cost: that of the part, and
+  /// some operations for each state.
   [[nodiscard]] const ode::DenseStep* behind(int surface, double t, const std::vector<double>& x,
-                                             const ode::DenseStep& step, const evaluation::FieldConstants& behind);
-  /// The length of the step of all states.
-  [[nodiscard]] double common_length() const { return common_length_; }
+                                             const ode::DenseStep& step, double error,
+                                             const evaluation::FieldConstants& behind);
+  /// The length of the next step of all states, by the error of this one.
+  [[nodiscard]] double next_length() const { return next_length_; }
 
  private:
   using Part = evaluation::FieldParts::Part;
@@ -47,7 +49,7 @@ class LocalSteps {
   std::map<std::size_t, ode::Stepper> steppers_;  ///< by number of states
   ode::DenseStep known_;                          ///< of all states
   ode::DenseStep part_;                           ///< of those that were integrated
-  double common_length_ = 0.0;
+  double next_length_ = 0.0;
   std::vector<double> x_, slope_;  ///< n_x, of which a part is used
   std::vector<double> start_, start_slope_;
 };

@@ -66,6 +66,7 @@ double StepAttempt::confirmed_error() {
   const double error = error_norm();
   // The dense output of the other ones is the method; all terms of a series that are neglected follow from the last.
   if (stepper_.follows()) return error;
+  last_error_ = error;
   const bool has_estimate = !ode::is_implicit(stepper_.method()) && stepper_.method() != ode::Method::taylor;
   if (!(error <= 1.0) || !has_estimate || !(memory_.is_guess() || leaps())) return error;
   constexpr double believed = 25.0;

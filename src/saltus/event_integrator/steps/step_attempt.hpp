@@ -46,6 +46,8 @@ class StepAttempt {
   [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }
   /// The same, looked at twice where the length of the step was right for another field.
   [[nodiscard]] double confirmed_error();
+  /// What that was of the last attempt that was no part of one before.
+  [[nodiscard]] double last_error() const { return last_error_; }
   /// The factor of the next length behind an attempt whose error was too large.
   [[nodiscard]] double rejected(double error) { return control_.rejected(error); }
   void follow_method() { control_.follow(stepper_.method()); }
@@ -91,6 +93,7 @@ class StepAttempt {
   double length_ = 0.0;
   bool was_undefined_ = false;
   double longest_ = 0.0;
+  double last_error_ = 1.0;
   double last_ = 0.0;  ///< the last step since the control began; 0 = none
   std::optional<double> stiff_at_;
   std::vector<double> x_, slope_, dense_slope_;  ///< in the middle of a step
