@@ -18,6 +18,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import accessible  # noqa: E402
 import built  # noqa: E402
+import measured  # noqa: E402
 import tables  # noqa: E402
 
 
@@ -43,7 +44,7 @@ def copy_pages():
     for name, page in (("CHANGELOG.md", "changes.md"), ("ARCHITECTURE.md", "architecture.md")):
         text = (ROOT / name).read_text().replace("](docs/adr)", "](decisions.md)").replace("](docs/", "](")
         # What the source tree has, and the site has not, is named without a link.
-        (SOURCE / page).write_text(re.sub(r"\[([^\]]*)\]\((?:tests|examples|cmake|benchmarks|scripts)/[^)]*\)", r"\1", text))
+        (SOURCE / page).write_text(re.sub(r"\[([^\]]*)\]\((?:tests|examples|cmake|benchmarks|scripts|src|models|packaging)/[^)]*\)", r"\1", text))
 
 
 def doxygen():
@@ -62,6 +63,7 @@ def main(quick):
     copy_pages()
     os.environ.update(env)
     tables.write(SOURCE, BUILD / "release/bin/saltus", ROOT)
+    measured.write(SOURCE, ROOT)
     if quick:
         env["SALTUS_SITE_QUICK"] = "1"
     else:
