@@ -23,6 +23,7 @@ FILES = {
     "monoped": "How far does the one-legged robot get?",
     "large": "How do time and memory grow with the number of states?",
 }
+NARROW = ("compare", "events", "fesd", "optimal_control", "large")  # tables of numbers, without sentences in their cells
 DATE = re.compile(r"\b20\d\d-\d\d-\d\d\b")
 COLOURS = ["#1b9e77", "#66c2a5", "#d95f02", "#7570b3", "#e7298a", "#a6761d"]
 
@@ -142,6 +143,11 @@ def first_table(text):
     return re.search(r"^\|.*?\n(?=\n|\Z)", text, re.MULTILINE | re.DOTALL).group().rstrip()
 
 
+def unbroken(text):
+    """Tables of numbers are not broken inside of their numbers."""
+    return re.sub(r"(^\|.*?\n)(?=\n|\Z)", r":::{container} numbers\n\1:::\n", text.rstrip("\n") + "\n", flags=re.MULTILINE | re.DOTALL)
+
+
 def mended(text):
     """Links of the source tree as links of the site, or as names."""
     text = text.replace("](../README.md)", "](how.md)").replace("](../../docs/", "](../../")
@@ -151,9 +157,10 @@ def mended(text):
 
 def write(source, root):
     """The pages in source/made/measured; the table of them goes where benchmarks.md says `% measured`."""
+    matplotlib.rc_file(root / "scripts/site/matplotlibrc")
     folder = source / "made/measured"
     folder.mkdir(parents=True, exist_ok=True)
-    rows = ["| Question | Measured | on |", "|---|---|---|"]
+    rows = ["| Question | measured |", "|---|---|"]
     pictures = []
     for name, question in FILES.items():
         text = (root / f"benchmarks/results/{name}.md").read_text(encoding="utf-8")
@@ -167,9 +174,9 @@ def write(source, root):
             draw(root, folder / f"{name}.svg")
             picture = f"\n![{shown}]({name}.svg)\n"
             pictures += [f"## {heading.lstrip('# ')}", "", f"{question} Measured {date.group()} on {machine.group()}; [all numbers](made/measured/{name}.md).", "",
-                         f"![{shown}](made/measured/{name}.svg)", "", shortest(text) if name == "compare" else first_table(text), ""]
-        (folder / f"{name}.md").write_text(f"{heading}\n\n{question}\n{picture}{mended(rest)}", encoding="utf-8")
-        rows.append(f"| [{question}](made/measured/{name}.md) | {date.group()} | {machine.group()} |")
+                         f"![{shown}](made/measured/{name}.svg)", "", unbroken(shortest(text) if name == "compare" else first_table(text)), ""]
+        (folder / f"{name}.md").write_text(f"{heading}\n\n{question}\n{picture}{unbroken(mended(rest)) if name in NARROW else mended(rest)}", encoding="utf-8")
+        rows.append(f"| [{question}](made/measured/{name}.md) | {machine.group()}, {date.group()} |")
     how = mended((root / "benchmarks/README.md").read_text(encoding="utf-8")).replace("# Benchmarks", "# How it was measured", 1)
     (folder / "how.md").write_text(how, encoding="utf-8")
     page = source / "benchmarks.md"
