@@ -20,14 +20,14 @@ def complaints_of_statuses(root):
 
 
 def complaints_of_questions(root):
-    """At least ten questions of others, each with a link and a check of its answer."""
+    """At least ten questions of others, each with a link, a check of its answer and what it is compared with."""
     page = (root / "docs/asked-elsewhere.md").read_text(encoding="utf-8")
     sections = re.split(r"^## \d+\. ", page, flags=re.MULTILINE)[1:]
     complaints = [] if len(sections) >= 10 else [f"docs/asked-elsewhere.md: {len(sections)} questions"]
     for section in sections:
         title = section.partition("\n")[0]
-        if "](https://" not in section or "ours(" not in section:
-            complaints.append(f"docs/asked-elsewhere.md: '{title}' has no link or no answer")
+        if "](https://" not in section or "ours(" not in section or "theirs(" not in section:
+            complaints.append(f"docs/asked-elsewhere.md: '{title}' has no link, no answer, or nothing to compare it with")
     return complaints
 
 
