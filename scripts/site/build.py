@@ -17,6 +17,7 @@ SOURCE, SITE = BUILD / "site_source", BUILD / "site"
 sys.path.insert(0, str(Path(__file__).parent))
 
 import accessible  # noqa: E402
+import browser  # noqa: E402
 import built  # noqa: E402
 import measured  # noqa: E402
 import tables  # noqa: E402
@@ -84,7 +85,7 @@ def main(quick):
         sys.exit(done.returncode)
     accessible.mend(SITE)
     built.check(SITE)
-    if complaints := accessible.ask(SITE, ROOT / ".venv/axe/axe.min.js"):
+    if complaints := browser.ask(SITE, ROOT / ".venv/axe/axe.min.js"):
         sys.exit("\n".join(complaints))
     print(f"build/site/index.html, {time.monotonic() - begin:.0f} s")
 
