@@ -97,7 +97,8 @@ def over_each_other(r, names, their_t=None, their_columns=()):
     r.plot(names, axes=axes[:, 0])
     axes[0, 0].set_title("")
     for axis, column in zip(axes[:, 0], their_columns):
-        axis.plot(their_t, column, ".", color="#7570b3", markersize=3, label="SciPy", zorder=1)
+        # A hundred thousand dots are pixels: as shapes they keep a browser busy for seconds.
+        axis.plot(their_t, column, ".", color="#7570b3", markersize=3, label="SciPy", zorder=1, rasterized=len(their_t) > 2000)
         axis.legend()
 
 
