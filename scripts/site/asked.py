@@ -98,7 +98,7 @@ def over_each_other(r, names, their_t=None, their_columns=()):
     axes[0, 0].set_title("")
     for axis, column in zip(axes[:, 0], their_columns):
         # A hundred thousand dots are pixels: as shapes they keep a browser busy for seconds.
-        axis.plot(their_t, column, ".", color="#7570b3", markersize=3, label="SciPy", zorder=1, rasterized=len(their_t) > 2000)
+        axis.plot(their_t, column, ".", color="#d95f02", markersize=4, label="SciPy", zorder=3, rasterized=len(their_t) > 2000)
         axis.legend()
 
 

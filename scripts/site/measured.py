@@ -58,7 +58,7 @@ def draw_compare(root, path):
         axis.invert_xaxis()
     figure.supxlabel("error", fontsize=9, color="#808080")
     figure.supylabel("ms", fontsize=9, color="#808080")
-    axes[0, 0].legend(fontsize=7)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), fontsize=7, loc="outside upper center", ncols=len(shown))
     save(figure, path)
 
 
