@@ -42,6 +42,7 @@ def copy_pages():
     shutil.rmtree(SOURCE, ignore_errors=True)
     shutil.copytree(ROOT / "docs", SOURCE)
     shutil.copytree(ROOT / "examples/01_first_simulation", SOURCE / "examples", ignore=shutil.ignore_patterns("*.md"))
+    shutil.copy(ROOT / "tests/optimal_control/builder_test.cpp", SOURCE / "examples")
     for name, page in (("CHANGELOG.md", "changes.md"), ("ARCHITECTURE.md", "architecture.md")):
         text = (ROOT / name).read_text().replace("](docs/adr)", "](decisions.md)").replace("](docs/", "](")
         # What the source tree has, and the site has not, is named without a link.
