@@ -1,6 +1,7 @@
 """Who takes part in the comparison, how each one is started, and what has to be built before."""
 
 import dataclasses
+import datetime
 import json
 import os
 import pathlib
@@ -133,7 +134,7 @@ def line_up(programs):
 
 
 def machine():
-    """Processor, compiler and revision of this run."""
+    """Processor, compiler, revision and day of this run."""
     model = "unknown processor"
     try:
         for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
@@ -146,4 +147,4 @@ def machine():
     revision = subprocess.run(["git", "-C", ROOT, "describe", "--always", "--dirty=, changed"],
                               capture_output=True, text=True, check=False).stdout.strip()
     compiler = compiler.splitlines()[0] if compiler else "no compiler"
-    return f"{model}, {os.cpu_count()} processors, {platform.system()}, {compiler}, revision {revision}"
+    return f"{model}, {os.cpu_count()} processors, {platform.system()}, {compiler}, revision {revision}, {datetime.date.today()}"

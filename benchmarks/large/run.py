@@ -5,9 +5,11 @@ For every model and size: `saltus check` (reading and building), `saltus simulat
 and what the run counted. A run beyond the limit is given up, and so are larger sizes of its model.
 """
 import argparse
+import datetime
 import math
 import os
 import pathlib
+import platform
 import re
 import subprocess
 import tempfile
@@ -16,6 +18,15 @@ import time
 import large_models
 
 HERE = pathlib.Path(__file__).resolve().parent
+
+
+def machine():
+    """Processor and day of this run."""
+    try:
+        model = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8"), re.MULTILINE)
+    except OSError:
+        model = None
+    return f"{model.group(1).strip() if model else platform.processor()}, {os.cpu_count()} processors, {datetime.date.today()}"
 
 
 def measured(command, limit, output):
@@ -125,7 +136,7 @@ def main():
     parser.add_argument("-o", "--output", default=str(HERE.parent / "results" / "large.md"))
     arguments = parser.parse_args()
     lines = ["# Large models", "",
-             "Written by `benchmarks/large/run.py`. Wall times in seconds with default options; `first` without, "
+             f"Written by `benchmarks/large/run.py` on {machine()}. Wall times in seconds with default options; `first` without, "
              "`again` with native code in the cache. `check` leaves out complementarity systems beyond 100 "
              "switching functions.", "", *([arguments.note, ""] if arguments.note else []),
              "| model | N | check | first | again | MB | steps / evaluations | µs per step and N |",

@@ -17,7 +17,9 @@ SOURCE, SITE = BUILD / "site_source", BUILD / "site"
 sys.path.insert(0, str(Path(__file__).parent))
 
 import accessible  # noqa: E402
+import browser  # noqa: E402
 import built  # noqa: E402
+import measured  # noqa: E402
 import tables  # noqa: E402
 
 
@@ -40,10 +42,11 @@ def copy_pages():
     shutil.rmtree(SOURCE, ignore_errors=True)
     shutil.copytree(ROOT / "docs", SOURCE)
     shutil.copytree(ROOT / "examples/01_first_simulation", SOURCE / "examples", ignore=shutil.ignore_patterns("*.md"))
+    shutil.copy(ROOT / "tests/optimal_control/builder_test.cpp", SOURCE / "examples")
     for name, page in (("CHANGELOG.md", "changes.md"), ("ARCHITECTURE.md", "architecture.md")):
         text = (ROOT / name).read_text().replace("](docs/adr)", "](decisions.md)").replace("](docs/", "](")
         # What the source tree has, and the site has not, is named without a link.
-        (SOURCE / page).write_text(re.sub(r"\[([^\]]*)\]\((?:tests|examples|cmake|benchmarks|scripts)/[^)]*\)", r"\1", text))
+        (SOURCE / page).write_text(re.sub(r"\[([^\]]*)\]\((?:tests|examples|cmake|benchmarks|scripts|src|models|packaging)/[^)]*\)", r"\1", text))
 
 
 def doxygen():
@@ -62,6 +65,7 @@ def main(quick):
     copy_pages()
     os.environ.update(env)
     tables.write(SOURCE, BUILD / "release/bin/saltus", ROOT)
+    measured.write(SOURCE, ROOT)
     if quick:
         env["SALTUS_SITE_QUICK"] = "1"
     else:
@@ -82,7 +86,7 @@ def main(quick):
         sys.exit(done.returncode)
     accessible.mend(SITE)
     built.check(SITE)
-    if complaints := accessible.ask(SITE, ROOT / ".venv/axe/axe.min.js"):
+    if complaints := browser.ask(SITE, ROOT / ".venv/axe/axe.min.js"):
         sys.exit("\n".join(complaints))
     print(f"build/site/index.html, {time.monotonic() - begin:.0f} s")
 

@@ -1,4 +1,4 @@
-"""Pages of docs/: blocks can be read, links are live, tables agree with those of the source. Nothing is simulated.
+"""Pages of docs/: blocks can be read, links are live, tables agree with those of the source and of README.md. Nothing is simulated.
 
 usage: check_docs.py ROOT TOOL
 """
@@ -20,15 +20,23 @@ def complaints_of_statuses(root):
 
 
 def complaints_of_questions(root):
-    """At least ten questions of others, each with a link and a check of its answer."""
+    """At least ten questions of others, each with a link, a check of its answer and what it is compared with."""
     page = (root / "docs/asked-elsewhere.md").read_text(encoding="utf-8")
     sections = re.split(r"^## \d+\. ", page, flags=re.MULTILINE)[1:]
     complaints = [] if len(sections) >= 10 else [f"docs/asked-elsewhere.md: {len(sections)} questions"]
     for section in sections:
         title = section.partition("\n")[0]
-        if "](https://" not in section or "ours(" not in section:
-            complaints.append(f"docs/asked-elsewhere.md: '{title}' has no link or no answer")
+        if "](https://" not in section or "ours(" not in section or "theirs(" not in section:
+            complaints.append(f"docs/asked-elsewhere.md: '{title}' has no link, no answer, or nothing to compare it with")
     return complaints
+
+
+def complaints_of_howtos(root):
+    """Every row of the table in README.md has its how-to, under the same words."""
+    readme = (root / "README.md").read_text(encoding="utf-8")
+    wanted = re.findall(r"^\| (?!I want)([^|]*?) \|", readme.partition("## I want to")[2].partition("\n## ")[0], re.MULTILINE)
+    shown = set(re.findall(r"^### (.*)$", (root / "docs/howto.md").read_text(encoding="utf-8"), re.MULTILINE))
+    return [f"docs/howto.md: no how-to '### {row[0].upper()}{row[1:]}'" for row in wanted if row[0].upper() + row[1:] not in shown]
 
 
 def complaints_of_index(root):
@@ -47,7 +55,7 @@ def main(root, tool):
     sys.path.insert(0, str(root / "scripts/site"))
     import blocks
 
-    complaints = complaints_of_statuses(root) + complaints_of_questions(root) + complaints_of_index(root)
+    complaints = complaints_of_statuses(root) + complaints_of_questions(root) + complaints_of_howtos(root) + complaints_of_index(root)
     if complaints:
         sys.exit("\n".join(complaints))
     blocks.run_pages(sorted((root / "docs").rglob("*.md")), tool, quick=True)

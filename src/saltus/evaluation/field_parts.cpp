@@ -17,7 +17,7 @@ namespace {
 /// Larger parts cost as much as all of f, restarted.
 constexpr std::size_t largest_share = 4;
 
-void make_unique(std::vector<std::size_t>& values) {
+void drop_repeated(std::vector<std::size_t>& values) {
   std::sort(values.begin(), values.end());
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
@@ -52,7 +52,7 @@ struct FieldParts::Implementation {
       for (std::size_t k = 0, inside = rows.size(); k < inside; ++k) {
         rows.insert(rows.end(), moves[rows[k]].begin(), moves[rows[k]].end());
       }
-      make_unique(rows);
+      drop_repeated(rows);
     }
     if (!fits()) return std::nullopt;
     Part part{.rows = std::move(rows), .inputs = {}, .border = {}, .number = programs.size()};
@@ -65,7 +65,7 @@ struct FieldParts::Implementation {
       }
       if (!std::all_of(moves[row].begin(), moves[row].end(), inside)) part.border.push_back(row);
     }
-    make_unique(part.inputs);
+    drop_repeated(part.inputs);
     programs.push_back(cut->of(part.rows));
     return part;
   }

@@ -62,7 +62,7 @@ bool Run::meet(const Located& located, int surface) {
   const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
   if (change.after != 0) {
     std::copy(located.x.begin(), located.x.end(), here_.x.begin());
-    const auto* known = fast_.local.behind(surface, t, here_.x, steps_.dense(), constants);
+    const auto* known = fast_.local.behind(surface, t, here_.x, steps_.dense(), steps_.last_error(), constants);
     field_.cross(j, constants);
     field_.follow_known(known);
     here_.slope.swap(fast_.slope_beyond);

@@ -141,7 +141,7 @@ Run::Step Run::accept(double t_new) {
   limit_beside_coalescence();
   here_.h = steps_.proposed(h);
   if (follows) {
-    here_.h = std::max(here_.h, fast_.local.common_length());
+    here_.h = fast_.local.next_length();
     field_.follow_known(nullptr);
   }
   // A step that was cut short at a time of a jump says nothing against the one that was proposed.

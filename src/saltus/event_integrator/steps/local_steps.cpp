@@ -68,7 +68,7 @@ bool LocalSteps::integrate(const Part& part, const std::vector<double>& x,
     const double error = stepper.error_norm();
     if (error <= 1.0) return stepper.dense(f, part_) == ode::Attempt::finite;
     constexpr double least = 0.1, safety = 0.8;
-    known_.cut(0.0, std::max(least, safety * std::pow(error, -1.0 / (ode::order(method_)))));
+    known_.cut(0.0, std::max(least, safety * std::pow(error, -1.0 / ode::order(method_))));
   }
   return false;
 }
@@ -84,13 +84,17 @@ bool LocalSteps::is_felt(const Part& part) const {
 }
 
 const ode::DenseStep* LocalSteps::behind(int surface, double t, const std::vector<double>& x,
-                                         const ode::DenseStep& step, const evaluation::FieldConstants& behind) {
+                                         const ode::DenseStep& step, double error,
+                                         const evaluation::FieldConstants& behind) {
   if (part_of(surface, 0) == nullptr) return nullptr;
   const double end = step.t + step.h;
   // What is left of the step must be more than the rounding of its times.
   constexpr double resolved = 1e3 * rounding_unit;
   if (!(end - t > resolved * (std::abs(t) + std::abs(step.h)))) return nullptr;
-  if (step.t != known_.t) common_length_ = step.h;  // otherwise it is the rest of a step already
+  if (step.t != known_.t) {  // otherwise it is the rest of a step already
+    constexpr double safety = 0.9, smallest = 0.2, largest = 5.0;
+    next_length_ = step.h * std::clamp(safety * std::pow(error, -1.0 / ode::order(method_)), smallest, largest);
+  }
   known_ = step;
   known_.cut(std::max(0.0, (t - step.t) / step.h), 1.0);
   known_.t = t;
