@@ -34,7 +34,8 @@ Integration run(const Network& network, const IntegrationOptions& options) {
   for (std::size_t i = 0; i < x.size(); ++i) {
     SX rate = -x[i];
     for (int k = 0; k < 3; ++k) {
-      const std::size_t from = random() % x.size();
+      // A gene that acts on itself may slide on its threshold: such modes take steps of all states.
+      const std::size_t from = (i + 1 + random() % (x.size() - 1)) % x.size();
       const double threshold = number(0.2, 0.8);
       const SX psi = random() % 2 == 0 ? x[from] - threshold : threshold - x[from];
       rate += number(0.2, 0.5) * b.step(b.switching("s" + std::to_string(i) + "_" + std::to_string(k), psi));
