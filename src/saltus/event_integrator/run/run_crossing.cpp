@@ -65,6 +65,9 @@ bool Run::meet(const Located& located, int surface) {
     const auto* known = fast_.local.behind(surface, t, here_.x, steps_.dense(), steps_.last_error(), constants);
     field_.cross(j, constants);
     field_.follow_known(known);
+    // Its error is of a lower order than that of the steps.
+    const double share = std::clamp(tolerances_.smallest_part(), 0.1, 1.0);
+    if (known != nullptr) tolerances_.limit(StepTolerances::Reason::local, {share, share});
     here_.slope.swap(fast_.slope_beyond);
   } else {
     field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);

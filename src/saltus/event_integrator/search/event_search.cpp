@@ -193,6 +193,7 @@ void EventSearch::evaluate(double t, const double* x, const std::vector<std::siz
 /// Samples of some functions at nodes of [from, to].
 void EventSearch::sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which,
                          Nodes nodes) {
+  for (auto& checks : checks_) checks.clear();
   for (std::size_t node = nodes.first; node < ode::event_nodes; node += nodes.stride) {
     const double theta = node_theta(from, to, node);
     const double t = step.t + theta * step.h;
@@ -299,13 +300,20 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
 bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std::size_t i,
                          const ode::BernsteinCoefficients& coefficients, double accuracy) {
   // Three places that are not symmetric to each other: a periodic function does not fool the nodes and these as well.
-  for (const std::size_t place : {std::size_t{0}, std::size_t{3}, std::size_t{6}}) {
-    const double local = ode::check_nodes()[place];
-    const double theta = from + (to - from) * local;
-    step.evaluate(theta, x_.data());
-    const double t = step.t + theta * step.h;
-    evaluate_parts(t, x_.data(), mode_.curved_parts);
-    if (!(std::abs(value(i, x_.data()) - ode::evaluate(coefficients, local)) <= accuracy)) return true;
+  constexpr std::size_t places[] = {0, 3, 6};
+  for (std::size_t k = 0; k < std::size(places); ++k) {
+    const double local = ode::check_nodes()[places[k]];
+    auto& checks = checks_[k];
+    if (checks.empty()) {  // one evaluation for all functions that ask
+      const double theta = from + (to - from) * local;
+      step.evaluate(theta, x_.data());
+      evaluate_parts(step.t + theta * step.h, x_.data(), mode_.curved_parts);
+      checks.resize(mode_.functions.size());
+      for (const std::size_t j : suspects_) {
+        if (!mode_.forms.has(j) && uses_phi(mode_.functions[j])) checks[j] = value(j, x_.data());
+      }
+    }
+    if (!(std::abs(checks[i] - ode::evaluate(coefficients, local)) <= accuracy)) return true;
   }
   return false;
 }

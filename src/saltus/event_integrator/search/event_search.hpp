@@ -161,6 +161,8 @@ class EventSearch {
   KernelValues values_;
   std::vector<int> entered_;  ///< by cell: event function of the end at which it was entered, or -1
   std::vector<double> x_, point_;
+  std::array<std::vector<double>, 3>
+      checks_;                   ///< values between the nodes, of an interval; empty before they are asked for
   std::vector<double> samples_;  ///< node by node
   FunctionLevels levels_;
   StepRange range_;
