@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import pathlib
 import resource
 import signal
 import subprocess
@@ -109,14 +110,14 @@ class GrowingFiles(tool.ToolTest):
         self.assertEqual(result["trajectory"]["t"][-1], result["final"]["t"])
 
     def test_memory_does_not_grow_with_the_rows(self):
+        # The address sanitizer keeps what is freed: its peaks say nothing.
+        if b"__asan_init" in pathlib.Path(tool.TOOL).read_bytes():
+            self.skipTest("a sanitized tool")
         self.write("m.toml", LONG.replace("UNTIL", "2000"))
         peaks = []
-        # The address sanitizer keeps what is freed, 256 MB of it unless told.
-        environment = os.environ | {"ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "") + ":quarantine_size_mb=4"}
         for rows in (2_000, 500_000):
             process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--quiet", "--out", "r.csv", "--out", "r.json",
-                                        "--out", "r.npz", "--set", f"simulate.output.points={rows}"], cwd=self.folder,
-                                       env=environment)
+                                        "--out", "r.npz", "--set", f"simulate.output.points={rows}"], cwd=self.folder)
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = status
             self.assertEqual(status, 0)

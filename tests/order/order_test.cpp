@@ -131,8 +131,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(OrderCase{"rotating-oscillator", Integrator::dopri5, 5, 0.015, 1.06},
                     OrderCase{"rotating-oscillator", Integrator::dop853, 8, 0.08, 1.04},
                     OrderCase{"rotating-oscillator", Integrator::radau5, 5, 0.015, 1.06},
-                    OrderCase{"rotating-oscillator", Integrator::radau9, 9, 0.08, 1.04},
-                    OrderCase{"rotating-oscillator", Integrator::radau13, 13, 0.2, 1.02},
+                    OrderCase{"rotating-oscillator", Integrator::radau9, 9, 0.25, 1.04},
+                    // Few steps lie between those that are too long and rounding.
+                    OrderCase{"rotating-oscillator", Integrator::radau13, 12.6, 0.45, 1.02},
                     OrderCase{"relay-oscillator", Integrator::dopri5, 5, 0.4, 1.06},
                     OrderCase{"relay-oscillator", Integrator::dop853, 8, 0.6, 1.04},
                     OrderCase{"relay-oscillator", Integrator::radau5, 5, 0.4, 1.06},

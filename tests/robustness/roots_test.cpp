@@ -24,7 +24,7 @@ std::vector<double> tolerances(int count) {
 }
 
 std::string setting(Integrator integrator, double rtol) {
-  constexpr const char* names[] = {"dopri5", "dop853", "radau5", "taylor"};
+  constexpr const char* names[] = {"dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"};
   return names[static_cast<std::size_t>(integrator)] + (", rtol = " + std::to_string(std::log10(rtol)));
 }
 
