@@ -76,6 +76,7 @@ bool Run::enter(const Transition& transition) {
   zeros_.forget();
   set_references(kernel_, here_.state);
   tolerances_.begin_mode(kernel_, options_.layers, here_);
+  tolerances_.lift(StepTolerances::Reason::local);
   if (nested_.begin_mode()) tolerances_.lift(StepTolerances::Reason::zeros);
   field_.enter(here_.state);
   steps_.begin_mode();

@@ -66,10 +66,11 @@ bool Run::meet(const Located& located, int surface) {
     field_.cross(j, constants);
     field_.follow_known(known);
     // Its error is of a lower order than that of the steps.
-    const double share = std::clamp(tolerances_.smallest_part(), 0.1, 1.0);
-    if (known != nullptr) tolerances_.limit(StepTolerances::Reason::local, {share, share});
+    const double share = known != nullptr ? std::clamp(tolerances_.smallest_part(), 0.1, 1.0) : 1.0;
+    tolerances_.limit(StepTolerances::Reason::local, {share, share});
     here_.slope.swap(fast_.slope_beyond);
   } else {
+    tolerances_.lift(StepTolerances::Reason::local);
     field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
     if (!begin_at(located)) return false;
   }
