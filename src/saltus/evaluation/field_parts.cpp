@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/base/without_repeats.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 #include "saltus/model/graph/program_parts.hpp"
 
@@ -16,11 +17,6 @@ namespace {
 
 /// Larger parts cost as much as all of f, restarted.
 constexpr std::size_t largest_share = 4;
-
-void drop_repeated(std::vector<std::size_t>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 }  // namespace
 
@@ -52,7 +48,7 @@ struct FieldParts::Implementation {
       for (std::size_t k = 0, inside = rows.size(); k < inside; ++k) {
         rows.insert(rows.end(), moves[rows[k]].begin(), moves[rows[k]].end());
       }
-      drop_repeated(rows);
+      drop_repeats(rows);
     }
     if (!fits()) return std::nullopt;
     Part part{.rows = std::move(rows), .inputs = {}, .border = {}, .number = programs.size()};
@@ -65,7 +61,7 @@ struct FieldParts::Implementation {
       }
       if (!std::all_of(moves[row].begin(), moves[row].end(), inside)) part.border.push_back(row);
     }
-    drop_repeated(part.inputs);
+    drop_repeats(part.inputs);
     programs.push_back(cut->of(part.rows));
     return part;
   }

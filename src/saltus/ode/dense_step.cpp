@@ -118,23 +118,18 @@ BernsteinCoefficients bernstein_form(const double* coefficients, std::size_t n, 
   return b;
 }
 
-/// The nested form on [from, to]: a Newton form whose nodes 0, 1, 0, ... (with the sign of the factors 1 - theta) are
-/// replaced by from, to, from, ..., one at a time, the last one first.
+/// The nested form on [from, to]: its Newton form gets the nodes from, to, from, ..., the last one first.
 template <std::size_t degree>
 void cut_component(double* coefficients, std::size_t n, std::size_t i, double from, double to) {
   std::array<double, degree + 1> c;
   std::array<double, degree> nodes;
-  const auto sign = [](std::size_t k) { return k / 2 % 2 == 0 ? 1.0 : -1.0; };
-  for (std::size_t k = 0; k <= degree; ++k) c[k] = sign(k) * coefficients[k * n + i];
+  for (std::size_t k = 0; k <= degree; ++k) c[k] = sign_of_nested(k) * coefficients[k * n + i];
   for (std::size_t k = 0; k < degree; ++k) nodes[k] = k % 2 == 0 ? 0.0 : 1.0;
-  for (std::size_t next = degree; next-- > 0;) {
-    const double node = next % 2 == 0 ? from : to;
-    for (std::size_t k = degree; k-- > 0;) c[k] += (node - nodes[k]) * c[k + 1];
-    for (std::size_t k = degree - 1; k > 0; --k) nodes[k] = nodes[k - 1];
-    nodes[0] = node;
-  }
+  for (std::size_t k = degree; k-- > 0;) begin_with_node(k % 2 == 0 ? from : to, c, nodes);
   double power = 1.0;
-  for (std::size_t k = 0; k <= degree; ++k, power *= to - from) coefficients[k * n + i] = sign(k) * power * c[k];
+  for (std::size_t k = 0; k <= degree; ++k, power *= to - from) {
+    coefficients[k * n + i] = sign_of_nested(k) * power * c[k];
+  }
 }
 
 /// Calls with the degree of the nested form as a constant.
@@ -200,62 +195,25 @@ SeriesCoefficients DenseStep::terms(std::size_t i) const {
 }
 
 void DenseStep::add_nested(std::size_t i, double factor, NestedPolynomial& sum) const {
+  SALTUS_ASSERT(!is_series());
   const double* own = coefficients_.data() + i;
   const auto n = static_cast<std::size_t>(n_);
   sum.end += factor * end_[i];
-  switch (method_) {
-    case Method::dopri5:
-      return add_component<4>(own, n, factor, sum);
-    case Method::dop853:
-      return add_component<7>(own, n, factor, sum);
-    case Method::taylor:
-      break;
-    case Method::radau5:
-      return add_component<3>(own, n, factor, sum);
-    case Method::radau9:
-      return add_component<5>(own, n, factor, sum);
-    case Method::radau13:
-      return add_component<7>(own, n, factor, sum);
-  }
-  SALTUS_ASSERT(!is_series());
+  with_degree(method_, [&](auto degree) { add_component<degree.value>(own, n, factor, sum); });
 }
 
 BernsteinCoefficients DenseStep::bernstein(std::size_t i) const {
-  const auto n = static_cast<std::size_t>(n_);
-  switch (method_) {
-    case Method::dopri5:
-      return bernstein_form<4>(coefficients_.data(), n, i, end_[i]);
-    case Method::dop853:
-      return bernstein_form<7>(coefficients_.data(), n, i, end_[i]);
-    case Method::taylor:
-      break;
-    case Method::radau5:
-      return bernstein_form<3>(coefficients_.data(), n, i, end_[i]);
-    case Method::radau9:
-      return bernstein_form<5>(coefficients_.data(), n, i, end_[i]);
-    case Method::radau13:
-      return bernstein_form<7>(coefficients_.data(), n, i, end_[i]);
-  }
   SALTUS_ASSERT(!is_series());
-  __builtin_unreachable();
+  const auto n = static_cast<std::size_t>(n_);
+  return with_degree(method_,
+                     [&](auto degree) { return bernstein_form<degree.value>(coefficients_.data(), n, i, end_[i]); });
 }
 
 void DenseStep::bounds(double* low, double* high) const {
   const auto n = static_cast<std::size_t>(n_);
-  switch (method_) {
-    case Method::dopri5:
-      return polynomial_bounds<4>(coefficients_.data(), end_.data(), n, low, high);
-    case Method::dop853:
-      return polynomial_bounds<7>(coefficients_.data(), end_.data(), n, low, high);
-    case Method::taylor:
-      return series_bounds(coefficients_.data(), n, low, high);
-    case Method::radau5:
-      return polynomial_bounds<3>(coefficients_.data(), end_.data(), n, low, high);
-    case Method::radau9:
-      return polynomial_bounds<5>(coefficients_.data(), end_.data(), n, low, high);
-    case Method::radau13:
-      return polynomial_bounds<7>(coefficients_.data(), end_.data(), n, low, high);
-  }
+  if (is_series()) return series_bounds(coefficients_.data(), n, low, high);
+  with_degree(method_,
+              [&](auto degree) { polynomial_bounds<degree.value>(coefficients_.data(), end_.data(), n, low, high); });
 }
 
 void DenseStep::evaluate(double theta, double* x) const {
@@ -265,38 +223,15 @@ void DenseStep::evaluate(double theta, double* x) const {
     std::copy_n(theta == 0.0 ? coefficients_.data() : end_.data(), n, x);
     return;
   }
-  switch (method_) {
-    case Method::dopri5:
-      return evaluate_nearer<4>(coefficients_.data(), end_.data(), n, theta, x);
-    case Method::dop853:
-      return evaluate_nearer<7>(coefficients_.data(), end_.data(), n, theta, x);
-    case Method::taylor:
-      return series_values(coefficients_.data(), n, theta, x);
-    case Method::radau5:
-      return evaluate_nearer<3>(coefficients_.data(), end_.data(), n, theta, x);
-    case Method::radau9:
-      return evaluate_nearer<5>(coefficients_.data(), end_.data(), n, theta, x);
-    case Method::radau13:
-      return evaluate_nearer<7>(coefficients_.data(), end_.data(), n, theta, x);
-  }
+  if (is_series()) return series_values(coefficients_.data(), n, theta, x);
+  with_degree(method_,
+              [&](auto degree) { evaluate_nearer<degree.value>(coefficients_.data(), end_.data(), n, theta, x); });
 }
 
 void DenseStep::derivative(double theta, double* xdot) const {
   const auto n = static_cast<std::size_t>(n_);
-  switch (method_) {
-    case Method::dopri5:
-      return evaluate_slope<4>(coefficients_.data(), n, theta, h, xdot);
-    case Method::dop853:
-      return evaluate_slope<7>(coefficients_.data(), n, theta, h, xdot);
-    case Method::taylor:
-      return series_slopes(coefficients_.data(), n, theta, h, xdot);
-    case Method::radau5:
-      return evaluate_slope<3>(coefficients_.data(), n, theta, h, xdot);
-    case Method::radau9:
-      return evaluate_slope<5>(coefficients_.data(), n, theta, h, xdot);
-    case Method::radau13:
-      return evaluate_slope<7>(coefficients_.data(), n, theta, h, xdot);
-  }
+  if (is_series()) return series_slopes(coefficients_.data(), n, theta, h, xdot);
+  with_degree(method_, [&](auto degree) { evaluate_slope<degree.value>(coefficients_.data(), n, theta, h, xdot); });
 }
 
 }  // namespace saltus::ode

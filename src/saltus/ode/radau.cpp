@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "saltus/base/at.hpp"
+#include "saltus/ode/explicit/nested_form_internal.hpp"
 #include "saltus/ode/radau_internal.hpp"
 #include "saltus/ode/radau_iteration_internal.hpp"
 #include "saltus/ode/radau_steps_internal.hpp"
@@ -174,23 +175,17 @@ void RadauSteps<Tableau>::dense(double* coefficients) const {
   for (Eigen::Index i = 0; i < n_; ++i) {
     const double end = z_(i, last);
     std::array<double, inner> d;
-    std::array<double, inner> nodes;
+    std::array<double, inner - 1> nodes;
+    std::copy_n(c.begin(), inner - 1, nodes.begin());
     for (std::size_t k = 0; k < inner; ++k) {
-      nodes[k] = c[k];
       d[k] = (z_(i, static_cast<Eigen::Index>(k)) / c[k] - end) / (1.0 - c[k]);
     }
     for (std::size_t distance = 1; distance < inner; ++distance) {
       for (std::size_t k = inner - 1; k >= distance; --k) d[k] = (d[k] - d[k - 1]) / (c[k] - c[k - distance]);
     }
-    for (std::size_t next = inner - 1; next-- > 0;) {
-      const double node = next % 2 == 0 ? 0.0 : 1.0;
-      for (std::size_t k = inner - 1; k-- > 0;) d[k] += (node - nodes[k]) * d[k + 1];
-      for (std::size_t k = inner - 1; k > 0; --k) nodes[k] = nodes[k - 1];
-      nodes[0] = node;
-    }
+    for (std::size_t next = inner - 1; next-- > 0;) begin_with_node(next % 2 == 0 ? 0.0 : 1.0, d, nodes);
     p(i, 0) = end;
-    // A factor 1 - theta where the Newton form has theta - 1, from the third one on, every second time.
-    for (std::size_t k = 0; k < inner; ++k) p(i, static_cast<Eigen::Index>(k + 1)) = k / 2 % 2 == 0 ? d[k] : -d[k];
+    for (std::size_t k = 0; k < inner; ++k) p(i, static_cast<Eigen::Index>(k + 1)) = sign_of_nested(k) * d[k];
   }
 }
 

@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/without_repeats.hpp"
 #include "saltus/evaluation/sparse/field_pattern_internal.hpp"
 
 namespace saltus::evaluation {
@@ -11,11 +11,6 @@ namespace {
 /// Below this size, and with more entries than a share of all, dense matrices are faster. Measured with rods.
 constexpr std::size_t fewest_states = 32;
 constexpr std::size_t least_saving = 6;
-
-void make_unique(std::vector<int>& values) {
-  std::sort(values.begin(), values.end());
-  values.erase(std::unique(values.begin(), values.end()), values.end());
-}
 
 /// Switching functions that influence each other, directly or through others.
 std::vector<std::vector<int>> components_of(const std::vector<std::vector<int>>& neighbours) {
@@ -62,8 +57,8 @@ std::optional<ode::JacobianPattern> field_pattern(const FieldDependencies& depen
         columns.insert(columns.end(), moving.begin(), moving.end());
       }
     }
-    make_unique(rows);
-    make_unique(columns);
+    drop_repeats(rows);
+    drop_repeats(columns);
     if (entries.size() + rows.size() * columns.size() > most) return std::nullopt;
     for (const int row : rows) {
       for (const int column : columns) entries.emplace_back(at(row), at(column));

@@ -14,10 +14,10 @@ constexpr std::size_t fewest_states = 64;
 /// Rings of states around those that a selection moves.
 constexpr int most_rings = 3;
 
+/// Of models and options whose switches are ordinary (Run::has_ordinary_switches).
 bool applies(const IntegrationOptions& options, const evaluation::ModelKernel& kernel) {
   const bool nested = options.method == ode::Method::dopri5 || options.method == ode::Method::dop853;
-  return options.local_steps && nested && at(kernel.states()) >= fewest_states && options.layers.empty() &&
-         kernel.region_groups().empty() && kernel.cells() == 0;
+  return options.local_steps && nested && at(kernel.states()) >= fewest_states;
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "saltus/model/graph/program_parts.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include <casadi/core/sx_elem.hpp>
@@ -9,6 +8,7 @@
 #include <casadi/core/calculus.hpp>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/without_repeats.hpp"
 
 namespace saltus::model {
 
@@ -48,8 +48,7 @@ std::shared_ptr<const Program> ProgramParts::of(const std::vector<std::size_t>& 
       if (operand != nowhere) needed.push_back(operand);
     }
   }
-  std::sort(needed.begin(), needed.end());
-  needed.erase(std::unique(needed.begin(), needed.end()), needed.end());
+  drop_repeats(needed);
   auto part = std::make_shared<Program>();
   for (const int k : needed) part->instructions_.push_back(whole_->instructions_[at(k)]);
   return part;

@@ -2,6 +2,7 @@
 //   x(t + theta h) = c0 + s (c1 + r (c2 + s (c3 + r (c4 + ...)))).
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace saltus::ode {
@@ -36,6 +37,19 @@ inline Jet nested_jet(const double* coefficients, std::size_t n, std::size_t i, 
       return {own + r * inner.value, r * inner.slope - inner.value};
     }
   }
+}
+
+/// The nested form is the Newton form with the nodes 0, 1, 0, 1, ..., but for the sign of its factors 1 - theta: that
+/// of its coefficient k.
+inline double sign_of_nested(std::size_t k) { return k / 2 % 2 == 0 ? 1.0 : -1.0; }
+
+/// A Newton form c0 + (theta - node0) (c1 + (theta - node1) (c2 + ...)) with another node in front of the others, of
+/// which the last one is dropped.
+template <std::size_t count>
+inline void begin_with_node(double node, std::array<double, count>& c, std::array<double, count - 1>& nodes) {
+  for (std::size_t k = count - 1; k-- > 0;) c[k] += (node - nodes[k]) * c[k + 1];
+  for (std::size_t k = count - 2; k > 0; --k) nodes[k] = nodes[k - 1];
+  nodes[0] = node;
 }
 
 /// Value, derivative and half the second derivative.
