@@ -171,21 +171,23 @@ template <class Tableau>
 void RadauSteps<Tableau>::dense(double* coefficients) const {
   constexpr auto& c = Tableau::c;
   constexpr std::size_t inner = stages - 1;
-  Eigen::Map<Matrix> p(coefficients, n_, last + 1);
-  for (Eigen::Index i = 0; i < n_; ++i) {
-    const double end = z_(i, last);
-    std::array<double, inner> d;
-    std::array<double, inner - 1> nodes;
-    std::copy_n(c.begin(), inner - 1, nodes.begin());
-    for (std::size_t k = 0; k < inner; ++k) {
-      d[k] = (z_(i, static_cast<Eigen::Index>(k)) / c[k] - end) / (1.0 - c[k]);
-    }
-    for (std::size_t distance = 1; distance < inner; ++distance) {
-      for (std::size_t k = inner - 1; k >= distance; --k) d[k] = (d[k] - d[k - 1]) / (c[k] - c[k - distance]);
-    }
-    for (std::size_t next = inner - 1; next-- > 0;) begin_with_node(next % 2 == 0 ? 0.0 : 1.0, d, nodes);
-    p(i, 0) = end;
-    for (std::size_t k = 0; k < inner; ++k) p(i, static_cast<Eigen::Index>(k + 1)) = sign_of_nested(k) * d[k];
+  struct Differences {
+    Eigen::Map<Matrix> p;
+    auto operator[](std::size_t k) { return p.col(static_cast<Eigen::Index>(k + 1)); }
+  };
+  Differences d{{coefficients, n_, last + 1}};
+  d.p.col(0) = z_.col(last);
+  for (std::size_t k = 0; k < inner; ++k) {
+    d[k] = (z_.col(static_cast<Eigen::Index>(k)) / c[k] - z_.col(last)) / (1.0 - c[k]);
+  }
+  for (std::size_t distance = 1; distance < inner; ++distance) {
+    for (std::size_t k = inner - 1; k >= distance; --k) d[k] = (d[k] - d[k - 1]) / (c[k] - c[k - distance]);
+  }
+  std::array<double, inner - 1> nodes;
+  std::copy_n(c.begin(), inner - 1, nodes.begin());
+  for (std::size_t next = inner - 1; next-- > 0;) begin_with_node(next % 2 == 0 ? 0.0 : 1.0, d, nodes);
+  for (std::size_t k = 0; k < inner; ++k) {
+    if (sign_of_nested(k) < 0.0) d[k] = -d[k];
   }
 }
 

@@ -44,11 +44,11 @@ inline Jet nested_jet(const double* coefficients, std::size_t n, std::size_t i, 
 inline double sign_of_nested(std::size_t k) { return k / 2 % 2 == 0 ? 1.0 : -1.0; }
 
 /// A Newton form c0 + (theta - node0) (c1 + (theta - node1) (c2 + ...)) with another node in front of the others, of
-/// which the last one is dropped.
-template <std::size_t count>
-inline void begin_with_node(double node, std::array<double, count>& c, std::array<double, count - 1>& nodes) {
-  for (std::size_t k = count - 1; k-- > 0;) c[k] += (node - nodes[k]) * c[k + 1];
-  for (std::size_t k = count - 2; k > 0; --k) nodes[k] = nodes[k - 1];
+/// which the last one is dropped. Coefficients are numbers or columns.
+template <std::size_t others, class Coefficients>
+inline void begin_with_node(double node, Coefficients& c, std::array<double, others>& nodes) {
+  for (std::size_t k = others; k-- > 0;) c[k] += (node - nodes[k]) * c[k + 1];
+  for (std::size_t k = others - 1; k > 0; --k) nodes[k] = nodes[k - 1];
   nodes[0] = node;
 }
 

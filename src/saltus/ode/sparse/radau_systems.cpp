@@ -4,26 +4,6 @@
 #include "saltus/ode/sparse/radau_systems_internal.hpp"
 
 namespace saltus::ode {
-namespace {
-
-/// A matrix with the entries of a pattern.
-template <class Scalar>
-Eigen::SparseMatrix<Scalar> with_pattern(const JacobianPattern& pattern) {
-  const auto n = static_cast<Eigen::Index>(pattern.columns());
-  std::vector<Eigen::Triplet<Scalar>> triplets;
-  for (std::size_t column = 0; column < pattern.columns(); ++column) {
-    for (std::size_t k = pattern.start[column]; k < pattern.start[column + 1]; ++k) {
-      triplets.emplace_back(static_cast<int>(pattern.row[k]), static_cast<int>(column), Scalar(1.0));
-    }
-  }
-  Eigen::SparseMatrix<Scalar> matrix(n, n);
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
-  matrix.makeCompressed();
-  return matrix;
-}
-
-}  // namespace
-
 bool RadauSystems::use(const JacobianPattern* pattern) {
   if (started_ && pattern == pattern_) return false;
   started_ = true;
@@ -35,10 +15,9 @@ bool RadauSystems::use(const JacobianPattern* pattern) {
   }
   groups_ = column_groups(*pattern);
   entries_.assign(pattern->row.size(), 0.0);
-  sparse_real_matrix_ = with_pattern<double>(*pattern);
-  sparse_complex_matrix_ = with_pattern<std::complex<double>>(*pattern);
-  sparse_real_.analyzePattern(sparse_real_matrix_);
-  for (Pair& pair : pairs_) pair.sparse.analyzePattern(sparse_complex_matrix_);
+  elimination_ = elimination_of(*pattern);
+  sparse_real_.use(*pattern, elimination_);
+  for (Pair& pair : pairs_) pair.sparse.use(*pattern, elimination_);
   return true;
 }
 
@@ -56,26 +35,11 @@ bool RadauSystems::set_column(Eigen::Index column, const Vector& difference, dou
   return finite;
 }
 
-template <class Scalar>
-void RadauSystems::shift(const Scalar& diagonal, Eigen::SparseMatrix<Scalar>& matrix) const {
-  Scalar* value = matrix.valuePtr();
-  for (std::size_t column = 0; column < pattern_->columns(); ++column) {
-    for (std::size_t k = pattern_->start[column]; k < pattern_->start[column + 1]; ++k) {
-      value[k] = -entries_[k];
-      if (pattern_->row[k] == column) value[k] += diagonal;
-    }
-  }
-}
-
 bool RadauSystems::factorize(const Shifts& shifts) {
   if (pattern_ != nullptr) {
-    shift(shifts.real, sparse_real_matrix_);
-    sparse_real_.factorize(sparse_real_matrix_);
-    if (sparse_real_.info() != Eigen::Success) return false;
+    if (!sparse_real_.factorize(entries_, shifts.real)) return false;
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      shift(shifts.pairs[k], sparse_complex_matrix_);
-      pairs_[k].sparse.factorize(sparse_complex_matrix_);
-      if (pairs_[k].sparse.info() != Eigen::Success) return false;
+      if (!pairs_[k].sparse.factorize(entries_, shifts.pairs[k])) return false;
     }
     return true;
   }
@@ -92,7 +56,7 @@ bool RadauSystems::factorize(const Shifts& shifts) {
 
 void RadauSystems::solve(const Vector& right, Vector& solution) {
   if (pattern_ != nullptr) {
-    solution = sparse_real_.solve(right);
+    sparse_real_.solve(right, solution);
   } else {
     solution = real_.solve(right);
   }
@@ -100,7 +64,7 @@ void RadauSystems::solve(const Vector& right, Vector& solution) {
 
 void RadauSystems::solve(std::size_t pair, const ComplexVector& right, ComplexVector& solution) {
   if (pattern_ != nullptr) {
-    solution = pairs_[pair].sparse.solve(right);
+    pairs_[pair].sparse.solve(right, solution);
   } else {
     solution = pairs_[pair].dense.solve(right);
   }

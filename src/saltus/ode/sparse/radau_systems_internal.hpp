@@ -8,10 +8,9 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
 
 #include "saltus/ode/sparse/jacobian_pattern.hpp"
+#include "saltus/ode/sparse/shifted_factors_internal.hpp"
 
 namespace saltus::ode {
 
@@ -43,9 +42,6 @@ class RadauSystems {
   void solve(std::size_t pair, const ComplexVector& right, ComplexVector& solution);
 
  private:
-  template <class Scalar>
-  void shift(const Scalar& diagonal, Eigen::SparseMatrix<Scalar>& matrix) const;
-
   Eigen::Index n_;
   const JacobianPattern* pattern_ = nullptr;
   bool started_ = false;
@@ -56,12 +52,11 @@ class RadauSystems {
   Eigen::PartialPivLU<Eigen::MatrixXd> real_;
   // Sparse: entries of J in the order of the pattern.
   std::vector<double> entries_;
-  Eigen::SparseMatrix<double> sparse_real_matrix_;
-  Eigen::SparseMatrix<std::complex<double>> sparse_complex_matrix_;
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> sparse_real_;
+  Elimination elimination_;
+  ShiftedFactors<double> sparse_real_;
   struct Pair {
     Eigen::PartialPivLU<Eigen::MatrixXcd> dense;
-    Eigen::SparseLU<Eigen::SparseMatrix<std::complex<double>>> sparse;
+    ShiftedFactors<std::complex<double>> sparse;
   };
   std::vector<Pair> pairs_;
 };

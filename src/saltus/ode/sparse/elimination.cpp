@@ -1,0 +1,89 @@
+#include "saltus/ode/sparse/elimination.hpp"
+
+#include <algorithm>
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+
+namespace saltus::ode {
+namespace {
+
+using Neighbours = std::vector<std::vector<std::size_t>>;
+
+std::vector<std::size_t> order_of_least_degree(const JacobianPattern& pattern) {
+  const auto n = static_cast<int>(pattern.columns());
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (std::size_t column = 0; column < pattern.columns(); ++column) {
+    for (std::size_t k = pattern.start[column]; k < pattern.start[column + 1]; ++k) {
+      triplets.emplace_back(static_cast<int>(pattern.row[k]), static_cast<int>(column), 1.0);
+    }
+  }
+  Eigen::SparseMatrix<double> matrix(n, n);
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+  Eigen::AMDOrdering<int>()(matrix, permutation);
+  return {permutation.indices().begin(), permutation.indices().end()};
+}
+
+RowLists joined(const Neighbours& rows) {
+  RowLists lists{{0}, {}};
+  for (const auto& row : rows) {
+    lists.column.insert(lists.column.end(), row.begin(), row.end());
+    lists.start.push_back(lists.column.size());
+  }
+  return lists;
+}
+
+RowLists transposed(const RowLists& lists) {
+  Neighbours rows(lists.start.size() - 1);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t k = lists.start[i]; k < lists.start[i + 1]; ++k) rows[lists.column[k]].push_back(i);
+  }
+  return joined(rows);
+}
+
+/// What is eliminated leaves its neighbours to the first of them, its parent in the elimination tree.
+RowLists filled(Neighbours later) {
+  for (std::size_t i = 0; i < later.size(); ++i) {
+    auto& own = later[i];
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    if (!own.empty()) later[own.front()].insert(later[own.front()].end(), own.begin() + 1, own.end());
+  }
+  return joined(later);
+}
+
+}  // namespace
+
+Elimination elimination_of(const JacobianPattern& pattern) {
+  const std::size_t n = pattern.columns();
+  Elimination elimination;
+  elimination.order = order_of_least_degree(pattern);
+  std::vector<std::size_t> place(n);
+  for (std::size_t i = 0; i < n; ++i) place[elimination.order[i]] = i;
+  struct Entry {
+    std::size_t column, slot;
+  };
+  std::vector<std::vector<Entry>> rows(n);
+  Neighbours later(n);
+  for (std::size_t j = 0; j < n; ++j) {
+    for (std::size_t k = pattern.start[j]; k < pattern.start[j + 1]; ++k) {
+      const auto [first, second] = std::minmax(place[pattern.row[k]], place[j]);
+      rows[place[pattern.row[k]]].push_back({place[j], k});
+      if (first != second) later[first].push_back(second);
+    }
+  }
+  elimination.entries.start.push_back(0);
+  for (const auto& row : rows) {
+    for (const Entry& entry : row) {
+      elimination.entries.column.push_back(entry.column);
+      elimination.slot.push_back(entry.slot);
+    }
+    elimination.entries.start.push_back(elimination.slot.size());
+  }
+  elimination.upper = filled(std::move(later));
+  elimination.lower = transposed(elimination.upper);
+  return elimination;
+}
+
+}  // namespace saltus::ode

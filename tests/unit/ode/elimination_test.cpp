@@ -1,0 +1,102 @@
+#include "saltus/ode/sparse/elimination.hpp"
+
+#include <complex>
+#include <random>
+#include <vector>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+#include "saltus/ode/sparse/shifted_factors_internal.hpp"
+
+namespace saltus::ode {
+namespace {
+
+using Entries = std::vector<std::pair<std::size_t, std::size_t>>;
+
+/// In the order as written, eliminating the tip would fill all of the matrix.
+TEST(Elimination, AnArrowIsNotFilled) {
+  constexpr std::size_t n = 50;
+  Entries entries;
+  for (std::size_t i = 1; i < n; ++i) {
+    entries.emplace_back(i, 0);
+    entries.emplace_back(0, i);
+  }
+  const auto elimination = elimination_of(pattern_of(n, entries));
+  EXPECT_EQ(elimination.lower.column.size(), n - 1);
+  EXPECT_EQ(elimination.upper.column.size(), n - 1);
+}
+
+/// Six entries in each row, somewhere.
+JacobianPattern random_pattern(std::size_t n, std::mt19937& random) {
+  std::uniform_int_distribution<std::size_t> place(0, n - 1);
+  Entries entries;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (int k = 0; k < 6; ++k) entries.emplace_back(i, place(random));
+  }
+  return pattern_of(n, entries);
+}
+
+Eigen::MatrixXd dense_matrix(const JacobianPattern& pattern, const std::vector<double>& entries) {
+  const auto n = static_cast<Eigen::Index>(pattern.columns());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
+  for (std::size_t j = 0; j < pattern.columns(); ++j) {
+    for (std::size_t k = pattern.start[j]; k < pattern.start[j + 1]; ++k) {
+      matrix(static_cast<Eigen::Index>(pattern.row[k]), static_cast<Eigen::Index>(j)) = entries[k];
+    }
+  }
+  return matrix;
+}
+
+/// Largest residual of a solution relative to its size, from ShiftedFactors.
+template <class Scalar>
+double residual(const JacobianPattern& pattern, const std::vector<double>& entries, Scalar shift) {
+  using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+  using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+  const auto n = static_cast<Eigen::Index>(pattern.columns());
+  const auto elimination = elimination_of(pattern);
+  ShiftedFactors<Scalar> factors;
+  factors.use(pattern, elimination);
+  EXPECT_TRUE(factors.factorize(entries, shift));
+  const Vector right = Vector::Random(n);
+  Vector solution = Vector::Zero(n);
+  factors.solve(right, solution);
+  const Matrix matrix = shift * Matrix::Identity(n, n) - dense_matrix(pattern, entries).cast<Scalar>();
+  const double size = matrix.cwiseAbs().maxCoeff() * solution.cwiseAbs().maxCoeff();
+  return (matrix * solution - right).cwiseAbs().maxCoeff() / size;
+}
+
+TEST(ShiftedFactors, SolveRandomSparseSystems) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  for (const std::size_t n : {2U, 7U, 30U, 100U}) {
+    const auto pattern = random_pattern(n, random);
+    std::vector<double> entries(pattern.row.size());
+    for (double& entry : entries) entry = normal(random);
+    // From steps that are short to steps that are long: then the diagonal does not serve.
+    for (const double shift : {100.0, 3.0, 0.1, 1e-6}) {
+      EXPECT_LT(residual(pattern, entries, shift), 1e-12) << n << " " << shift;
+      EXPECT_LT(residual(pattern, entries, std::complex<double>(shift, 2.0 * shift)), 1e-12) << n << " " << shift;
+    }
+  }
+}
+
+/// (s, -1; -1, s): with s = 1e-9 along the diagonal nine digits would be lost.
+TEST(ShiftedFactors, SmallDiagonalsAreNotPivots) {
+  const auto pattern = pattern_of(2, {{0, 1}, {1, 0}});
+  const std::vector<double> entries{0.0, 1.0, 1.0, 0.0};
+  EXPECT_LT(residual(pattern, entries, 1e-9), 1e-15);
+  EXPECT_LT(residual(pattern, entries, std::complex<double>(1e-9, 1e-9)), 1e-15);
+}
+
+TEST(ShiftedFactors, SingularMatricesAreTold) {
+  const auto pattern = pattern_of(2, {{0, 1}, {1, 0}});
+  const auto elimination = elimination_of(pattern);
+  ShiftedFactors<double> factors;
+  factors.use(pattern, elimination);
+  EXPECT_FALSE(factors.factorize({1.0, 1.0, 1.0, 1.0}, 2.0));
+  EXPECT_TRUE(factors.factorize({1.0, 1.0, 1.0, 1.0}, 3.0));
+}
+
+}  // namespace
+}  // namespace saltus::ode
