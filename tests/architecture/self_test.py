@@ -211,6 +211,18 @@ class SelfTest(unittest.TestCase):
         inside = {"src/saltus/ode/a.hpp": "struct A {\n  int f() {\n" + "    g();\n" * 60 + "  }\n};\n"}
         self.assert_complains("function_length", inside, "a.hpp:2", "f has 62")
 
+    def test_functions_with_many_ways(self):
+        branches = "  if (a && b) f();\n" * 10
+        name = "src/saltus/switching/a.cpp"
+        self.assert_complains("ways", {name: f"void f() {{\n{branches}}}\n"}, "a.cpp:1", "f has 21")
+        fewer = branches.replace(" && b", "", 1) + "  // if\n  text(\" ? \");\n"
+        self.assertEqual(self.complaints("ways", {name: f"void f() {{\n{fewer}}}\n"}), [])
+
+    def test_writers_of_the_position(self):
+        name = "src/saltus/event_integrator/run/a.cpp"
+        self.assert_complains("position", {name: "  here_.t = t_new;\n"}, "a.cpp:1", "move_to")
+        self.assertEqual(self.complaints("position", {name: "  if (here_.t == t) here_.move_to(t, x);\n"}), [])
+
     def test_classes_that_hold_everything(self):
         members = "".join(f"  std::vector<double> member{i}_{{1.0, 2.0}};  ///< a(b)\n" for i in range(25))
         full = "class A {\n public:\n  void f(int a);\n\n private:\n" + members

@@ -77,6 +77,36 @@ def check_function_length(root, table):
     ]
 
 
+BRANCH = re.compile(r"\b(?:if|for|while|case|catch)\b| && | \|\| | \? ")
+
+
+def check_ways(root, table):
+    """(m) no function of the engines with more ways through it than a person follows (cyclomatic complexity)."""
+    limit, modules = table["sizes"]["ways"], table["sizes"]["ways_in"]
+    complaints = []
+    for path in cpp_files(root):
+        if path.relative_to(root / "src" / "saltus").parts[0] not in modules:
+            continue
+        lines = [re.sub(r'"(?:[^"\\]|\\.)*"|//.*', "", line) for line in lines_of(path)]
+        for number, name, length in functions(lines):
+            ways = 1 + len(BRANCH.findall("\n".join(f" {line} " for line in lines[number - 1 : number - 1 + length])))
+            if ways > limit:
+                complaints.append(f"{path.relative_to(root)}:{number}: {name} has {ways} ways through it; split it "
+                                  f"(limit {limit})")
+    return complaints
+
+
+def check_position(root, _table):
+    """(n) a run goes on by Position::move_to and change_mode only: nothing else gives it another time, state or mode."""
+    writes = re.compile(r"\bhere_\.(?:t|x|state) = |\bhere_\.x\.begin\(\)\)")
+    return [
+        f"{path.relative_to(root)}:{number}: the position of a run is written; use move_to() or change_mode()"
+        for path in cpp_files(root)
+        for number, line in enumerate(lines_of(path), 1)
+        if writes.search(line)
+    ]
+
+
 def classes(lines):
     """(line number, name, number of data members) of the classes and structs that have member functions."""
     for number, line in enumerate(lines):
@@ -169,6 +199,8 @@ SIZE_CHECKS = {
     "installed_headers": check_installed_headers,
     "files_in_folder": check_files_in_folder,
     "function_length": check_function_length,
+    "ways": check_ways,
+    "position": check_position,
     "data_members": check_data_members,
     "rooms": check_rooms,
 }

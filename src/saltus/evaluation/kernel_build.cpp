@@ -6,6 +6,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/base/without_repeats.hpp"
 #include "saltus/evaluation/field_split_internal.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 #include "saltus/evaluation/root_limits_internal.hpp"
@@ -40,8 +41,7 @@ std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>
     }
   }
   for (auto& list : neighbours) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
+    drop_repeats(list);
   }
   return neighbours;
 }

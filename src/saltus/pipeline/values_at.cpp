@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/without_repeats.hpp"
+
 namespace saltus::pipeline {
 namespace {
 
@@ -43,8 +45,7 @@ Expected<result::Trajectory> values_at(const model::System& system, const Simula
     }
   }
   AtTimes rows{times};
-  std::sort(rows.times.begin(), rows.times.end());
-  rows.times.erase(std::unique(rows.times.begin(), rows.times.end()), rows.times.end());
+  drop_repeats(rows.times);
   again.output = std::move(rows);
   const auto run = simulate(system, again, observers);
   if (!run) return tl::unexpected(run.error());

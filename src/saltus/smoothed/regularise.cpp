@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/without_repeats.hpp"
 
 namespace saltus::smoothed {
 namespace {
@@ -68,8 +69,7 @@ void Regulariser::find_inner(int j) {
       all.insert(all.end(), inner_[at(i)].begin(), inner_[at(i)].end());
     }
   }
-  std::sort(all.begin(), all.end());
-  all.erase(std::unique(all.begin(), all.end()), all.end());
+  drop_repeats(all);
   all_inner_.insert(all_inner_.end(), all.begin(), all.end());
 }
 
@@ -293,8 +293,7 @@ void Regulariser::finish() {
 
 Expected<Regularisation> Regulariser::run() {
   for (int j = 0; j < static_cast<int>(inner_.size()); ++j) find_inner(j);
-  std::sort(all_inner_.begin(), all_inner_.end());
-  all_inner_.erase(std::unique(all_inner_.begin(), all_inner_.end()), all_inner_.end());
+  drop_repeats(all_inner_);
   if (all_inner_.size() > most_inner) {
     return tl::unexpected(
         Error{ErrorCode::not_available,

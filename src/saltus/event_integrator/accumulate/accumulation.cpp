@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "saltus/base/without_repeats.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/ode/geometric_limit.hpp"
 
@@ -125,8 +126,7 @@ std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
   for (std::size_t k = 0; k < entries; ++k) {
     back(k).executed.append_to(result);
   }
-  std::sort(result.begin(), result.end());
-  result.erase(std::unique(result.begin(), result.end()), result.end());
+  drop_repeats(result);
   return result;
 }
 
@@ -205,8 +205,7 @@ std::optional<SeriesLimit> EventSeries::end_of_chattering(const std::vector<doub
   for (std::size_t k = 0; k < recent_.size(); ++k) {
     recent_.back(k).executed.append_to(jumps);
   }
-  std::sort(jumps.begin(), jumps.end());
-  jumps.erase(std::unique(jumps.begin(), jumps.end()), jumps.end());
+  drop_repeats(jumps);
   return SeriesLimit{t, last_state(), std::move(jumps), resolved, SeriesKind::chattering};
 }
 

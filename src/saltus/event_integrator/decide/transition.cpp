@@ -1,6 +1,7 @@
 #include "saltus/event_integrator/decide/transition.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -143,6 +144,88 @@ bool dependent_are_met(const SwitchingContext& s, const ModeState& state, const 
          ProjectedFields(s.kernel, switching_point).gradients_depend(state.alpha, surfaces);
 }
 
+using Termination = result::Termination;
+
+/// A point at which the mode is decided, and what rules have said of it so far.
+struct Question {
+  const SwitchingContext& s;
+  const ModeState& before;
+  ModeState exact;  ///< `before` with exact selections
+  const SwitchingPoint& point;
+  std::string problem = {};    ///< why surfaces that depend on each other are not decided
+  Transition by_corners = {};  ///< by the tables of corners
+
+  [[nodiscard]] bool is_outside_class() const { return by_corners.termination == Termination::outside_class; }
+  [[nodiscard]] bool has_no_mode() const { return by_corners.termination == Termination::no_admissible_mode; }
+};
+
+using Answer = std::optional<Transition>;
+
+Answer rest_where_they_meet(Question& q) { return rest_where_nested_meet(q.s, q.exact, q.point); }
+
+Answer cross_and_jump(Question& q) { return cross_with_jump(q.s, q.exact, q.point); }
+
+/// Rounding of a limit of switches decides what the fields do there one by one.
+Answer hold_at_limit(Question& q) {
+  return q.point.limit ? hold_with_higher_order(q.s, q.exact, q.point) : std::nullopt;
+}
+
+Answer decide_dependent_surfaces(Question& q) {
+  if (!dependent_are_met(q.s, q.exact, q.point)) return std::nullopt;
+  if (auto decided = decide_dependent(q.s, q.exact, q.point, q.problem)) return decided;
+  // The corners of more are not enumerated.
+  constexpr std::size_t most_enumerated = 10;
+  if (q.problem.empty() || q.point.at_zero.size() <= most_enumerated) return std::nullopt;
+  return undecided(q.s, q.exact, q.point, q.problem);
+}
+
+/// Never the answer at once: later rules look at what the tables say.
+Answer ask_corners(Question& q) {
+  q.by_corners = Decider(q.s, q.exact, q.point).run();
+  return std::nullopt;
+}
+
+/// The codimension of a kink and a surface is 2, but the kink itself does not hold the solution.
+Answer cross_a_kink(Question& q) {
+  if (!q.is_outside_class()) return std::nullopt;
+  set_references(q.s.kernel, q.before);
+  return cross_kinks(q.s, q.exact, q.point);
+}
+
+Answer hold_what_meets(Question& q) {
+  if (!q.is_outside_class() && !q.has_no_mode()) return std::nullopt;
+  return hold_with_higher_order(q.s, q.exact, q.point);
+}
+
+Answer leave_what_meets(Question& q) {
+  if (!q.is_outside_class() && !q.has_no_mode()) return std::nullopt;
+  return leave_where_nested_meet(q.s, q.exact, q.point);
+}
+
+Answer take_borderline(Question& q) {
+  return q.has_no_mode() ? borderline_mode(q.s, q.exact, q.point, q.by_corners.state) : std::nullopt;
+}
+
+/// In the order in which they are asked; the first answer counts. SingleSurface and SurfacePair come before them.
+constexpr std::array rules_in_order{rest_where_they_meet,      cross_and_jump,   hold_at_limit,
+                                    decide_dependent_surfaces, ask_corners,      cross_a_kink,
+                                    hold_what_meets,           leave_what_meets, take_borderline};
+
+/// Two active regions with the same indicator are one. Also where weights that soft minima leave open have been found
+/// for them: what keeps their difference at 0, a gradient of roundings, does not last.
+void refuse_same_indicators(const Question& q, Transition& transition) {
+  const auto same = same_indicators(q.s.kernel, q.exact, q.point);
+  if (!same) return;
+  const auto is_active = [&](int region) { return transition.state.mode[at(region)] == 0; };
+  const bool decided = transition.termination == Termination::completed;
+  if (decided && !(is_active(same->first) && is_active(same->second))) return;
+  transition.termination = Termination::outside_class;
+  transition.message = fmt::format(
+      "the regions '{}' and '{}' have the same indicator, and both are active at t = {}: nothing says which "
+      "of them the solution is in; make one region of them",
+      q.s.system.switching[at(same->first)].name, q.s.system.switching[at(same->second)].name, q.point.t);
+}
+
 }  // namespace
 
 Transition decide_mode(const SwitchingContext& switching_context, const ModeState& before,
@@ -150,52 +233,14 @@ Transition decide_mode(const SwitchingContext& switching_context, const ModeStat
   if (before.higher && !switching_point.start)
     return decide_from_higher_order(switching_context, before, switching_point);
   const ReferenceScope references(switching_context.kernel, before);
-  const ModeState exact = with_exact_selections(before);
-  if (auto rests = rest_where_nested_meet(switching_context, exact, switching_point)) return std::move(*rests);
-  if (auto crossed = cross_with_jump(switching_context, exact, switching_point)) return std::move(*crossed);
-  if (switching_point.limit) {
-    // Rounding of the limit decides what the fields do there one by one.
-    if (auto held = hold_with_higher_order(switching_context, exact, switching_point)) return std::move(*held);
+  Question question{switching_context, before, with_exact_selections(before), switching_point};
+  for (const auto rule : rules_in_order) {
+    if (auto answer = rule(question)) return std::move(*answer);
   }
-  std::string problem;
-  if (dependent_are_met(switching_context, exact, switching_point)) {
-    if (auto decided = decide_dependent(switching_context, exact, switching_point, problem)) return std::move(*decided);
-    // The corners of more are not enumerated.
-    constexpr std::size_t most_enumerated = 10;
-    if (!problem.empty() && switching_point.at_zero.size() > most_enumerated) {
-      return undecided(switching_context, exact, switching_point, problem);
-    }
-  }
-  Transition transition = Decider(switching_context, exact, switching_point).run();
-  if (transition.termination == result::Termination::outside_class) {
-    set_references(switching_context.kernel, before);
-    // The codimension of a kink and a surface is 2, but the kink itself does not hold the solution.
-    if (auto crossed = cross_kinks(switching_context, exact, switching_point)) return std::move(*crossed);
-  }
-  if (transition.termination == result::Termination::outside_class ||
-      transition.termination == result::Termination::no_admissible_mode) {
-    if (auto held = hold_with_higher_order(switching_context, exact, switching_point)) return std::move(*held);
-    if (auto left = leave_where_nested_meet(switching_context, exact, switching_point)) return std::move(*left);
-  }
-  if (transition.termination == result::Termination::no_admissible_mode) {
-    if (auto other = borderline_mode(switching_context, exact, switching_point, transition.state))
-      return std::move(*other);
-  }
-  // Also where weights that soft minima leave open have been found for them: what keeps their difference at 0, a
-  // gradient of roundings, does not last.
-  const auto same = same_indicators(switching_context.kernel, exact, switching_point);
-  const bool decided = transition.termination == result::Termination::completed;
-  if (same &&
-      (!decided || (transition.state.mode[at(same->first)] == 0 && transition.state.mode[at(same->second)] == 0))) {
-    transition.termination = result::Termination::outside_class;
-    transition.message = fmt::format(
-        "the regions '{}' and '{}' have the same indicator, and both are active at t = {}: nothing says which of them "
-        "the solution is in; make one region of them",
-        switching_context.system.switching[at(same->first)].name,
-        switching_context.system.switching[at(same->second)].name, switching_point.t);
-  }
-  if (transition.termination != result::Termination::completed && !problem.empty()) {
-    return undecided(switching_context, exact, switching_point, problem);
+  Transition transition = std::move(question.by_corners);
+  refuse_same_indicators(question, transition);
+  if (transition.termination != Termination::completed && !question.problem.empty()) {
+    return undecided(switching_context, question.exact, switching_point, question.problem);
   }
   return transition;
 }

@@ -161,6 +161,7 @@ class Decider {
   [[nodiscard]] bool standing_fields_agree(const std::vector<int>& group,
                                            const switching::GroupDecision& decision) const;
   bool passes_kink(const std::vector<int>& group, const switching::GroupDecision& decision);
+  [[nodiscard]] bool has_lost_root() const;
   std::optional<bool> decide_large(const std::vector<int>& group);
   bool decide_parts(const std::vector<std::vector<int>>& parts);
   bool decide_parts(const std::vector<int>& group, const switching::CornerTable& table);

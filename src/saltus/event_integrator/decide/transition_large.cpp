@@ -1,6 +1,8 @@
 // Many surfaces of which each depends on few others: part after part, in the order of influence.
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -61,12 +63,14 @@ class PartDecider {
            });
   }
 
-  void note(int surface, int mode, double alpha) {
-    const double before = std::clamp(before_.alpha[at(surface)], 0.0, 1.0);
-    // Selections are carried along to about 1e-8.
-    moved_[at(surface)] =
-        switching_point_.start || mode != before_.mode[at(surface)] || std::abs(alpha - before) > 1e-7;
-    set_surface(base_, surface, mode, alpha);
+  void note(std::span<const std::pair<int, SurfaceDecision>> decisions) {
+    for (const auto& [surface, decision] : decisions) {
+      const double before = std::clamp(before_.alpha[at(surface)], 0.0, 1.0);
+      // Selections are carried along to about 1e-8.
+      moved_[at(surface)] = switching_point_.start || decision.mode != before_.mode[at(surface)] ||
+                            std::abs(decision.alpha - before) > 1e-7;
+      set_surface(base_, surface, decision.mode, decision.alpha);
+    }
   }
 
   /// One surface that depends on nobody later. Behind a transient of those it depends on, only what has no choice is
@@ -183,14 +187,17 @@ std::vector<int> members(const std::vector<int>& group, const std::vector<int>& 
 
 }  // namespace
 
+bool Decider::has_lost_root() const {
+  return !switching_point_.coalesced.empty() || !switching_point_.destabilised.empty() ||
+         !switching_point_.tied.empty();
+}
+
 /// Nothing where a group is not large, or where a part of it is not decided: `undecided_part_` says which. Parts of up
 /// to four surfaces are decided by their tables as if they were alone.
 std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
   undecided_part_.clear();
   if (!is_large(group.size()) || !s_.affine_in_alpha) return std::nullopt;
-  const auto nested = nested_away_from_zero(s_.kernel, switching_point_);
-  if (!nested.empty() || !switching_point_.coalesced.empty() || !switching_point_.destabilised.empty() ||
-      !switching_point_.tied.empty()) {
+  if (has_lost_root() || !nested_away_from_zero(s_.kernel, switching_point_).empty()) {
     undecided_part_ = "their root has ended, or functions are nested around them";
     return std::nullopt;
   }
@@ -205,14 +212,15 @@ std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
     undecided_part_ = parts.problem();
     return std::nullopt;
   };
+  const auto note_from = [&](std::size_t first) { parts.note(std::span(decisions_).subspan(first)); };
   const auto decide_at_once = [&](const std::vector<int>& places) {
     const std::vector<int> surfaces = members(group, places);
     const auto root = parts.decide_several(switching::restricted_to(depends_on, places), surfaces, scale_);
-    for (std::size_t k = 0; root && k < surfaces.size(); ++k) {
-      decisions_.emplace_back(surfaces[k], decision_of(*root, k));
-      parts.note(surfaces[k], root->mode[k], root->alpha[k]);
-    }
-    return root.has_value();
+    if (!root) return false;
+    const std::size_t first = decisions_.size();
+    for (std::size_t k = 0; k < surfaces.size(); ++k) decisions_.emplace_back(surfaces[k], decision_of(*root, k));
+    note_from(first);
+    return true;
   };
   // The certificate holds for one-way influence, too, and costs no more for many surfaces than for few.
   const auto affected = affected_by(switching_point_.start ? group : switching_point_.touched, depends_on, group);
@@ -226,21 +234,19 @@ std::optional<bool> Decider::decide_large(const std::vector<int>& group) {
       const auto decision = parts.decide_one(j, behind, scale_[at(j)]);
       if (!decision) return give_up();
       decisions_.emplace_back(j, *decision);
-      parts.note(j, decision->mode, decision->alpha);
+      note_from(decisions_.size() - 1);
       continue;
     }
     if (decide_at_once(part)) continue;
     // By the tables of all corners, where these are not too many; not where that has been tried for the group anyway.
     constexpr std::size_t largest_table = 12;
     if (group.size() <= largest_table || surfaces.size() > largest_table) return give_up();
-    std::swap(base_, parts.base());
     const std::size_t first = decisions_.size();
+    std::swap(base_, parts.base());
     const bool decided = decide(surfaces);
     std::swap(base_, parts.base());
     if (!decided) return false;
-    for (std::size_t k = first; k < decisions_.size(); ++k) {
-      parts.note(decisions_[k].first, decisions_[k].second.mode, decisions_[k].second.alpha);
-    }
+    note_from(first);
   }
   return true;
 }

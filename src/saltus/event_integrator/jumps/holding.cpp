@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/without_repeats.hpp"
 #include "saltus/event_integrator/jumps/jumps.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -52,8 +53,7 @@ std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vec
       pressing_ = std::max(pressing_, std::abs(second_derivative(guard, t, alpha, x)));
     }
   }
-  std::sort(absorbing_.begin(), absorbing_.end());
-  absorbing_.erase(std::unique(absorbing_.begin(), absorbing_.end()), absorbing_.end());
+  drop_repeats(absorbing_);
   // Guards whose own jumps hold them come first: the others may be left to follow.
   std::stable_partition(guards.begin(), guards.end(),
                         [&](const HeldGuard& guard) { return can_rest(guard, t, alpha, x); });

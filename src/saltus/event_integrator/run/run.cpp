@@ -72,7 +72,7 @@ void Run::fail(Termination termination, std::string message) {
 }
 
 bool Run::enter(const Transition& transition) {
-  here_.state = transition.state;
+  here_.change_mode(transition.state);
   zeros_.forget();
   set_references(kernel_, here_.state);
   tolerances_.begin_mode(kernel_, options_.layers, here_);
@@ -84,7 +84,7 @@ bool Run::enter(const Transition& transition) {
   field_(here_.t, here_.x.data(), here_.slope.data());
   if (!is_finite(here_.slope) && !transition.beside.empty()) {
     // The field is undefined on the far side of its own surface, where rounding has put the state.
-    here_.x = transition.beside;
+    here_.move_to(here_.t, transition.beside.data());
     field_(here_.t, here_.x.data(), here_.slope.data());
   }
   if (!is_finite(here_.slope)) {
@@ -106,8 +106,7 @@ void Run::begin_spiral() {
   const SpiralStart start = *std::exchange(event_.spiral, std::nullopt);
   const double t_new = std::min(here_.t + start.duration, options_.until);
   rows_.each_until(here_.t, t_new, [&](double t) { rows_.write(t, start.x); });
-  here_.t = t_new;
-  here_.x = start.x;
+  here_.move_to(t_new, start.x.data());
   Transition beyond;
   beyond.state = here_.state;
   beyond.zero_order.assign(here_.state.mode.size(), 0);
@@ -159,7 +158,7 @@ bool Run::begin() {
     if (cells_.locate(here_.t, here_.x.data(), start.transition.state.alpha) == CellChange::none) break;
     start = decided();
   }
-  here_.state = start.transition.state;
+  here_.change_mode(start.transition.state);
   if (here_.state.mode.empty() && kernel_.switching_functions() > 0)
     here_.state.mode.assign(at(kernel_.switching_functions()), 0);
   if (start.transition.termination != Termination::completed) {
@@ -169,7 +168,7 @@ bool Run::begin() {
     return false;
   }
   choices_.choose(start.transition, progress());
-  here_.state = start.transition.state;
+  here_.change_mode(start.transition.state);
   cascade_.transition() = start.transition;
   if (!enter(start.transition) || !settle_at_start()) {
     recorder_.row(here_.t, here_.x, here_.state, here_.state.alpha);

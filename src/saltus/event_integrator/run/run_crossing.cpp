@@ -61,8 +61,7 @@ bool Run::meet(const Located& located, int surface) {
   if (!decision) return false;
   const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
   if (change.after != 0) {
-    std::copy(located.x.begin(), located.x.end(), here_.x.begin());
-    const auto* known = fast_.local.behind(surface, t, here_.x, steps_.dense(), steps_.last_error(), constants);
+    const auto* known = fast_.local.behind(surface, t, located.x, steps_.dense(), steps_.last_error(), constants);
     field_.cross(j, constants);
     field_.follow_known(known);
     // Its error is of a lower order than that of the steps.
@@ -74,7 +73,7 @@ bool Run::meet(const Located& located, int surface) {
     field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
     if (!begin_at(located)) return false;
   }
-  go_on_behind(located, change);
+  go_on_behind(located, change.after != 0 ? located.x : fast_.x, change);
   if (field_.known() != nullptr) here_.h = field_.known()->h;
   return true;
 }
@@ -106,11 +105,11 @@ bool Run::pass(const Located& located, int surface) {
     field_.enter(next);
   }
   if (!begin_at(located)) return false;
-  here_.t = located.t;
+  here_.move_to(located.t, fast_.x.data());
   rows_.arrive(OutputRows::Arrival::missing);
   recorder_.switched(here_.t, here_.x, event_.before, event_.transition);
   recorder_.row_before(here_.t, located.x, event_.before, recorder_.events() - 1);
-  here_.state = next;
+  here_.change_mode(next);
   steps_.begin_mode();
   search_.enter(here_.state, event_.transition.zero_order, here_.t, here_.x.data());
   if (across) {
@@ -148,7 +147,7 @@ bool Run::pass_across(const Located& located, int surface, const switching::Plan
                              &across};
   pass_field(surface, change.alpha_after, across.alpha_after);
   if (!begin_at(located)) return false;
-  go_on_behind(located, change);
+  go_on_behind(located, fast_.x, change);
   return true;
 }
 
@@ -161,11 +160,12 @@ void Run::pass_field(int surface, double alpha, double selection) {
   });
 }
 
-/// The state and the slope where the field in hand begins; false where that is not finite: the field is the one before.
+/// Finds the state, fast_.x, and the slope where the new field begins; false where that is not finite: the field is the
+/// one before.
 bool Run::begin_at(const Located& located) {
-  std::copy(located.x.begin(), located.x.end(), here_.x.begin());
-  field_.project(located.t, here_.x.data());
-  field_(located.t, here_.x.data(), here_.slope.data());
+  fast_.x = located.x;
+  field_.project(located.t, fast_.x.data());
+  field_(located.t, fast_.x.data(), here_.slope.data());
   if (is_finite(here_.slope)) return true;
   field_.enter(here_.state);
   return false;
@@ -208,18 +208,17 @@ bool Run::leave(const Located& located, const EventFunction& exit) {
   const auto decision = fast_.single.decide_exit(here_.state, surface, {t, x, here_.time_scale}, motions, side);
   here_.state.alpha[j] = before;
   if (!decision) return false;
-  here_.x = located.x;
   here_.state.alpha[j] = alpha;
   field_.leave_to(side);
   here_.slope.swap(fast_.slope_beyond);
-  go_on_behind(located, {surface, 0, decision->mode, alpha, decision->alpha, decision->reason});
+  go_on_behind(located, located.x, {surface, 0, decision->mode, alpha, decision->alpha, decision->reason});
   return true;
 }
 
-/// The field is that of the mode behind, and here_.x and here_.slope are there.
-void Run::go_on_behind(const Located& located, const SurfaceSwitch& change) {
+/// The field is that of the mode behind, which begins at x, and here_.slope is its slope there.
+void Run::go_on_behind(const Located& located, const std::vector<double>& x, const SurfaceSwitch& change) {
   const auto j = at(change.surface);
-  here_.t = located.t;
+  here_.move_to(located.t, x.data());
   rows_.arrive(OutputRows::Arrival::missing);
   recorder_.switched(here_.t, here_.x, change);
   recorder_.row_before_last_event(located.x, here_.state.alpha);

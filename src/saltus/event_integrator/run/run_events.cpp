@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/without_repeats.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
@@ -85,10 +86,8 @@ bool Run::jumps_while_sliding(int surface) {
   return true;
 }
 
-bool Run::change_mode(const Located& located) {
-  event_.cell_change = leave_cells(located);
-  if (event_.cell_change == CellChange::jump || change_resting_with_cells())
-    return outcome_.running && jump_with_cells();
+/// Fills the switching point with the surfaces that are at zero here, and why; false where the run has ended.
+bool Run::collect_surfaces(const Located& located) {
   SwitchingPoint& switching_point = event_.switching_point;
   switching_point.t = here_.t;
   switching_point.x = here_.x.data();
@@ -98,12 +97,10 @@ bool Run::change_mode(const Located& located) {
                          &switching_point.coalesced, &switching_point.destabilised}) {
     surfaces->clear();
   }
-  bool any = false;
-  for (std::size_t k = 0; k < located.functions.size(); ++k) {
-    const auto& function = search_.functions()[located.functions[k]];
+  for (const std::size_t place : located.functions) {
+    const auto& function = search_.functions()[place];
     const bool is_surface = function.kind != FunctionKind::user && function.kind != FunctionKind::release;
     if (!is_surface || is_cell_end(function.kind)) continue;
-    any = true;
     if (function.kind == FunctionKind::exit_below) switching_point.exit_below.push_back(function.index);
     if (function.kind == FunctionKind::exit_above) switching_point.exit_above.push_back(function.index);
     if (function.kind == FunctionKind::loss) {
@@ -116,21 +113,38 @@ bool Run::change_mode(const Located& located) {
     switching_point.at_zero.push_back(function.index);
     switching_point.touched.push_back(function.index);
   }
-  const ModeState& from = event_.freed.empty() ? event_.before : slid_on_freed(switching_point);
+  return true;
+}
+
+/// Surfaces that are touched by what happens to others here: freed by a guard, or moved into another cell. Returns the
+/// mode to decide from.
+const ModeState& Run::touch_others() {
+  const ModeState& from = event_.freed.empty() ? event_.before : slid_on_freed(event_.switching_point);
   for (const int j : here_.state.sliding) {
     // Sliding goes on with the new gradient, or ends, behind a kink of its own psi.
-    if (event_.cell_change != CellChange::none && cells_.moved_in(j)) switching_point.touched.push_back(j);
+    if (event_.cell_change != CellChange::none && cells_.moved_in(j)) event_.switching_point.touched.push_back(j);
   }
-  if (!any && switching_point.touched.empty()) {
-    if (event_.cell_change == CellChange::none) return true;
-    event_.transition = Transition{};
-    event_.transition.state = here_.state;
-    event_.transition.zero_order = zeros_at(kernel_, here_.state, here_.t, here_.x.data());
-    return enter(event_.transition);
-  }
-  std::sort(switching_point.at_zero.begin(), switching_point.at_zero.end());
-  switching_point.at_zero.erase(std::unique(switching_point.at_zero.begin(), switching_point.at_zero.end()),
-                                switching_point.at_zero.end());
+  return from;
+}
+
+/// The mode goes on in other cells.
+bool Run::keep_mode_in_cells() {
+  if (event_.cell_change == CellChange::none) return true;
+  event_.transition = Transition{};
+  event_.transition.state = here_.state;
+  event_.transition.zero_order = zeros_at(kernel_, here_.state, here_.t, here_.x.data());
+  return enter(event_.transition);
+}
+
+bool Run::change_mode(const Located& located) {
+  event_.cell_change = leave_cells(located);
+  if (event_.cell_change == CellChange::jump || change_resting_with_cells())
+    return outcome_.running && jump_with_cells();
+  if (!collect_surfaces(located)) return false;
+  SwitchingPoint& switching_point = event_.switching_point;
+  const ModeState& from = touch_others();
+  if (switching_point.touched.empty()) return keep_mode_in_cells();
+  drop_repeats(switching_point.at_zero);
   if (!kernel_.region_groups().empty()) complete_ties(kernel_, here_.state, switching_point);
   note_ties(kernel_, here_.state, switching_point);
   Transition& transition = event_.transition;
@@ -218,8 +232,7 @@ Run::Step Run::handle(const Located& located) {
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
   if (located.t > here_.t) search_.forget_user_zeros();
   const double t_begin = here_.t;
-  here_.t = located.t;
-  here_.x = located.x;
+  here_.move_to(located.t, located.x.data());
   static_cast<void>(holding_.project(here_.t, here_.state.alpha, here_.x));
   project_onto_roots(located);
   // A step may be as long as the mode.
@@ -242,18 +255,19 @@ Run::Step Run::handle(const Located& located) {
     same.zero_order.assign(here_.state.mode.size(), 0);
     static_cast<void>(enter(same));
   }
-  if (outcome_.running && !jumps_.none() && here_.state.mode != event_.before.mode)
-    cascade_.leave_guards(event_.transition.zero_order);
-  if (outcome_.running) fire_user_events(here_.x, event_.before);
-  if (outcome_.running && !jumps_.none()) {
-    // Conditions may depend on selections, too.
-    jumps_.update(jump_point());
-    if (!jumps_have_problem() && jumps_.due(here_.t)) {
-      const ModeState before = here_.state;
-      static_cast<void>(jump(before, std::vector<double>(here_.x)));
-    }
-  }
+  if (outcome_.running) follow_change_of_mode();
   return depart(arrival);
+}
+
+/// User events behind a change of mode, and jumps: their conditions may depend on selections, too.
+void Run::follow_change_of_mode() {
+  if (!jumps_.none() && here_.state.mode != event_.before.mode) cascade_.leave_guards(event_.transition.zero_order);
+  fire_user_events(here_.x, event_.before);
+  if (!outcome_.running || jumps_.none()) return;
+  jumps_.update(jump_point());
+  if (jumps_have_problem() || !jumps_.due(here_.t)) return;
+  const ModeState before = here_.state;
+  static_cast<void>(jump(before, std::vector<double>(here_.x)));
 }
 
 /// Whether a selection is another one than before that is no kink: one of time only, which makes no event.
@@ -264,8 +278,8 @@ bool Run::selections_jumped() const {
   return false;
 }
 
-Run::Step Run::depart(const Arrival& arrival) {
-  const bool event = recorder_.events() > arrival.events;
+/// Rows before and behind what has happened here.
+void Run::write_rows_behind(const Arrival& arrival, bool event) {
   if (event || !outcome_.running) {
     if (arrival.row == OutputRows::Arrival::missing) rows_at_event(arrival);
     if (event) row(here_.t, here_.x);
@@ -281,6 +295,11 @@ Run::Step Run::depart(const Arrival& arrival) {
         (t == here_.t || event_.cell_change != CellChange::none) && !event && !rows_.at_steps() && outcome_.running;
     if (wanted) row(t, here_.x);
   });
+}
+
+Run::Step Run::depart(const Arrival& arrival) {
+  const bool event = recorder_.events() > arrival.events;
+  write_rows_behind(arrival, event);
   if (event) event_.last_time = here_.t;
   if (outcome_.running && !too_many_events()) {
     if (event) {

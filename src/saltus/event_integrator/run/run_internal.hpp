@@ -100,9 +100,11 @@ class Run {
   void look_at_both(const Located& located, int slid, int reached);
   void end_switch();
   bool leave(const Located& located, const EventFunction& exit);
-  void go_on_behind(const Located& located, const SurfaceSwitch& change);
+  void go_on_behind(const Located& located, const std::vector<double>& x, const SurfaceSwitch& change);
   void begin_search(const SurfaceSwitch& change);
   Arrival arrive(OutputRows::Arrival row);
+  void follow_change_of_mode();
+  void write_rows_behind(const Arrival& arrival, bool event);
   Step depart(const Arrival& arrival);
   [[nodiscard]] bool selections_jumped() const;
   Step leave_later();
@@ -120,6 +122,9 @@ class Run {
   }
   bool jumps_while_sliding(int surface);
   bool change_mode(const Located& located);
+  bool collect_surfaces(const Located& located);
+  const ModeState& touch_others();
+  bool keep_mode_in_cells();
   const ModeState& slid_on_freed(SwitchingPoint& switching_point);
   CellChange leave_cells(const Located& located);
   Located breaks_here();
@@ -146,7 +151,7 @@ class Run {
   bool hold_unresolved();
   bool follow_dense_laps();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
-  void pass_to(double t, std::vector<double> x);
+  void pass_to(double t, const std::vector<double>& x);
   void go_on_from_limit();
   std::vector<std::size_t> fire_user_events(const std::vector<double>& x_before, const ModeState& before,
                                             const std::vector<std::size_t>& before_jumps = {});
@@ -234,6 +239,7 @@ class Run {
     LocalSteps local;
     std::vector<int> zero_order;       ///< n_psi
     std::vector<double> slope_beyond;  ///< of the region on the other side of a surface
+    std::vector<double> x;             ///< where the mode behind begins
   };
 
   evaluation::ModelKernel& kernel_;

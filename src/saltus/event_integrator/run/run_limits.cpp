@@ -138,13 +138,13 @@ void Run::follow_limit(const SeriesLimit& limit) {
 }
 
 /// Skips to the limit of a sequence that is too fine to be followed; rows on the way have the last state.
-void Run::pass_to(double t, std::vector<double> x) {
+void Run::pass_to(double t, const std::vector<double>& x) {
   rows_.each_before(here_.t, t, [&](double requested) { row(requested, here_.x); });
   const bool time_passes = t > here_.t;
-  here_.t = t;
+  here_.move_to(t, here_.x.data());
   rows_.skip_here();
   if (time_passes) row(here_.t, here_.x);
-  here_.x = std::move(x);
+  here_.move_to(t, x.data());
 }
 
 /// Events and jumps behind the limit of a sequence, and a step to start with.

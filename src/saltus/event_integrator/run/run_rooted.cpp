@@ -94,8 +94,7 @@ void Run::leave_root() {
     });
     ++taken;
     ++outcome_.result.statistics.steps;
-    here_.t = t_new;
-    here_.x = *x_new;
+    here_.move_to(t_new, x_new->data());
     rows_.write_end_of_step();
     h *= 2.0;
   }

@@ -180,7 +180,7 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   if (!here_.state.sliding.empty()) here_.state.alpha = field_.alpha();
   const ModeState before = here_.state;
   const std::vector<double> x_last = here_.x;
-  pass_to(limit.t, std::move(x));
+  pass_to(limit.t, x);
   if (!enter(transition)) return true;
   const auto why = limit.kind == SeriesKind::unresolved
                        ? "these are zero together, as far as they can be told apart"

@@ -126,8 +126,7 @@ Run::Step Run::accept(double t_new) {
   rows_until(t_new);
   const double h = t_new - here_.t;
   nested_.accepted(h);
-  std::copy(steps_.stepper().x_new(), steps_.stepper().x_new() + here_.x.size(), here_.x.begin());
-  here_.t = t_new;
+  here_.move_to(t_new, steps_.stepper().x_new());
   note_time_scale(h);
   steps_.accepted(h);
   const bool projected = field_.project(here_.t, here_.x.data());

@@ -351,6 +351,25 @@ EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::si
   return {true, Hit{i, theta, ode::derivative(coefficients, theta) / step.h, sign}};
 }
 
+/// Whether the interpolant of a curved function is good enough to tell its first sign change.
+bool EventSearch::is_resolved(const ode::DenseStep& step, double from, double to, std::size_t i,
+                              const Interpolant& interpolant) {
+  const auto& [values, coefficients, sign, size] = interpolant;
+  const auto& function = mode_.functions[i];
+  const bool is_exit = !uses_phi(function);
+  // Where the interpolant stays away from zero it need not be better than that distance; functions of time only, or
+  // with a vanishing gradient, have no other measure than their own size.
+  double margin = std::numeric_limits<double>::max();
+  for (const double b : coefficients) margin = std::min(margin, sign * b);
+  const double wanted = std::max({levels_.accuracy[i], 0.125 * margin, 0.1 * tolerances_.rtol * size});
+  const double tail = chebyshev_tail(values);
+  if (tail > wanted) {
+    const bool known_zero = from == 0.0 && (function.zero_order > 0 || function.offset != 0.0);
+    return is_exit && !known_zero && passes_once(coefficients, sign, tail, size);
+  }
+  return is_exit || !misses(step, from, to, i, coefficients, wanted);
+}
+
 /// The first sign change of one function between two nodes' ends, from the samples or, along the whole step, its form.
 EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, double to, std::size_t i) {
   if (step.is_series() && mode_.forms.has(i)) return find_in_series(step, from, to, i);
@@ -366,20 +385,7 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
   if (sign == 0) return {};
   double size = 0.0;
   for (const double b : coefficients) size = std::max(size, std::abs(b));
-  if (!mode_.forms.has(i)) {
-    const bool is_exit = !uses_phi(function);
-    // Where the interpolant stays away from zero it need not be better than that distance; functions of time only, or
-    // with a vanishing gradient, have no other measure than their own size.
-    double margin = std::numeric_limits<double>::max();
-    for (const double b : coefficients) margin = std::min(margin, sign * b);
-    const double wanted = std::max({levels_.accuracy[i], 0.125 * margin, 0.1 * tolerances_.rtol * size});
-    const double tail = chebyshev_tail(values);
-    const bool known_zero = from == 0.0 && (function.zero_order > 0 || function.offset != 0.0);
-    const bool passes = tail > wanted && is_exit && !known_zero && passes_once(coefficients, sign, tail, size);
-    if (!passes && (tail > wanted || (!is_exit && misses(step, from, to, i, coefficients, wanted)))) {
-      return {false, {}};
-    }
-  }
+  if (!mode_.forms.has(i) && !is_resolved(step, from, to, i, {values, coefficients, sign, size})) return {false, {}};
   double noise = std::max(levels_.noise[i], 8.0 * rounding_unit * size);
   if (mode_.forms.has(i)) noise = std::max(noise, 8.0 * rounding_unit * mode_.forms.terms(i, range_.bounds));
   const auto change = ode::first_sign_change(coefficients, sign, from == 0.0 ? function.zero_order : 0, noise);

@@ -132,6 +132,14 @@ class EventSearch {
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
   [[nodiscard]] Finding find_along(const ode::DenseStep& step, std::size_t i) const;
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
+  /// Of one function over an interval, known to be of `sign` at its start.
+  struct Interpolant {
+    const std::array<double, ode::event_nodes>& values;
+    const ode::BernsteinCoefficients& coefficients;
+    int sign;
+    double size;  ///< of the largest coefficient
+  };
+  bool is_resolved(const ode::DenseStep& step, double from, double to, std::size_t i, const Interpolant& interpolant);
   static Finding not_finite(const EventFunction& function, double at_start);
   [[nodiscard]] Finding find_in_series(const ode::DenseStep& step, double from, double to, std::size_t i) const;
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,

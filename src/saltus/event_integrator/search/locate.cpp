@@ -20,6 +20,31 @@ constexpr double one_stage_suffices = 1e-8;
 /// zero leaves about 1e-15 of it.
 constexpr double flat_zero = 1e-9;
 
+/// Lengths of steps: one that ends before the event, one that ends behind it.
+struct Bracket {
+  double before, beyond;
+  [[nodiscard]] double middle() const { return 0.5 * (before + beyond); }
+  [[nodiscard]] double width() const { return beyond - before; }
+  [[nodiscard]] bool holds(double h) const { return h > before && h < beyond; }
+};
+
+/// The slope of Newton's method. That of the interpolant is good to many digits; only where it fails, near a double
+/// zero, is a secant better.
+class NewtonSlope {
+ public:
+  explicit NewtonSlope(double slope) : slope_(slope) {}
+  [[nodiscard]] double value() const { return slope_; }
+  void pass(double h, double value, bool flat, bool has_previous) {
+    const bool fails = flat || std::abs(value) > 0.1 * std::abs(value_);
+    if (has_previous && fails && h != h_ && value != value_) slope_ = (value - value_) / (h - h_);
+    h_ = h;
+    value_ = value;
+  }
+
+ private:
+  double slope_, h_ = 0.0, value_ = 0.0;
+};
+
 }  // namespace
 
 Locator::Locator(ode::Method method, int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
@@ -126,53 +151,48 @@ void Locator::set_hit(const Hit& hit) {
   if (function.has_left(beside_[place_])) left_ = function.offset;
 }
 
+/// Whether the trial ends at the event, or has been moved there. What is left within the rounding of the function
+/// counts where it is the last digits of t.
+bool Locator::has_arrived(double value, double slope) {
+  const double t = start_.t + trial_.h;
+  const double left = value / slope;
+  const bool is_there = vanishes(value) && (flat_ || t - left == t || !(std::abs(left) <= time_resolution()));
+  return is_there || trial_.h == 0.0 || (!flat_ && finish(slope));
+}
+
 /// Newton for the function of `hit`; the last trial is the result.
 bool Locator::correct(const Hit& hit) {
   set_hit(hit);
   touches_ = false;
-  double before = 0.0;        // longest step seen that ends before the event
-  double beyond = dense_->h;  // shortest one that ends behind it
-  double slope = hit.slope;
-  flat_ = !(search_.noise(hit.function) <= flat_zero * std::abs(slope) * dense_->h);
+  flat_ = !(search_.noise(hit.function) <= flat_zero * std::abs(hit.slope) * dense_->h);
+  Bracket bracket{0.0, dense_->h};
+  NewtonSlope slope{hit.slope};
   double h = hit.theta * dense_->h;
-  double previous_h = 0.0;
-  double previous_value = 0.0;
   for (int iteration = 0; iteration < 60; ++iteration) {
     if (!take(h)) {
       // Undefined: beyond the region where the field exists.
-      beyond = h;
-      h = 0.5 * (before + beyond);
-      if (beyond - before <= time_resolution()) return take(before);
+      bracket.beyond = h;
+      h = bracket.middle();
+      if (bracket.width() <= time_resolution()) return take(bracket.before);
       continue;
     }
     const double value = trial_.values[place_];
     sharpen();
-    // What is left within the rounding of the function counts where it is the last digits of t.
-    const double t = start_.t + trial_.h;
-    const double left = value / slope;
-    const bool is_there = vanishes(value) && (flat_ || t - left == t || !(std::abs(left) <= time_resolution()));
-    if (is_there || trial_.h == 0.0 || (!flat_ && finish(slope))) return true;
-    (value * hit.sign > 0.0 ? before : beyond) = h;
-    // The interpolant's slope is good to many digits; only where it fails (near a double zero) is a secant better.
-    if (iteration > 0 && (flat_ || std::abs(value) > 0.1 * std::abs(previous_value)) && h != previous_h &&
-        value != previous_value) {
-      slope = (value - previous_value) / (h - previous_h);
-    }
-    previous_h = h;
-    previous_value = value;
-    double next = h - value / slope;
-    if (!(next > before && next < beyond)) {
-      // The correction left the bracket: within rounding of its end that is convergence, otherwise bisect.
-      if (!flat_ && std::abs(value / slope) <= time_resolution()) return true;
-      next = 0.5 * (before + beyond);
-    }
-    if (iteration >= newton_steps) next = 0.5 * (before + beyond);
+    if (has_arrived(value, slope.value())) return true;
+    (value * hit.sign > 0.0 ? bracket.before : bracket.beyond) = h;
+    slope.pass(h, value, flat_, iteration > 0);
+    const double left = value / slope.value();
+    double next = h - left;
+    const bool inside = bracket.holds(next);
+    // A correction that leaves the bracket within rounding of its end has converged.
+    if (!inside && !flat_ && std::abs(left) <= time_resolution()) return true;
+    if (!inside || iteration >= newton_steps) next = bracket.middle();
     if (!flat_ && std::abs(next - h) <= time_resolution()) return true;
-    if (beyond - before <= time_resolution()) {
+    if (bracket.width() <= time_resolution()) {
       // A function that touches zero: its interpolant has passed it by less than the tolerances, and it is far from
       // zero where the bracket ends with the step.
       constexpr double far = 1e3;
-      touches_ = beyond == dense_->h && value * hit.sign > far * search_.accuracy(hit.function);
+      touches_ = bracket.beyond == dense_->h && value * hit.sign > far * search_.accuracy(hit.function);
       return true;
     }
     h = next;

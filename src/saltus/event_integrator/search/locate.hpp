@@ -59,6 +59,7 @@ class Locator {
   bool finish(double slope);
   bool move(double dt);
   void set_hit(const Hit& hit);
+  bool has_arrived(double value, double slope);
   [[nodiscard]] bool is_finite_at(const Trial& trial) const { return std::isfinite(trial.values[place_]); }
   double look_back();
   void look_ahead();

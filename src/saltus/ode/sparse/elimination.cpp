@@ -5,6 +5,8 @@
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 
+#include "saltus/base/without_repeats.hpp"
+
 namespace saltus::ode {
 namespace {
 
@@ -46,8 +48,7 @@ RowLists transposed(const RowLists& lists) {
 RowLists filled(Neighbours later) {
   for (std::size_t i = 0; i < later.size(); ++i) {
     auto& own = later[i];
-    std::sort(own.begin(), own.end());
-    own.erase(std::unique(own.begin(), own.end()), own.end());
+    drop_repeats(own);
     if (!own.empty()) later[own.front()].insert(later[own.front()].end(), own.begin() + 1, own.end());
   }
   return joined(later);

@@ -63,14 +63,20 @@ class HiddenTrajectory::SeriesStep {
   const double* slope_new_;
 };
 
-HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
-  const auto f = [this](double /*t*/, const double* u, double* v) { face_.velocity(u, v); };
-  double fastest = 0.0;
+/// The smallest speed of a component that moves, and the largest.
+std::pair<double, double> HiddenTrajectory::speeds() const {
   double slowest = infinite;
+  double fastest = 0.0;
   for (int j = 0; j < m_; ++j) {
     fastest = std::max(fastest, face_.speed(j));
     if (face_.speed(j) > 0.0) slowest = std::min(slowest, face_.speed(j));
   }
+  return {slowest, fastest};
+}
+
+HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
+  const auto f = [this](double /*t*/, const double* u, double* v) { face_.velocity(u, v); };
+  const auto [slowest, fastest] = speeds();
   if (!(fastest > 0.0)) return settle("no velocity depends on the selections", v_.data());
   looks_ = {0, shortest_pause};
   int steps = 0;
@@ -165,27 +171,30 @@ double HiddenTrajectory::tolerance_here() const {
   return std::clamp(distance * options_.tolerance_away, options_.tolerance, options_.tolerance_away);
 }
 
+/// Whether a component may reach a boundary of its zone within the step whose bounds are low_ and high_.
+bool HiddenTrajectory::may_cross(int j) const {
+  const int z = zone_[at(j)];
+  return z == 0 ? low_[at(j)] < 0.0 || high_[at(j)] > 1.0 : z < 0 ? high_[at(j)] > 0.0 : low_[at(j)] < 1.0;
+}
+
+/// Whether a component has a maximum within a step. Of two that cycle within the square either one has them.
+bool HiddenTrajectory::has_maximum(int j, const double* slope_new) const {
+  const bool is_asked = j == 0 || m_ != 2 || face_.free().size() != 2;
+  return is_asked && zone_[at(j)] == 0 && v_[at(j)] > 0.0 && slope_new[j] < 0.0 &&
+         v_[at(j)] - slope_new[j] > 1e-7 * face_.speed(j);  // else it has come to rest
+}
+
 /// The first boundary or maximum within an accepted step, with point_ there.
 template <class Step>
 HiddenTrajectory::StepEvent HiddenTrajectory::first_event(Step& step) {
   StepEvent event;
   step.bounds(low_.data(), high_.data());
-  const auto may_cross = [&](int j) {
-    const int z = zone_[at(j)];
-    return z == 0 ? low_[at(j)] < 0.0 || high_[at(j)] > 1.0 : z < 0 ? high_[at(j)] > 0.0 : low_[at(j)] < 1.0;
-  };
   const double* slope_new = step.slope_new();
-  // Of two components that cycle within the square either one has maxima.
-  const int only = m_ == 2 && face_.free().size() == 2 ? 0 : -1;
-  const auto has_maximum = [&](int j) {
-    return (only < 0 || j == only) && zone_[at(j)] == 0 && v_[at(j)] > 0.0 && slope_new[j] < 0.0 &&
-           v_[at(j)] - slope_new[j] > 1e-7 * face_.speed(j);  // else it has come to rest
-  };
   bool any = false;
   bool any_may_cross = false;
   for (int j = 0; j < m_; ++j) {
     any_may_cross = any_may_cross || may_cross(j);
-    any = any || has_maximum(j);
+    any = any || has_maximum(j, slope_new);
   }
   if (!any && !any_may_cross) return event;
   step.make_dense();
@@ -196,7 +205,7 @@ HiddenTrajectory::StepEvent HiddenTrajectory::first_event(Step& step) {
     if (may_cross(j)) look_for_boundary(j, event);
   }
   for (int j = 0; j < m_; ++j) {
-    if (has_maximum(j)) look_for_maximum(j, step, event);
+    if (has_maximum(j, slope_new)) look_for_maximum(j, step, event);
   }
   if (event.kind == StepEvent::Kind::none) return event;
   step.evaluate(event.theta, point_.data());

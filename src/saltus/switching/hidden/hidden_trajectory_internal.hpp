@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saltus/ode/stepper.hpp"
@@ -61,9 +62,12 @@ class HiddenTrajectory {
   void enter_zones();
   Status cross_corner();
   Status cross_strip();
+  [[nodiscard]] std::pair<double, double> speeds() const;
   Status cross_interior();
   std::optional<Status> cross_pair(double fastest, int& steps);
   [[nodiscard]] double tolerance_here() const;
+  [[nodiscard]] bool may_cross(int j) const;
+  [[nodiscard]] bool has_maximum(int j, const double* slope_new) const;
   template <class Step>
   StepEvent first_event(Step& step);
   void look_for_boundary(int j, StepEvent& event);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -39,6 +41,28 @@ bool normal_to(const MatrixXd& effects, const std::vector<Index>& columns, Vecto
   return true;
 }
 
+/// Both facets with a normal, whose first sign is positive; nullopt where all columns are normal to it.
+/// @param scaled  rows of B in units of their sizes
+std::optional<SelectionRange::Facets> facets_along(const MatrixXd& scaled, const VectorXd& sizes,
+                                                   const VectorXd& normal) {
+  SelectionRange::Facets facets;
+  double sum = 0.0;
+  for (Index i = 0; i < scaled.cols(); ++i) {
+    const double part = normal.dot(scaled.col(i));
+    const bool on = std::abs(part) <= no_part * scaled.col(i).norm();
+    facets.sign.push_back(static_cast<std::int8_t>(on ? 0 : part > 0.0 ? 1 : -1));
+    if (!on) sum += std::abs(part);
+  }
+  if (sum == 0.0) return std::nullopt;
+  const auto first = std::find_if(facets.sign.begin(), facets.sign.end(), [](std::int8_t s) { return s != 0; });
+  const double turn = *first < 0 ? -1.0 : 1.0;
+  if (turn < 0.0) {
+    for (auto& s : facets.sign) s = static_cast<std::int8_t>(-s);
+  }
+  facets.normal = turn / sum * sizes.cwiseInverse().cwiseProduct(normal);
+  return facets;
+}
+
 double clip(double value) { return std::clamp(value, 0.0, 1.0); }
 
 /// Antiderivative of clip(1/2 + s), 0 at s = 0.
@@ -72,26 +96,12 @@ bool SelectionRange::set(const MatrixXd& effects) {
   VectorXd normal;
   for (const auto& chosen : *hyperplanes) {
     if (!normal_to(scaled, chosen, normal)) continue;
-    Facets facets;
-    double sum = 0.0;
-    for (Index i = 0; i < q; ++i) {
-      const double part = normal.dot(scaled.col(i));
-      const bool on = std::abs(part) <= no_part * scaled.col(i).norm();
-      facets.sign.push_back(static_cast<std::int8_t>(on ? 0 : part > 0.0 ? 1 : -1));
-      if (!on) sum += std::abs(part);
-    }
-    if (sum == 0.0) continue;
-    const auto first = std::find_if(facets.sign.begin(), facets.sign.end(), [](std::int8_t s) { return s != 0; });
-    const double turn = *first < 0 ? -1.0 : 1.0;
-    if (turn < 0.0) {
-      for (auto& s : facets.sign) s = static_cast<std::int8_t>(-s);
-    }
+    auto facets = facets_along(scaled, sizes, normal);
+    if (!facets) continue;
     // Hyperplanes that differ by less than the rounding of their columns.
     const bool known =
-        std::any_of(facets_.begin(), facets_.end(), [&](const Facets& other) { return other.sign == facets.sign; });
-    if (known) continue;
-    facets.normal = turn / sum * sizes.cwiseInverse().cwiseProduct(normal);
-    facets_.push_back(std::move(facets));
+        std::any_of(facets_.begin(), facets_.end(), [&](const Facets& other) { return other.sign == facets->sign; });
+    if (!known) facets_.push_back(std::move(*facets));
   }
   return !facets_.empty();
 }

@@ -54,31 +54,37 @@ std::vector<int> other_modes(const SurfaceSituation& s, FunctionRef<double(doubl
   return others;
 }
 
+/// What follows sliding whose selection was lost at `lost_at`; nullopt where the sides say it.
+std::optional<SurfaceDecision> behind_sliding(const SurfaceSituation& s, FunctionRef<double(double)> g,
+                                              double lost_at) {
+  if (lost_at > 0.0 && lost_at < 1.0) {
+    const double beside = 1e-3;  // past the double zero, whose own sign is rounding
+    const Drift direction = g(lost_at + beside) + g(lost_at - beside) > 0.0 ? Drift::up : Drift::down;
+    return follow(g, lost_at + (direction == Drift::up ? beside : -beside), direction);
+  }
+  if (lost_at <= 0.0 && s.below.drift == Drift::down)
+    return SurfaceDecision{Verdict::decided, -1, 0.0, {}, "the field below leaves the surface"};
+  if (lost_at >= 1.0 && s.above.drift == Drift::up)
+    return SurfaceDecision{Verdict::decided, +1, 1.0, {}, "the field above leaves the surface"};
+  return std::nullopt;
+}
+
+/// What follows by where the fields of the sides go.
+SurfaceDecision by_sides(const SurfaceSituation& s, FunctionRef<double(double)> g) {
+  const bool leaves_below = s.below.drift == Drift::down;
+  const bool leaves_above = s.above.drift == Drift::up;
+  if (s.arrival == Arrival::from_below && !leaves_below) return follow(g, 0.0, Drift::up);
+  if (s.arrival == Arrival::from_above && !leaves_above) return follow(g, 1.0, Drift::down);
+  if (leaves_above && leaves_below) return {Verdict::decided, +1, 1.0, {}, "both fields point away: psi > 0 chosen"};
+  return leaves_below ? follow(g, 1.0, Drift::down) : follow(g, 0.0, Drift::up);
+}
+
 }  // namespace
 
 SurfaceDecision decide_selection(const SurfaceSituation& s, FunctionRef<double(double)> g, double lost_at) {
-  SurfaceDecision decision;
-  const bool leaves_below = s.below.drift == Drift::down;
-  const bool leaves_above = s.above.drift == Drift::up;
   if (s.below.drift == Drift::stays || s.above.drift == Drift::stays) return decide_surface(s);
-  if (s.arrival == Arrival::from_below && !leaves_below) {
-    decision = follow(g, 0.0, Drift::up);
-  } else if (s.arrival == Arrival::from_above && !leaves_above) {
-    decision = follow(g, 1.0, Drift::down);
-  } else if (s.arrival == Arrival::along && lost_at > 0.0 && lost_at < 1.0) {
-    const double beside = 1e-3;  // past the double zero, whose own sign is rounding
-    const Drift direction = g(lost_at + beside) + g(lost_at - beside) > 0.0 ? Drift::up : Drift::down;
-    decision = follow(g, lost_at + (direction == Drift::up ? beside : -beside), direction);
-  } else if (s.arrival == Arrival::along && lost_at <= 0.0 && leaves_below) {
-    decision = {Verdict::decided, -1, 0.0, {}, "the field below leaves the surface"};
-  } else if (s.arrival == Arrival::along && lost_at >= 1.0 && leaves_above) {
-    decision = {Verdict::decided, +1, 1.0, {}, "the field above leaves the surface"};
-  } else if (leaves_above) {
-    decision = leaves_below ? SurfaceDecision{Verdict::decided, +1, 1.0, {}, "both fields point away: psi > 0 chosen"}
-                            : follow(g, 0.0, Drift::up);
-  } else {
-    decision = leaves_below ? follow(g, 1.0, Drift::down) : follow(g, 0.0, Drift::up);
-  }
+  const auto behind = s.arrival == Arrival::along ? behind_sliding(s, g, lost_at) : std::nullopt;
+  SurfaceDecision decision = behind ? *behind : by_sides(s, g);
   decision.other_modes = other_modes(s, g, decision);
   return decision;
 }

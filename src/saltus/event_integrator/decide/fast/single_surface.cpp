@@ -103,38 +103,49 @@ bool SingleSurface::moves_no_more_than_rounding(const switching::SurfaceSituatio
   return fastest * switching_point.time_scale <= 8.0 * rounding_unit * terms;
 }
 
-bool SingleSurface::decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
-                           const std::vector<double>* slope) {
-  if (!applies(before, switching_point)) return false;
+/// Normal components of both fields at the touched surface. Outside of surfaces the side that the solution comes from
+/// is that of its own field.
+void SingleSurface::find_velocities(const ModeState& before, const SwitchingPoint& switching_point,
+                                    const std::vector<double>* slope, switching::SurfaceSituation& situation) {
   const int j = switching_point.touched.front();
   alpha_ = before.alpha;
   for (const int i : between_) {
     if (before.mode[at(i)] != 0) alpha_[at(i)] = before.mode[at(i)] > 0 ? 1.0 : 0.0;
   }
-  switching::SurfaceSituation situation;
-  auto& [below, above, arrival] = situation;
-  // Outside of surfaces the side that the solution comes from is that of its own field.
   const int known = slope != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
-  below.velocity =
-      known < 0 ? velocity(switching_point.t, switching_point.x, j, alpha_, *slope) : velocity(switching_point, j, 0.0);
-  above.velocity =
-      known > 0 ? velocity(switching_point.t, switching_point.x, j, alpha_, *slope) : velocity(switching_point, j, 1.0);
+  const auto velocity_of = [&](int side, double selection) {
+    return known == side ? velocity(switching_point.t, switching_point.x, j, alpha_, *slope)
+                         : velocity(switching_point, j, selection);
+  };
+  situation.below.velocity = velocity_of(-1, 0.0);
+  situation.above.velocity = velocity_of(+1, 1.0);
+}
+
+/// Where the field goes that ends the sliding. The point is located to rounding on its tangency, so that a later
+/// derivative says it.
+void SingleSurface::find_tangent_drift(const SwitchingPoint& switching_point, int exit,
+                                       switching::SurfaceSituation& situation) {
+  const int j = switching_point.touched.front();
+  alpha_[at(j)] = exit > 0 ? 1.0 : 0.0;
+  auto& tangent = exit > 0 ? situation.above : situation.below;
+  const auto& other = exit > 0 ? situation.below : situation.above;
+  tangent =
+      ProjectedFields(switching_context_.kernel, switching_point).motion(alpha_, j, 0.0, std::abs(other.velocity)).side;
+}
+
+bool SingleSurface::decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
+                           const std::vector<double>* slope) {
+  if (!applies(before, switching_point)) return false;
+  const int j = switching_point.touched.front();
+  const bool slides = before.mode[at(j)] == 0;
+  if (slides && switching_context_.kernel.has_root(j)) return false;  // explicit steps do not leave it
+  switching::SurfaceSituation situation;
+  find_velocities(before, switching_point, slope, situation);
   if (!find_drifts(situation) || moves_no_more_than_rounding(situation, switching_point)) return false;
-  arrival = arrival_from(before.mode[at(j)]);
-  int exit = 0;  // to the side whose field ends the sliding
-  if (before.mode[at(j)] == 0) {
-    if (switching_context_.kernel.has_root(j)) return false;  // explicit steps do not leave it
-    arrival = switching::Arrival::along;
-    exit = switching_point.exit_above.empty() ? -1 : 1;
-    // Located to rounding on this field's tangency: a later derivative says where it goes.
-    alpha_[at(j)] = exit > 0 ? 1.0 : 0.0;
-    auto& tangent = exit > 0 ? above : below;
-    const auto& other = exit > 0 ? below : above;
-    tangent = ProjectedFields(switching_context_.kernel, switching_point)
-                  .motion(alpha_, j, 0.0, std::abs(other.velocity))
-                  .side;
-  }
-  if (below.drift == Drift::stays || above.drift == Drift::stays) return false;
+  situation.arrival = slides ? switching::Arrival::along : arrival_from(before.mode[at(j)]);
+  const int exit = !slides ? 0 : switching_point.exit_above.empty() ? -1 : 1;  // to the side that ends the sliding
+  if (slides) find_tangent_drift(switching_point, exit, situation);
+  if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return false;
   const auto decision = switching::decide_surface(situation);
   if (!is_plain(decision, before.mode[at(j)]) || (exit != 0 && decision.mode != exit)) return false;
   // Nothing slides on a kink: velocities that say so are rounding.

@@ -63,6 +63,9 @@ class SingleSurface {
   [[nodiscard]] bool moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
                                                  const SwitchingPoint& switching_point) const;
   [[nodiscard]] bool applies(const ModeState& before, const SwitchingPoint& switching_point) const;
+  void find_velocities(const ModeState& before, const SwitchingPoint& switching_point, const std::vector<double>* slope,
+                       switching::SurfaceSituation& situation);
+  void find_tangent_drift(const SwitchingPoint& switching_point, int exit, switching::SurfaceSituation& situation);
   [[nodiscard]] double along_row(const std::vector<double>& f, double rate) const;
   double velocity(const SwitchingPoint& switching_point, int surface, double selection);
   double velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
