@@ -13,7 +13,7 @@ struct Choice {
   long decision = 0;  ///< its number; with `leave_at` or `phase` that of a family
   std::size_t alternative = 0;
   std::optional<double> leave_at{};  ///< a time of a family of later departures
-  std::optional<double> phase{};     ///< of a family of spirals: part of a lap, in logarithms of the size, 0 to 1
+  std::optional<double> phase{};     ///< of a family of spirals: part of a cycle, in logarithms of the size, 0 to 1
 
   [[nodiscard]] bool of_family() const { return leave_at || phase; }
   [[nodiscard]] double departure() const { return leave_at.value_or(std::numeric_limits<double>::infinity()); }

@@ -1,4 +1,4 @@
-// The short way behind ordinary switches and the general one give the same recording, bit for bit.
+// The fast path behind ordinary switches and the full decision give the same recording, bit for bit.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -68,7 +68,7 @@ void expect_same(const Recording& a, const Recording& b) {
   }
 }
 
-/// Returns how many evaluations of the field the short way saves.
+/// Returns how many evaluations of the field the fast path saves.
 long compare(const model::System& system, IntegrationOptions options) {
   const auto quick = run(system, options, Run::Way::short_where_ordinary);
   const auto full = run(system, options, Run::Way::general);
@@ -93,7 +93,7 @@ IntegrationOptions options_of(ode::Method method, double until, OutputTimes::Row
   return options;
 }
 
-/// The short way is taken, which takes fewer evaluations.
+/// The fast path is taken, which takes fewer evaluations.
 void expect_agreement(const model::System& system, double until) {
   for (const auto method : all_methods) {
     for (const auto rows : {OutputTimes::Rows::at_steps, OutputTimes::Rows::at_times}) {
@@ -155,7 +155,7 @@ TEST(ShortWay, CrossesWhileSlidingWhereTheMatrixChangesAsTheGeneralOne) {
   }
 }
 
-/// Switches that tighten towards an equilibrium: laps, tolerances that follow them, and the limit.
+/// Switches that tighten towards an equilibrium: cycles, tolerances that follow them, and the limit.
 TEST(ShortWay, FollowsAccumulationsAsTheGeneralOne) {
   auto system = testing::blank(2, 2);
   testing::add_surface(system, "x", system.x(0));

@@ -28,8 +28,8 @@ class SwitchSeries {
   /// Whether the switches before t have followed each other ever faster, down to a scale on which no model lives: a run
   /// that cannot go on there has come to their limit.
   [[nodiscard]] bool shrinks(double t) const;
-  /// Whether the last switches have followed each other faster than those before, over laps of one to four; or a little
-  /// faster, until laps of four were half as long as when that began.
+  /// Whether the last switches have followed each other faster than those before, over cycles of one to four; or a
+  /// little faster, until cycles of four were half as long as when that began.
   [[nodiscard]] bool tightens() const;
 
  private:
@@ -46,12 +46,12 @@ class SwitchSeries {
     int before = 0;
   };
   std::optional<SurfaceChange> surface_change_;
-  /// Two laps of up to four switches, and one to start from.
+  /// Two cycles of up to four switches, and one to start from.
   static constexpr std::size_t remembered = 9;
   std::array<double, remembered> times_{};  ///< of the last switches, the last one first
   std::size_t switches_ = 0;
-  double first_lap_ = 0.0;  ///< of four switches, before laps began to shrink from switch to switch; 0 if they do not
-  long in_a_row_ = 0;       ///< without the time having advanced noticeably
+  double first_cycle_ = 0.0;  ///< of four switches, before cycles began to shrink; 0 if they do not
+  long in_a_row_ = 0;         ///< without the time having advanced noticeably
   double start_ = 0.0;
 };
 

@@ -41,12 +41,12 @@ struct GivenMode {
   double alpha = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Where a solution that spirals out of an intersection of two surfaces has completed its first lap.
+/// Where a solution that spirals out of an intersection of two surfaces has completed its first cycle.
 struct SpiralStart {
   double duration = 0.0;
   std::vector<double> x;
   int surface = 0;  ///< on which x is
-  double lap_ratio = 0.0;
+  double cycle_ratio = 0.0;
 };
 
 /// Two surfaces that influence each other, at zero together.

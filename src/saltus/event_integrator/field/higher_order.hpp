@@ -96,7 +96,7 @@ class HigherOrderField {
   HeldFunctions functions_;
   std::vector<BalanceRange> ranges_;
   std::vector<double> alpha_, trial_, motion_, x_, base_, f_;
-  std::vector<std::vector<double>> corners_;  ///< f of the balance at hand
+  std::vector<std::vector<double>> corners_;  ///< f of the current balance
   std::vector<double> velocities_;
   std::vector<Coupled> coupled_;  ///< by balance
   /// What a balance of a function around a root moves, from the corner where it falls most to that where it rises most.

@@ -25,7 +25,7 @@ struct SlidingGroups {
   std::vector<std::optional<switching::RootKind>> kind;
   std::vector<std::optional<switching::SelectionNewton>> newton;  ///< by row, for the first of a larger group
   std::optional<LargeGroup> large;
-  std::vector<double> selections;  ///< of the group at hand
+  std::vector<double> selections;  ///< of the current group
   std::vector<double> speed;       ///< by row: in groups of more than two
   std::vector<double> scaled;      ///< G of such a group, rows over their speeds
   std::vector<double> condition;   ///< by row: of a coupled selection

@@ -101,7 +101,7 @@ bool Run::enter(const Transition& transition) {
   return true;
 }
 
-/// Over the first lap of a spiral that leaves an intersection, which is too small to be seen.
+/// Over the first cycle of a spiral that leaves an intersection, which is too small to be seen.
 void Run::begin_spiral() {
   const SpiralStart start = *std::exchange(event_.spiral, std::nullopt);
   const double t_new = std::min(here_.t + start.duration, options_.until);

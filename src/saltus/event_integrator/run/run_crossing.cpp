@@ -1,7 +1,7 @@
 // The ordinary switch: one surface is reached from beside it, in a region or while the solution slides on another one,
 // or left where one of its fields is tangent, and nothing else happens there. What other switches need is left out:
-// most copies of modes, switching points and transitions. The answers are those of the general way, bit for bit; where
-// one is not clear that way is taken.
+// most copies of modes, switching points and transitions. The answers are those of the full decision, bit for bit;
+// where one is not clear that way is taken.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -161,7 +161,7 @@ void Run::pass_field(int surface, double alpha, double selection) {
   });
 }
 
-/// The state and the slope where the field in hand begins; false where that is not finite: the field is the one before.
+/// The state and the slope where the current field begins; false where that is not finite: the field is the one before.
 bool Run::begin_at(const Located& located) {
   std::copy(located.x.begin(), located.x.end(), here_.x.begin());
   field_.project(located.t, here_.x.data());

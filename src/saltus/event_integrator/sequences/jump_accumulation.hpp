@@ -21,7 +21,7 @@ class JumpAccumulation {
   void end(const SeriesLimit& limit);
   void clear() { series_.clear(); }
   /// How long the last cycle of a contracting sequence was.
-  [[nodiscard]] std::optional<double> last_cycle() const { return series_.last_lap(); }
+  [[nodiscard]] std::optional<double> last_cycle() const { return series_.last_cycle(); }
   /// The guard that was at zero when a jump was executed last; nullopt if there was none.
   [[nodiscard]] std::optional<HeldGuard> last_guard(int jump) const { return last_guard_[at(jump)]; }
   /// Its |dg/dt| then.

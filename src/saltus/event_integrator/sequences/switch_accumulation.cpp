@@ -81,7 +81,7 @@ void SwitchAccumulation::limit_tolerances(Roots roots) {
     }
     return;
   }
-  const auto cycle = cycles_.closed_lap();
+  const auto cycle = cycles_.closed_cycle();
   if (!cycle) return;
   if (first_ == 0.0) first_ = *cycle;
   closed_ = *cycle;
@@ -97,7 +97,7 @@ void SwitchAccumulation::end_if_over(Roots roots) {
 }
 
 std::optional<SeriesLimit> SwitchAccumulation::dense_limit() const {
-  const auto cycle = cycles_.last_lap();
+  const auto cycle = cycles_.last_cycle();
   if (!cycle) return std::nullopt;
   // Cycles that are not longer than this are extrapolated whatever remains.
   return cycles_.limit(std::vector<double>(shortest_.size(), 2.0 * *cycle));

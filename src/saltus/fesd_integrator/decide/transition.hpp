@@ -136,7 +136,7 @@ class Transition {
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
   std::vector<int> kept_;  ///< functions that slide on unasked
-  bool depends_ = false;   ///< whether a group of the decision in hand is dependent
+  bool depends_ = false;   ///< whether a group of the current decision is dependent
   SelectionMargins margins_;
   bool finite_ = true;
   std::vector<double> rate_, size_, noise_;

@@ -32,7 +32,7 @@ class ElementRecorder {
   const Facts& facts_;
   std::vector<double> nodes_;
   std::vector<double> indicators_;
-  std::vector<int> undetermined_;  ///< selections of the element in hand
+  std::vector<int> undetermined_;  ///< selections of the current element
   result::Elements elements_;
 };
 

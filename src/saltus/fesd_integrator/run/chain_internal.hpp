@@ -68,7 +68,7 @@ class Chain {
   std::size_t count_ = 0;
   std::vector<std::vector<double>> left_;
   std::vector<std::vector<double>> errors_;
-  int divided_for_look_ = 0;  ///< halvings of the step in hand because it jumped over a switch
+  int divided_for_look_ = 0;  ///< halvings of the current step because it jumped over a switch
   std::optional<Element> previous_;
 };
 

@@ -1,7 +1,7 @@
 // How long the parts of a simulation step are: they are divided for errors, and where switches accumulate.
 #pragma once
 
-#include "saltus/fesd_integrator/accumulate/lap_series.hpp"
+#include "saltus/fesd_integrator/accumulate/cycle_series.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -37,7 +37,7 @@ class PartLength {
   void lengthen_behind(double h);
 
   /// Between switches that accumulate elements are so short that they resolve what is between two of them.
-  void follow(const LapSeries& series, double t);
+  void follow(const CycleSeries& series, double t);
   void stop_following() { between_switches_ = 0.0; }
   [[nodiscard]] bool is_following() const { return between_switches_ > 0.0; }
 
@@ -48,7 +48,7 @@ class PartLength {
   double mean_ = 0.0;
   double longest_ = 0.0;           ///< of a part, for its errors
   double between_switches_ = 0.0;  ///< of a part while switches accumulate; 0: any
-  double share_ = 0.0;             ///< the largest of the chain in hand
+  double share_ = 0.0;             ///< the largest of the current chain
 };
 
 }  // namespace saltus::fesd_integrator

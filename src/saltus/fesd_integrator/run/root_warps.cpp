@@ -18,7 +18,7 @@ struct RootWarps::Root {
   double rate = 0.0, terms = 0.0, gradient = 0.0;
 };
 
-/// Calls `take(root)` for the roots that the field of the mode at hand has at a point.
+/// Calls `take(root)` for the roots that the field of the current mode has at a point.
 template <class Take>
 void RootWarps::for_each_root(double t, const double* x, Take&& take) {
   const auto& exponents = context_.kernel.root_exponents();

@@ -15,7 +15,7 @@ class RootWarps {
   /// Both must outlive it.
   RootWarps(const RunContext& context, const Position& position);
 
-  /// Warps of an element of length h that begins here, and of one that ends where a root of the mode at hand is zero,
+  /// Warps of an element of length h that begins here, and of one that ends where a root of the current mode is zero,
   /// which it is inside `beyond`; 1 where no root is zero.
   [[nodiscard]] int behind(double h);
   [[nodiscard]] int before(const Element& beyond);

@@ -16,7 +16,7 @@ struct Located {
   bool divides = false;  ///< what is behind is a step of its own: lengths cannot be within their bounds
 };
 
-/// Lengths of elements before and behind a switch at tau of the part in hand: within (1 -+ bounds) of their mean.
+/// Lengths of elements before and behind a switch at tau of the current part: within (1 -+ bounds) of their mean.
 struct PartDivision {
   int elements = 0;
   double remaining = 0.0;  ///< length of the part

@@ -79,7 +79,7 @@ class Watch {
   [[nodiscard]] Interpolation interpolation_for(const TimeWarp& warp) const;
   [[nodiscard]] std::size_t find_interpolation(const TimeWarp& warp);
   std::vector<Interpolation> interpolations_;
-  std::size_t interpolation_ = 0;   ///< of the element in hand
+  std::size_t interpolation_ = 0;   ///< of the current element
   std::vector<double> indicators_;  ///< one row per watch point
   std::vector<double> selections_;
   SelectionMargins margins_;

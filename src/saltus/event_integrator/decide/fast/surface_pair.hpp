@@ -31,7 +31,7 @@ class SurfacePair {
   /// The same in two parts, so that what lies between can be asked. First: whether the switching point is of this kind,
   /// as far as the fields tell.
   /// @param field  of the mode before, behind an evaluation at the switching point, where it slides on one
-  ///               surface; nullptr if it is not at hand
+  ///               surface; nullptr if it is not known
   /// Cost: four evaluations of f, two with a field.
   [[nodiscard]] bool look(const ModeState& before, const SwitchingPoint& switching_point, const ModeField* field);
   /// Behind it: where the solution goes on sliding on one surface across the other (switching::pass_across()), their
