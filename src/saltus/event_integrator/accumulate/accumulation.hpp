@@ -60,9 +60,9 @@ class LastItems {
 /// shrink geometrically. A cycle is a list of at most eight jumps that repeats.
 ///
 /// With the duration T of the last cycle and the ratio r < 1 of successive durations, T r / (1 - r) is what remains.
-/// The limit is announced once that is below 1e-8 of the time that the sequence has taken, or can no longer be told
-/// apart in t, and the extrapolations of the last cycles agree. The state is extrapolated component by component
-/// (Aitken's delta-squared process), which is exact for geometric sequences of any ratio.
+/// The limit is announced once the extrapolations of the last cycles agree and that is small. Small is 1e-8 of the time
+/// that the sequence has taken, or what can no longer be told apart in t. The state is extrapolated component by
+/// component (Aitken's delta-squared process), which is exact for geometric sequences of any ratio.
 class EventSeries {
  public:
   /// Jumps executed at t in this order, and the state behind them.
@@ -74,8 +74,9 @@ class EventSeries {
   ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
   ///                  hundredth of it, in any order, have their limit where they are.
   [[nodiscard]] std::optional<SeriesLimit> limit(const std::vector<double>& shortest) const;
-  /// Where the last event is, if its cycle was less than a hundredth of the one before and as much less again would be
-  /// 1e-7 of the time taken: too few cycles to believe in a limit, unless there is something else that says so.
+  /// Returns where the last event is, if its cycle was less than a hundredth of the one before. As much less again has
+  /// to be 1e-7 of the time taken at most. These are too few cycles to believe in a limit, unless something else says
+  /// so.
   [[nodiscard]] std::optional<SeriesLimit> nearly() const;
   /// How long the shortest cycle is that the last event closes; nullopt if none of its like is among the last eight.
   [[nodiscard]] std::optional<double> closed_cycle() const;

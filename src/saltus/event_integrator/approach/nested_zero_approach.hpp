@@ -1,5 +1,5 @@
-// Sliding on a function that has a root of another one inside it (terminal sliding modes): the motion runs into the
-// zero of that one in finite time, like a power of the time that is left, and no field goes on beyond.
+// Sliding on a function that has a root of another one inside it (terminal sliding modes). The motion runs into the
+// zero of that one in finite time, like a power of the time that is left. No field goes on beyond.
 #pragma once
 
 #include <cmath>

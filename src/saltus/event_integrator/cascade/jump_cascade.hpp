@@ -19,8 +19,8 @@
 namespace saltus::event_integrator {
 
 /// A JumpCascade begins at an event and lasts while jumps follow each other at that time. It knows which event
-/// functions are at zero whatever is left of their values, and gives the guards of jumps the signs of the motion
-/// behind. Its storage is used again by the next one.
+/// functions are at zero whatever is left of their values. It gives the guards of jumps the signs of the motion behind.
+/// Its storage is used again by the next one.
 class JumpCascade {
  public:
   JumpCascade(const SwitchingContext& switching_context, const Position& here, ModeField& field, EventSearch& search,
@@ -69,8 +69,8 @@ class JumpCascade {
   void forget_motions() { motions_.assign(motions_.size(), std::nullopt); }
   /// Functions that are at zero behind jumps get the signs to which the motion takes them.
   void give_directions();
-  /// Guards that were kept at zero by what slid, and are left in the mode that was entered here, get the sign to which
-  /// they go, at this time and not where it is seen first.
+  /// Gives guards that are left in the mode that was entered here the sign to which they go. Before, what slid kept
+  /// them at zero. They get it at this time and not where it is seen first.
   /// @param zero_order  of the mode's surfaces
   void leave_guards(const std::vector<int>& zero_order);
 

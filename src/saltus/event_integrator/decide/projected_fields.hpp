@@ -35,7 +35,7 @@ class ProjectedFields {
   /// Normal components of f(alpha) on the surfaces of `group`.
   [[nodiscard]] std::vector<double> velocities(const std::vector<double>& alpha, const std::vector<int>& group) const;
   /// Where psi_surface goes along f(alpha). A velocity up to 1e-10 `scale` gives way to the first higher derivative
-  /// that moves psi further than it does, and further than rounding, over the switching point's time scale.
+  /// that moves psi further over the switching point's time scale. It has to move psi further than rounding, too.
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
   /// The same where the velocity alone says it; nullopt where it gives way. Cost: one comparison.
   [[nodiscard]] static std::optional<Motion> motion_by_velocity(double velocity, double scale);

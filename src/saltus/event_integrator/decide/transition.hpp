@@ -25,9 +25,9 @@ struct SwitchingPoint {
   std::vector<int> at_zero;       ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
   std::vector<int> touched;       ///< those of `at_zero` whose event this is
   std::vector<int> exit_below;    ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
-  std::vector<int> exit_above;    ///< … upper field (alpha = 1)
+  std::vector<int> exit_above;    ///< sliding surfaces whose upper field was (alpha = 1)
   std::vector<int> coalesced;     ///< first surfaces of coupled groups whose sliding root ceases to exist here
-  std::vector<int> destabilised;  ///< … loses its stability under every scaling
+  std::vector<int> destabilised;  ///< those of groups whose root loses its stability under every scaling
   std::vector<int> tied;          ///< of groups by `indicator`: all regions with the smallest one here
   bool start = false;             ///< no mode before
   bool limit = false;             ///< infinitely many switches have ended here (with `start`)
@@ -112,19 +112,20 @@ void begin_transition(const ModeState& before, const SwitchingPoint& switching_p
 [[nodiscard]] Transition check_forced_mode(const SwitchingContext& switching_context, const ModeState& forced,
                                            const SwitchingPoint& switching_point);
 
-/// The side of an event function that is zero at `start` to which the motion of a mode goes from there, by Runge-Kutta
-/// steps over a hundredth of the time scale; 0 where they do not agree.
+/// Returns the side of an event function, zero at `start`, to which the motion of a mode goes from there. Runge-Kutta
+/// steps over a hundredth of the time scale tell; the side is 0 where they do not agree.
 [[nodiscard]] int side_ahead(const SwitchingContext& switching_context, const ModeState& state,
                              const SwitchingPoint& switching_point, const std::vector<double>& start, int function);
 
-/// What to say where sliding on several surfaces that influence each other has run into a point at which its equations
-/// are singular to half of the digits, so that its selections, and the motion, are roundings; nullopt if it has not.
+/// Returns what to say where the equations of sliding are singular to half of the digits; nullopt where they are not.
+/// Surfaces that influence each other may run into such a point. Its selections, and with them the motion, are
+/// roundings.
 [[nodiscard]] std::optional<std::string> lost_selections(const SwitchingContext& switching_context,
                                                          const ModeState& state, double t, const double* x);
 
-/// What to say where sliding has lost its selections, or has run into a point at which both fields are tangent to the
-/// surface (two-fold), so that its selection has no limit, or at which the gradient of the surface vanishes; nullopt if
-/// there is none near by.
+/// Returns what to say where sliding has lost its selections, or has run into a point without any; nullopt if there is
+/// none near by. At such a point both fields are tangent to the surface (two-fold), so that its selection has no limit.
+/// Or the gradient of the surface vanishes there.
 [[nodiscard]] std::optional<std::string> two_fold_message(const SwitchingContext& switching_context,
                                                           const ModeState& state, double t, const double* x);
 

@@ -46,10 +46,10 @@ struct BalanceRange {
   double exactness = 1.0;                      ///< how much larger its rounding is than that of its terms
 };
 
-/// The field on a higher-order set. Selections of a balance of one function lie on the line between the two corners
-/// where it falls and rises most, those of several functions next to 1/2; the field does not depend on which of the
-/// others are taken. Owns its work space. Cost: one evaluation of f per corner of every balance of one function, per
-/// selection of others.
+/// Evaluates the field on a higher-order set. Selections of a balance of one function lie on the line between the two
+/// corners where it falls and rises most. Those of several functions lie next to 1/2. The field does not depend on
+/// which of the others are taken. Owns its work space. Cost: one evaluation of f per corner of every balance of one
+/// function, per selection of others.
 class HigherOrderField {
  public:
   explicit HigherOrderField(const evaluation::ModelKernel& kernel);
@@ -109,9 +109,13 @@ class HigherOrderField {
   bool too_many_ = false;
 };
 
-/// The set on which all sliding surfaces of a state can be held at (t, x), which is put there; nullopt if there is
-/// none: the gradients are dependent, a derivative that no selection enters does not vanish, no selection in [0, 1]
-/// holds the others, several balances share a selection, or the motion is not determined. Then `problem` says what.
+/// Finds the set on which all sliding surfaces of a state can be held at (t, x), and puts (t, x) there. Returns nullopt
+/// if there is none, and `problem` says why:
+/// - the gradients are dependent;
+/// - a derivative that no selection enters does not vanish;
+/// - no selection in [0, 1] holds the others;
+/// - several balances share a selection;
+/// - the motion is not determined.
 /// @param resolved  derivatives up to what their function changes by in this time are zero
 [[nodiscard]] std::optional<HigherOrderSet> find_higher_order_set(const SwitchingContext& switching_context,
                                                                   const ModeState& state, double t,

@@ -53,10 +53,9 @@ class ModeField {
   ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha);
 
   void enter(const ModeState& state);
-  /// The same where nothing is nested, there are no groups of regions and f is affine in the selections, without
-  /// looking at any selection but that of `surface`; constants are those of the other region. Allocates nothing but
-  /// where a surface is not the one that was slid on last.
-  /// From one region to the other one:
+  /// The same where nothing is nested, there are no groups of regions and f is affine in the selections. Looks at no
+  /// selection but that of `surface`; constants are those of the other region. Allocates nothing but where a surface is
+  /// not the one that was slid on last. From one region to the other one:
   void cross(std::size_t surface, const evaluation::FieldConstants& other);
   /// From a region onto its border with the other one, which is `side` of the surface:
   void slide_from_region(std::size_t surface, double selection, Region side, const evaluation::FieldConstants& other);
@@ -97,8 +96,9 @@ class ModeField {
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   /// Exit functions at a point, one per sliding surface.
   void exits(double t, const double* x, ExitValues* values);
-  /// Behind exits(): one of the exit functions of a surface as a row, if it is affine in t and in all states but the
-  /// one that sliding keeps constant, nullptr otherwise; x is any point of the mode. Valid until the next call.
+  /// Returns, behind exits(), one of the exit functions of a surface as a row; x is any point of the mode. It has to be
+  /// affine in t and in all states but the one that sliding keeps constant; nullptr otherwise. The row is valid until
+  /// the next call.
   [[nodiscard]] const evaluation::AffineRow* exit_row(std::size_t row, Region region, const double* x);
   /// Behind exits(): size of the terms whose sum an exit function of a sliding surface is, which bounds its rounding.
   [[nodiscard]] double normal_terms(std::size_t row) const;

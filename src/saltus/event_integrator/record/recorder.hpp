@@ -67,8 +67,8 @@ class Recorder {
   void row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event);
   /// A switch, if a listed switching function changes its mode; returns whether it did.
   bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
-  /// The same for the one surface that changes; it is listed, and the last mode recorded is the one before but for its
-  /// own selection, or that of what is slid on across it. Cost: O(1).
+  /// The same for the one surface that changes, which is listed. The last mode recorded is the one before. Only its own
+  /// selection may differ, or that of what is slid on across it. Cost: O(1).
   void switched(double t, const std::vector<double>& x, const SurfaceSwitch& change);
   /// Whether a surface is listed.
   [[nodiscard]] bool lists(int surface) const { return !listed_columns_[at(surface)].empty(); }

@@ -31,7 +31,7 @@ struct Recording {
     result::EventKind kind = result::EventKind::crossing;
     std::size_t entry = none;  ///< of [[jumps]] (kind jump) or [[events]] (kind user)
     std::size_t x = 0;         ///< places of n_x numbers in `states`
-    std::size_t x_after = 0;   ///< … the same one where the state does not jump
+    std::size_t x_after = 0;   ///< behind the event; the same as `x` where the state does not jump
     std::size_t mode = none;   ///< number in `modes`
     std::size_t mode_after = none;
     std::optional<bool> unique = true;

@@ -48,7 +48,7 @@ Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const Int
       choices_(switching_context_, options, here_, recorder_),
       outcome_{.evaluations_before = kernel.field_evaluations()} {
   holding_.keep(&contacts_);
-  fast_.applies = way == Way::short_where_ordinary && has_ordinary_switches();
+  fast_.applies = way == Way::fast_where_ordinary && has_ordinary_switches();
 }
 
 std::string Run::where() const {

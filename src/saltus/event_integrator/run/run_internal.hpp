@@ -58,10 +58,10 @@ class Run {
  public:
   /// How switches are decided and entered: the ordinary ones by the fast path, or all by the one that covers
   /// everything.
-  enum class Way { short_where_ordinary, general };
+  enum class Way { fast_where_ordinary, full };
 
   Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-      Way way = Way::short_where_ordinary);
+      Way way = Way::fast_where_ordinary);
 
   /// Runs to the end, or until the observer, which is called behind every step, asks to stop.
   /// @param take  gets rows and events when there are many; the result has the last ones. May be empty.

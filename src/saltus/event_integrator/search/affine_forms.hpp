@@ -20,12 +20,13 @@ struct StepBounds {
   const double* high = nullptr;
 };
 
-/// Forms phi_i(t, x) = offset_i + rate_i t + sum_k a_k x_k, one for every event function of a mode that is affine.
+/// Holds the forms phi_i(t, x) = offset_i + rate_i t + sum_k a_k x_k, one for every event function of a mode that is
+/// affine.
 ///
 /// A loaded row of one state is a threshold of that state. Of the thresholds of a state on the same side only the
-/// nearest can be the first to be reached, so a step is compared with two numbers per state, and at most these two and
-/// what lies beside them are looked at, however many thresholds there are.
-/// Owns its memory; allocates while forms are set only.
+/// nearest can be the first to be reached. So a step is compared with two numbers per state, however many thresholds
+/// there are. At most these two and what lies beside them are looked at. Owns its memory; allocates while forms are set
+/// only.
 class AffineForms {
  public:
   explicit AffineForms(std::size_t states);
@@ -87,8 +88,8 @@ class AffineForms {
   /// Whether any watched function may vanish within the bounds; true where a bound is not finite. Cost: O(n_x), and the
   /// terms of the forms of several states.
   [[nodiscard]] bool may_vanish(const StepBounds& bounds) const;
-  /// Whether function i, which is zero or has the sign `sign` where the step starts, gets away from there into that
-  /// sign at once and stays: by bounds of the mean slopes of the states (in place of their values).
+  /// Returns whether function i goes from where the step starts into the sign `sign` at once and stays there. At the
+  /// start it is zero or has that sign. Bounds of the mean slopes of the states (in place of their values) tell.
   [[nodiscard]] bool leaves(std::size_t i, int sign, const StepBounds& mean_slopes) const;
   /// The watched functions that may, but for thresholds that are reached behind another one of their state, and later
   /// than that; in no particular order.

@@ -15,13 +15,13 @@ enum class FunctionKind {
   surface,      ///< psi_j of a surface that is not in the mode
   nested,       ///< psi_j nested around sliding surfaces, in one of the regions that meet there
   exit_below,   ///< the lower field of a sliding surface stops arriving: alpha = 0
-  exit_above,   ///< … the upper one: alpha = 1
+  exit_above,   ///< the upper field of a sliding surface stops arriving: alpha = 1
   loss,         ///< the sliding selection ceases to exist: its root and another one coalesce
   instability,  ///< the sliding selections of coupled surfaces lose their stability, (4.12) of [guglielmi2022]
   user,         ///< expression or guard of [[events]], guard of [[jumps]]
   release,      ///< what presses a held guard of [[jumps]]
   cell_upper,   ///< argument of floor, a table or a sampled input less the upper end of its cell
-  cell_lower,   ///< … less the lower end
+  cell_lower,   ///< such an argument less the lower end of its cell
 };
 
 struct EventFunction {

@@ -36,10 +36,10 @@ double ContractingCycles::last_interval(long count) const {
   return mean_interval(count - 1 - (count - 1) / 8, (count - 1) / 8);
 }
 
-/// How many of the events of the run so far are in cycles of which more is resolved than what changes from one to the
-/// next. Between two zeros psi gets about as far as its rate times a quarter of their distance T, and a rounding less
-/// or more of it makes the next cycle longer or shorter by as large a part; of cycles like k^-p only p/k of one is
-/// missing in the next. The rate, and with it how far psi gets, goes with T: T^2.
+/// Returns how many of the events of the run so far are in resolved cycles. Of these more is resolved than what changes
+/// from one to the next. Between two zeros psi gets about as far as its rate times a quarter of their distance T. A
+/// rounding less or more of it makes the next cycle longer or shorter by as large a part. Of cycles like k^-p only p/k
+/// of one is missing in the next. The rate, and with it how far psi gets, goes with T: T^2.
 long ContractingCycles::resolved_events(double farthest, double rounding) const {
   long count = recorder_.events();
   const double last = last_interval(count);

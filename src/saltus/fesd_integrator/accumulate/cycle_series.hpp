@@ -26,8 +26,9 @@ class CycleSeries {
     std::vector<std::vector<int>> modes;  ///< of one cycle
   };
   void add(Switch next);
-  /// The limit, once what remains is below 1e-8 of the time that the sequence has taken, or cycles are not much longer
-  /// than they are resolved, and the last two extrapolations agree to a fiftieth of what remains.
+  /// Says when a limit is wanted. It is resolved once the last two extrapolations agree to a fiftieth of what remains
+  /// and the end is near. Near is 1e-8 of the time that the sequence has taken, or cycles that are not much longer than
+  /// they are resolved.
   enum class Wanted {
     resolved,
     soon,  ///< nobody can follow the cycles any further: whatever remains

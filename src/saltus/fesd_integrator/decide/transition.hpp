@@ -40,8 +40,8 @@ struct Decision {
 /// All sets that continue a solution from a point. Of the functions that are zero there, every pattern of signs and
 /// sliding (every set of active regions) is asked: with the selections of its projected field, do its signs hold just
 /// behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a short
-/// element does, or a longer one where psi is within its rounding behind that. A side that the solution does not get
-/// to, as psi stays at zero, is no other continuation than sliding with the selections of that side. Functions that do
+/// element does, or a longer one where psi is within its rounding behind that. The solution may not get to a side, as
+/// psi stays at zero. That is no other continuation than sliding with the selections of that side. Functions that do
 /// not influence each other are enumerated one by one. Surfaces whose gradients depend on each other, with selections
 /// that enter additively, are not enumerated: a complementarity problem says which are slid on and which are left [ADR
 /// 20]; where it leaves that open, the one just behind the point does. In a system of some size

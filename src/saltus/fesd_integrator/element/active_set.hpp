@@ -11,7 +11,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// Selections first ... first + count - 1 belong together (reformulation::DcsPart, without its CasADi).
+/// Selections first to first + count - 1 belong together (reformulation::DcsPart, without its CasADi).
 struct Part {
   bool simplex = false;  ///< Stewart's form: they sum up to 1; else each is a step selection by itself
   int first = 0;

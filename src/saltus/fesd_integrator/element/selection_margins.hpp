@@ -61,8 +61,8 @@ class SelectionMargins {
   std::vector<Margin> lower_, upper_;  ///< n
 };
 
-/// Gives a set in which step selections slide on surfaces whose gradients depend on each other its balances, unless
-/// some surfaces are moved by none of them, or some selections move the state that are in none.
+/// Gives a set its balances, in which step selections slide on surfaces whose gradients depend on each other. It gives
+/// none if some surfaces are moved by none of them, or some selections move the state that are in none.
 /// @param at  at any selections, which enter additively
 /// @return whether it has some now
 [[nodiscard]] bool find_balances(const FieldView& at, ActiveSet& set);

@@ -56,7 +56,7 @@ class Chain {
   [[nodiscard]] const Element* before(int k) const;
   [[nodiscard]] ElementSolver::Outcome solve_from(const Point& left, double h, ElementSolver::Guess guess,
                                                   Element& element);
-  /// Whether a condition ends along elements of half that length, a quarter, …, as far as it may end between them.
+  /// Whether a condition ends along elements of h/2, h/4, ..., as far as it may end between them.
   [[nodiscard]] bool jumps_over(const Point& left, double h, int halvings);
 
   RunContext& context_;

@@ -11,8 +11,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// Projects states by Newton's method of least norm onto sigma(t, x) = 0, the surfaces of a set that slide, and onto
-/// d sigma / dt = 0 of those that no selection moves at once.
+/// Projects states by Newton's method of least norm onto the surfaces of a set that slide, sigma(t, x) = 0. Those that
+/// no selection moves at once are projected onto d sigma / dt = 0, too.
 class RestProjection {
  public:
   struct Place {

@@ -11,7 +11,8 @@ RootWarps::RootWarps(const RunContext& context, const Position& position) : cont
   context.kernel.size(roots_);
 }
 
-/// A root of the field at a point, with d base/dt, the sum of the sizes of its terms, and of the gradient of the base.
+/// A root of the field at a point. It has d base/dt, the sum of the sizes of its terms, and that of the gradient of the
+/// base.
 struct RootWarps::Root {
   std::size_t number = 0;
   double exponent = 1.0, base = 0.0;

@@ -120,7 +120,7 @@ class Run {
     double h = 0.0;
     double end = 0.0;  ///< t + h but for roundings
   };
-  /// One element or, where it has no solution that was found, halves of it (quarters, …).
+  /// One element or, where it has no solution that was found, halves of it, or quarters, and so on.
   void advance_fixed_element(const FixedSpan& span);
   void accept_fixed(double end, double part);
   void stop_without_fixed_sets();

@@ -16,8 +16,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// Carries X = d x(t_b) / d q and tau = d t_b / d q, the *total* derivatives at the last boundary t_b of elements, from
-/// the start (X = I or 0, tau = 0) to the end, for q = (x(t_0), p).
+/// Carries X = d x(t_b) / d q and tau = d t_b / d q from the start (X = I or 0, tau = 0) to the end, for q = (x(t_0),
+/// p). These are the *total* derivatives at the last boundary t_b of elements.
 ///
 /// An element's equations R(z; x_0, t_0, h, p) = 0 (stages, selections, end) give dz = -R_z^{-1} (R_x0 X + R_t tau +
 /// R_h dh + R_p). Within a chain of k equal elements dh is common; it follows from what closes the chain:

@@ -12,7 +12,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// The defect d(theta) = u'(theta) - f(u(theta)) of an element's polynomial u, seen at one point theta_c where the
+/// Measures the defect d(theta) = u'(theta) - f(u(theta)) of an element's polynomial u at one point theta_c. There the
 /// method does not ask for it to be zero. Of collocation methods it is d(theta_c) omega(theta) / omega(theta_c) to
 /// leading order, omega(theta) = prod_m (theta - c_m), so that
 ///   u(theta) - x(theta) ~ h d(theta_c) W(theta) / omega(theta_c),   W(theta) = int_0^theta omega.

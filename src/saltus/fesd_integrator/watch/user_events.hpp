@@ -36,8 +36,8 @@ class UserEvents {
   [[nodiscard]] bool reaches_zero(std::size_t function, double noise) const {
     return std::abs(values_[function]) <= noise && std::abs(values_before_[function]) > noise;
   }
-  /// Takes over the signs at a point, where those of functions within their rounding, or crossed here, stay, and that
-  /// of `crossed` is the other one.
+  /// Takes over the signs at a point. Those of functions within their rounding, or crossed here, stay. That of
+  /// `crossed` is the other one.
   /// @return the events that this fires, in the order of the model
   [[nodiscard]] std::vector<std::size_t> update(double t, const double* x, const double* selections, const double* held,
                                                 std::optional<std::size_t> crossed);

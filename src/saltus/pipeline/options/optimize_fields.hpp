@@ -17,8 +17,8 @@
 
 namespace saltus::pipeline {
 
-/// One option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = …) and on
-/// the command line (--set optimize.mpcc.sigma_final=…).
+/// One option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = VALUE) and
+/// on the command line (--set optimize.mpcc.sigma_final=VALUE).
 struct OptimizeField {
   std::string key;      ///< dotted, below [optimize]
   std::string expects;  ///< "a number > 0"

@@ -29,9 +29,9 @@ enum class Borderline {
 /// whatever the stability of their roots.
 ///
 /// Roots are found by bisection of the face on which the selections vary. On a box every g_j lies between its values at
-/// the corners, so that boxes with a g_j of one sign hold none; a box from which Newton's method finds a root holds no
-/// other if G(root)^-1 G has dominant diagonals at the corners of a box around both. None is missed but in boxes of
-/// width 2^-9 that pass neither test: roots that are double, or nearly.
+/// the corners, so that boxes with a g_j of one sign hold none. From a box Newton's method may find a root. The box
+/// holds no other if G(root)^-1 G has dominant diagonals at the corners of a box around both. None is missed but in
+/// boxes of width 2^-9 that pass neither test: roots that are double, or nearly.
 /// @param table  m <= largest_enumerated surfaces
 /// Cost: half a millisecond for three surfaces, ten for four, once per meeting of so many. Allocates.
 [[nodiscard]] std::vector<GroupMode> admissible_modes(const CornerTable& table,

@@ -14,9 +14,9 @@ constexpr double affine_match = 1e-6;       ///< to which two factors of an affi
 constexpr double large = 1e6;               ///< times the cube: what happens inside it no longer matters
 constexpr double growing = 1.001;           ///< per lap, at large amplitudes
 constexpr double neutral = 1e-7;            ///< factors closer to 1 are not told from it
-/// Of the durations of successive laps of a cycle. What slides along one surface before it enters the square comes in
-/// at one point, closer and closer from lap to lap, although its laps grow (by a third and more, or they spiral in or
-/// out more slowly and are told by their factors).
+/// Of the durations of successive turns of a limit cycle. What slides along one surface before it enters the square
+/// comes in at one point, closer and closer from turn to turn. Its turns grow all the same (by a third and more, or
+/// they spiral in or out more slowly and are told by their factors).
 constexpr double same_period = 0.01;
 
 double excursion(double u) { return std::max({0.0, -u, u - 1.0}); }

@@ -25,10 +25,10 @@ struct Lap {
 /// Passages of sections: changes of zone, and maxima of components inside a zone. A passage is compared with up to four
 /// earlier ones of the same section (cycles may pass a section more than once).
 ///
-/// A cycle is taken for proven where the distances of successive passages shrink geometrically towards a limit that is
-/// close and laps of one duration lie between them, or are 0 up to rounding; a spiral, and a cycle of slow attraction,
-/// where only closed-form zones were visited: there the return map is affine, and the ratio of two distances is its
-/// factor.
+/// A limit cycle is taken for proven in two cases, between passages with turns of one duration. The distances of
+/// successive passages shrink geometrically towards a limit that is close, or they are 0 up to rounding. A spiral, and
+/// a limit cycle of slow attraction, are taken for proven where only closed-form zones were visited. There the return
+/// map is affine, and the ratio of two distances is its factor.
 class Recurrence {
  public:
   explicit Recurrence(int surfaces);

@@ -3,7 +3,7 @@
 //
 // Everything is decided by the hidden dynamics u_j' = kappa_j g_j(pi(u)) of the point, in closed form, for all scalings
 // kappa at once. Which function to ask, and what it needs beside the table of normal components at the point:
-//   sliding on one surface reaches the other        decide_entering        the mode before
+//   sliding on one surface reaches the other         decide_entering        the mode before
 //   a selection leaves the square, exit (a)          decide_exit_edge       through which edge
 //   both selections leave together                   decide_exit_corner     through which corner
 //   the two roots coalesce and vanish, exit (b)      decide_exit_fold       -
@@ -11,8 +11,8 @@
 //   a classical solution reaches both at once        decide_corner_arrival  the region it comes from
 //   a solution starts on the intersection            decide_intersection_start
 //   a spiral shrinks to the point                    decide_spiral_in; times and places by spiral.hpp
-// // While sliding on, the selections are intersection_roots(table).rising; where the roots meet and part again (the
-// first case of exit (c)) nothing is to be decided.
+// While sliding on, the selections are intersection_roots(table).rising. Where the roots meet and part again (the first
+// case of exit (c)) nothing is to be decided.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ enum class Leaf {
   spiral_in, spiral_out,                               // (4.14)
   // clang-format on
 };
-/// "E1", "C9-2", …
+/// Name of a leaf: "E1", "C9-2".
 [[nodiscard]] std::string_view name(Leaf leaf);
 
 struct PlaneDecision {

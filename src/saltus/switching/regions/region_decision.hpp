@@ -43,8 +43,13 @@ struct RegionSet {
 /// the fields the indicators of all regions stay equal.
 void merge_same_motions(std::vector<RegionSet>& sets);
 
-/// Which of several sets to go on with: one that attracts before one that does not, then one with the weights of before
-/// (n of them, or none), then the one with most regions of `before`, then the larger one, then the first.
+/// Decides which of several sets to go on with. A set comes before another one for the first of these that tells them
+/// apart:
+/// - it attracts;
+/// - it has the weights of before (n of them, or none);
+/// - it has more regions of `before`;
+/// - it is larger;
+/// - it is listed first.
 [[nodiscard]] std::size_t preferred_region_set(const std::vector<RegionSet>& sets, const std::vector<int>& before,
                                                const std::vector<double>& weights = {});
 

@@ -29,9 +29,9 @@ class SingleSurface {
   [[nodiscard]] bool decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
                             const std::vector<double>* slope = nullptr);
 
-  /// The same answer where the solution slides on nothing, from the fields of both sides, f(alpha_surface = 0) and
-  /// f(alpha_surface = 1), n_x each, in a model without nesting, regions and discrete states; nullopt where it is not
-  /// as clear. Cost: the gradient of the surface.
+  /// Gives the same answer where the solution slides on nothing, in a model without nesting, regions and discrete
+  /// states. It needs the fields of both sides, f(alpha_surface = 0) and f(alpha_surface = 1), n_x each. Returns
+  /// nullopt where it is not as clear. Cost: the gradient of the surface.
   [[nodiscard]] std::optional<switching::SurfaceDecision> decide(const ModeState& before, int surface, double t,
                                                                  const double* x, const std::vector<double>& below,
                                                                  const std::vector<double>& above);
