@@ -7,8 +7,8 @@
 
 namespace saltus::event_integrator {
 
-/// What a run goes on with instead of what it decides: an alternative of a decision, or a member of a family. Decisions
-/// (with alternatives, or of spirals) and families are counted along a run.
+/// Says what a run goes on with instead of what it decides: an alternative of a decision, or a member of a family.
+/// Decisions (with alternatives, or of spirals) and families are counted along a run.
 struct Choice {
   long decision = 0;  ///< its number; with `leave_at` or `phase` that of a family
   std::size_t alternative = 0;
@@ -19,7 +19,7 @@ struct Choice {
   [[nodiscard]] double departure() const { return leave_at.value_or(std::numeric_limits<double>::infinity()); }
 };
 
-/// An event with alternatives, and the number of the decision that it shows.
+/// Holds an event with alternatives, and the number of the decision that it shows.
 struct BranchPoint {
   std::size_t event = 0;
   long decision = 0;

@@ -12,7 +12,7 @@
 
 namespace saltus::event_integrator {
 
-/// The parts of a result that an engine computes; `final` is the last row.
+/// Holds the parts of a result that an engine computes; `final` is the last row.
 struct Integration {
   result::Status status;
   result::Final final;

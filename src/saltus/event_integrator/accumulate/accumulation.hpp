@@ -9,14 +9,14 @@
 
 namespace saltus::event_integrator {
 
-/// How the events of a sequence with a limit follow each other.
+/// Says how the events of a sequence with a limit follow each other.
 enum class SeriesKind {
   cycles,      ///< one and the same list of events again and again
   chattering,  ///< jumps in any order, faster than their guards are resolved
   unresolved   ///< functions that are zero together, as far as they are resolved
 };
 
-/// The limit of a sequence of events: of jumps, or of switches.
+/// Holds the limit of a sequence of events: of jumps, or of switches.
 struct SeriesLimit {
   double t = 0.0;
   std::vector<double> x;
@@ -25,12 +25,12 @@ struct SeriesLimit {
   SeriesKind kind = SeriesKind::cycles;
 };
 
-/// The last items of a sequence, at most `capacity`. The storage of those that are gone is used again.
+/// Holds the last items of a sequence, at most `capacity`. The storage of those that are gone is used again.
 template <class Item, std::size_t capacity>
 class LastItems {
  public:
   static constexpr std::size_t first_items = 32;  ///< room for them is made at once: most sequences are shorter
-  /// A new last item; its members hold what an earlier one has left there.
+  /// Returns a new last item; its members hold what an earlier one has left there.
   Item& append() {
     last_ = last_ + 1 == capacity ? 0 : last_ + 1;
     if (items_.empty()) items_.reserve(std::min(capacity, first_items));
@@ -38,7 +38,7 @@ class LastItems {
     size_ = std::min(size_ + 1, capacity);
     return items_[last_];
   }
-  /// `steps` before the last one, less than size().
+  /// Returns the item `steps` before the last one, less than size().
   [[nodiscard]] const Item& back(std::size_t steps) const {
     return items_[steps <= last_ ? last_ - steps : last_ + capacity - steps];
   }
@@ -65,10 +65,10 @@ class LastItems {
 /// component (Aitken's delta-squared process), which is exact for geometric sequences of any ratio.
 class EventSeries {
  public:
-  /// Jumps executed at t in this order, and the state behind them.
+  /// Notes the jumps executed at t in this order, and the state behind them.
   void add(double t, const std::vector<int>& jumps, const std::vector<double>& x);
-  /// Whether the last event has closed a cycle that was shorter than the one before: only then there may be a limit,
-  /// but for chattering.
+  /// Returns whether the last event has closed a cycle that was shorter than the one before: only then there may be a
+  /// limit, but for chattering.
   [[nodiscard]] bool shrinks() const { return shrinks_; }
   /// @param shortest  by jump: cycles not longer than this are lost in the rounding of its guard; their sequence is
   ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
@@ -78,9 +78,10 @@ class EventSeries {
   /// to be 1e-7 of the time taken at most. These are too few cycles to believe in a limit, unless something else says
   /// so.
   [[nodiscard]] std::optional<SeriesLimit> nearly() const;
-  /// How long the shortest cycle is that the last event closes; nullopt if none of its like is among the last eight.
+  /// Returns how long the shortest cycle is that the last event closes; nullopt if none of its like is among the last
+  /// eight.
   [[nodiscard]] std::optional<double> closed_cycle() const;
-  /// How long the last cycle of a shrinking sequence was; nullopt outside of one.
+  /// Returns how long the last cycle of a shrinking sequence was; nullopt outside of one.
   [[nodiscard]] std::optional<double> last_cycle() const;
   /// Behind a limit, or where guards came to rest: cycles start anew. Rattling is followed through such rests.
   void clear_cycles();

@@ -27,10 +27,10 @@ class NestedZeroApproach {
   void accepted(double h);
   /// Lowers what errors of a step may be, as parts of those of the mode.
   void limit(ode::Tolerances& parts);
-  /// Where functions that the motion runs into the zeros of get there before `until`, together with those that do
-  /// within their accuracy.
+  /// Returns where functions that the motion runs into the zeros of get there before `until`, together with those that
+  /// do within their accuracy.
   [[nodiscard]] std::optional<Located> ahead(double until);
-  /// When the mode began.
+  /// Returns when the mode began.
   [[nodiscard]] double since() const { return since_; }
 
  private:

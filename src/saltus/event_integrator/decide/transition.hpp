@@ -18,7 +18,7 @@
 
 namespace saltus::event_integrator {
 
-/// Why the mode is decided afresh.
+/// Says why the mode is decided afresh.
 struct SwitchingPoint {
   double t = 0.0;
   const double* x = nullptr;      ///< n_x, on all surfaces of `at_zero`
@@ -34,14 +34,14 @@ struct SwitchingPoint {
   double time_scale = 1.0;        ///< a step of the integrator: derivatives that do not move psi over it vanish
 };
 
-/// A mode of one surface that is given, with its selection if that is known.
+/// Holds a mode of one surface that is given, with its selection if that is known.
 struct GivenMode {
   int surface = 0;
   int mode = 0;
   double alpha = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Where a solution that spirals out of an intersection of two surfaces has completed its first cycle.
+/// Says where a solution that spirals out of an intersection of two surfaces has completed its first cycle.
 struct SpiralStart {
   double duration = 0.0;
   std::vector<double> x;
@@ -49,7 +49,7 @@ struct SpiralStart {
   double cycle_ratio = 0.0;
 };
 
-/// Two surfaces that influence each other, at zero together.
+/// Holds two surfaces that influence each other, at zero together.
 struct Meeting {
   std::array<int, 2> surfaces{};
   std::array<std::array<double, 4>, 2> velocities{};  ///< normal components of the corner fields, bit i: alpha_i
@@ -74,7 +74,7 @@ struct Transition {
   std::optional<Meeting> meeting;  ///< the first one decided here
 };
 
-/// What the switching needs to know of the system besides its functions.
+/// Says what the switching needs to know of the system besides its functions.
 struct SwitchingContext {
   evaluation::ModelKernel& kernel;
   const model::System& system;
@@ -87,9 +87,9 @@ struct SwitchingContext {
 void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
                    const ModeState& before, const SwitchingPoint& switching_point, std::string& reason);
 
-/// Behind the names of two surfaces: what a tree decided about them, and why.
+/// Appends, behind the names of two surfaces, what a tree decided about them, and why.
 void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason);
-/// The same with their names.
+/// Does the same with their names.
 void append_meeting(const model::System& system, const std::array<int, 2>& surfaces, switching::Leaf leaf,
                     std::string_view why, std::string& reason);
 
@@ -99,16 +99,16 @@ void append_meeting(const model::System& system, const std::array<int, 2>& surfa
 void begin_transition(const ModeState& before, const SwitchingPoint& switching_point, std::size_t states,
                       Transition& transition);
 
-/// The mode behind an event, or a start, at one point.
-/// Surfaces that do not influence each other are decided one by one, the others in groups; switching functions nested
-/// around a surface that changes are read anew. Two that influence each other are decided by the trees of
-/// switching/intersection.hpp; more, and what no tree decides, by the hidden dynamics. The new mode is checked along
-/// its own field: it must move to where it says. Terminations: outside_class (two-fold, psi stays 0, hidden dynamics
-/// without a limit), no_admissible_mode (the check failed), evaluation_failed (fields undefined at the point).
+/// Decides the mode behind an event, or a start, at one point. Surfaces that do not influence each other are decided
+/// one by one, the others in groups; switching functions nested around a surface that changes are read anew. Two that
+/// influence each other are decided by the trees of switching/intersection.hpp; more, and what no tree decides, by the
+/// hidden dynamics. The new mode is checked along its own field: it must move to where it says. Terminations:
+/// outside_class (two-fold, psi stays 0, hidden dynamics without a limit), no_admissible_mode (the check failed),
+/// evaluation_failed (fields undefined at the point).
 [[nodiscard]] Transition decide_mode(const SwitchingContext& switching_context, const ModeState& before,
                                      const SwitchingPoint& switching_point);
 
-/// A mode that the user forces at the start: only the check along its own field.
+/// Checks a mode that the user forces at the start along its own field, and nothing else.
 [[nodiscard]] Transition check_forced_mode(const SwitchingContext& switching_context, const ModeState& forced,
                                            const SwitchingPoint& switching_point);
 

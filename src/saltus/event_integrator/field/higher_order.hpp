@@ -24,9 +24,9 @@ using switching::Balance;
 /// Velocities of held functions are good to about ten digits where their gradients are differences.
 inline constexpr double velocity_accuracy = 1e-9;
 
-/// Where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and the
-/// balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones. The
-/// motion is the field at any selections in the cube that fulfil the balances, which is one and the same for all of
+/// Says where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and
+/// the balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones.
+/// The motion is the field at any selections in the cube that fulfil the balances, which is one and the same for all of
 /// them.
 struct HigherOrderSet {
   std::vector<HeldFunction> functions;  ///< gradients independent; by order
@@ -34,8 +34,8 @@ struct HigherOrderSet {
   std::vector<int> undetermined;  ///< surfaces whose selections are not determined: several in one balance, or none
 };
 
-/// The range of a balance over the corners of its selections, in one direction where it has several functions; held
-/// while min <= 0 <= max.
+/// Holds the range of a balance over the corners of its selections, in one direction where it has several functions;
+/// held while min <= 0 <= max.
 struct BalanceRange {
   double min = 0.0, max = 0.0;
   std::size_t lowest = 0, highest = 0;  ///< corners, bit i: selection of rows[i]
@@ -55,14 +55,15 @@ class HigherOrderField {
   explicit HigherOrderField(const evaluation::ModelKernel& kernel);
 
   void enter(const HigherOrderSet& set, const std::vector<int>& sliding, const std::vector<double>& alpha);
-  /// Selections, ranges and f at a point.
+  /// Finds selections, ranges and f at a point.
   void evaluate(double t, const double* point);
-  /// Behind evaluate(): f along the set; not finite where the motion depends on selections that are not determined.
+  /// Returns, behind evaluate(), f along the set; not finite where the motion depends on selections that are not
+  /// determined.
   [[nodiscard]] const std::vector<double>& motion() const { return motion_; }
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   [[nodiscard]] const std::vector<BalanceRange>& ranges() const { return ranges_; }
   [[nodiscard]] const HigherOrderSet& set() const { return set_; }
-  /// Whether a balance has more exits than are looked for: its motion is not finite then.
+  /// Returns whether a balance has more exits than are looked for: its motion is not finite then.
   [[nodiscard]] bool too_many() const { return too_many_; }
   bool project(double t, double* x) { return functions_.project(t, x); }
 
@@ -122,9 +123,9 @@ class HigherOrderField {
                                                                   std::vector<double>& x, double resolved,
                                                                   std::string& problem);
 
-/// The same for surfaces whose gradients depend on each other all along the set where they vanish, such as x1 - x2,
-/// x2 - x3, x1 - x3: selections enter additively, and all that hold the set give the same motion. nullopt with an empty
-/// `problem` if the gradients are independent.
+/// Does the same for surfaces whose gradients depend on each other all along the set where they vanish. An example is
+/// x1 - x2, x2 - x3, x1 - x3: selections enter additively, and all that hold the set give the same motion. nullopt with
+/// an empty `problem` if the gradients are independent.
 [[nodiscard]] std::optional<HigherOrderSet> find_dependent_set(const SwitchingContext& switching_context,
                                                                const ModeState& state, double t, std::vector<double>& x,
                                                                std::string& problem);

@@ -14,8 +14,8 @@
 
 namespace saltus::event_integrator {
 
-/// Whether so many surfaces that are connected by influence are decided and slid on by their parts: those whose modes
-/// are not enumerated.
+/// Returns whether so many surfaces that are connected by influence are decided and slid on by their parts: those whose
+/// modes are not enumerated.
 [[nodiscard]] constexpr bool is_large(std::size_t surfaces) {
   return surfaces > static_cast<std::size_t>(switching::largest_enumerated);
 }

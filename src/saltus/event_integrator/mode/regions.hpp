@@ -17,7 +17,7 @@ namespace saltus::event_integrator {
 /// Measures the regions of all groups against their references in this mode.
 void set_references(evaluation::ModelKernel& kernel, const ModeState& state);
 
-/// A region and its weight theta.
+/// Holds a region and its weight theta.
 struct ActiveRegion {
   int region = 0;
   double weight = 0.0;
@@ -31,7 +31,7 @@ void rebase(const evaluation::ModelKernel& kernel, ModeState& state, std::vector
 /// Gives every reference the weight that the others leave, in the selections of the mode and of its two corners.
 void complete_weights(const evaluation::ModelKernel& kernel, ModeState& state);
 
-/// Whether both are regions of the same group.
+/// Returns whether both are regions of the same group.
 [[nodiscard]] bool same_group(const evaluation::ModelKernel& kernel, int i, int j);
 
 /// Measures against the references of a mode, and again against those from before at its end.

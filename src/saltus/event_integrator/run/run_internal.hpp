@@ -56,7 +56,7 @@ inline constexpr const char* resting_reason =
 /// A Run owns its parts and its position, which only it moves. There is one object per call of integrate().
 class Run {
  public:
-  /// How switches are decided and entered: the ordinary ones by the fast path, or all by the one that covers
+  /// Says how switches are decided and entered: the ordinary ones by the fast path, or all by the one that covers
   /// everything.
   enum class Way { fast_where_ordinary, full };
 

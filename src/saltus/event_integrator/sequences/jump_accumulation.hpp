@@ -20,11 +20,11 @@ class JumpAccumulation {
   /// Behind a limit the sequence is over, but for what chatters.
   void end(const SeriesLimit& limit);
   void clear() { series_.clear(); }
-  /// How long the last cycle of a contracting sequence was.
+  /// Returns how long the last cycle of a contracting sequence was.
   [[nodiscard]] std::optional<double> last_cycle() const { return series_.last_cycle(); }
-  /// The guard that was at zero when a jump was executed last; nullopt if there was none.
+  /// Returns the guard that was at zero when a jump was executed last; nullopt if there was none.
   [[nodiscard]] std::optional<HeldGuard> last_guard(int jump) const { return last_guard_[at(jump)]; }
-  /// Its |dg/dt| then.
+  /// Returns the |dg/dt| of that guard then.
   [[nodiscard]] double last_rate(int jump) const { return last_rate_[at(jump)]; }
 
  private:

@@ -34,13 +34,13 @@ class CycleSeries {
     soon,  ///< nobody can follow the cycles any further: whatever remains
   };
   [[nodiscard]] std::optional<Limit> limit(Wanted wanted) const;
-  /// Whether the last two cycles of some period have shrunk.
+  /// Returns whether the last two cycles of some period have shrunk.
   [[nodiscard]] bool shrinks() const;
-  /// The time to the next switch, if it is to the last one what that was to the one before; nullopt if that is not
-  /// shorter.
+  /// Returns the time to the next switch, if it is to the last one what that was to the one before; nullopt if that is
+  /// not shorter.
   [[nodiscard]] std::optional<double> next_switch() const;
   [[nodiscard]] double last_time() const { return switches_.empty() ? 0.0 : back(0).t; }
-  /// The largest change of a state in the last cycle of the shortest sequence that shrinks; 0 without one.
+  /// Returns the largest change of a state in the last cycle of the shortest sequence that shrinks; 0 without one.
   [[nodiscard]] double last_change() const;
   void clear();
 

@@ -14,7 +14,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// Modes of System::switching at an active set, and the selections at a point.
+/// Holds the modes of System::switching at an active set, and the selections at a point.
 struct ModeView {
   std::vector<int> mode;      ///< -1, 0, 1 by function; of a region 0 while it is active
   std::vector<double> alpha;  ///< by function
@@ -27,7 +27,8 @@ class Recorder {
 
   void row(double t, const std::vector<double>& x, const ActiveSet& set, const std::vector<double>& selections,
            const double* held);
-  /// What is held changed at the last row: the same with what is held now, if its inputs or outputs differ.
+  /// Records that what is held changed at the last row. Adds the same row with what is held now, if its inputs or
+  /// outputs differ.
   enum class RowBefore { kept, replaced };
   void row_behind(RowBefore before, const ActiveSet& set, const std::vector<double>& selections, const double* held);
   /// The set changed at t, or was chosen at a start (`before` nullptr; then `at_zero` tells which selections are zero).
@@ -37,12 +38,13 @@ class Recorder {
     const std::vector<double>* selections = nullptr;
     const double* held = nullptr;  ///< what is held on this side
   };
-  /// `found`: all continuations; the first is where it goes on. Returns whether it was an event.
+  /// Records a switch, and returns whether it was an event. `found` are all continuations; the first is where it goes
+  /// on.
   bool switched(double t, const std::vector<double>& x, const Side& before, const std::vector<Continuation>& found,
                 const double* held, std::string_view reason) {
     return jumped(t, x, x, before, found, held, reason);
   }
-  /// Likewise where the state jumps, too.
+  /// Does the same where the state jumps, too.
   bool jumped(double t, const std::vector<double>& x, const std::vector<double>& x_after, const Side& before,
               const std::vector<Continuation>& found, const double* held, std::string_view reason);
   bool started(double t, const std::vector<double>& x, const std::vector<Continuation>& found, const double* held,

@@ -19,20 +19,20 @@ class PartLength {
   explicit PartLength(const Shape& shape) : shape_(shape), longest_(shape.nominal) {}
 
   [[nodiscard]] double nominal() const { return shape_.nominal; }
-  /// Of an element by which a decision is tried where first derivatives do not decide.
+  /// Returns the length of an element by which a decision is tried where first derivatives do not decide.
   [[nodiscard]] double trial() const { return shape_.nominal / shape_.elements / 128.0; }
-  /// Length of the elements of a part that was not divided by switches.
+  /// Returns the length of the elements of a part that was not divided by switches.
   [[nodiscard]] double mean() const { return mean_; }
   void set_mean(double h) { mean_ = h; }
 
-  /// Where the part ends that begins at t, in a simulation step that goes to `end`. `last_switch`: its time.
+  /// Returns where the part ends that begins at t, in a simulation step that goes to `end`. `last_switch`: its time.
   [[nodiscard]] double end_of_part(double t, double end, double last_switch);
 
   /// A chain of elements is solved anew: no share of the error is known of it.
   void begin_chain() { share_ = 0.0; }
   /// Notes an element's share (Coarseness::share). True if the chain is beyond its share, and may be shorter.
   [[nodiscard]] bool is_too_coarse(double h, double share);
-  /// Behind elements of length h: that were too coarse, that were not.
+  /// Shortens what follows behind elements of length h that were too coarse, and lengthens it behind others.
   void shorten_behind(double h);
   void lengthen_behind(double h);
 

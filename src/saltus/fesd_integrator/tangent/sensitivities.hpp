@@ -35,7 +35,7 @@ class SensitivityPropagation {
   SensitivityPropagation(SensitivityPropagation&&) noexcept;
   ~SensitivityPropagation();
 
-  /// Solved elements of equal length and one active set, one after the other.
+  /// Follows solved elements of equal length and one active set, one after the other.
   /// @param left     selections of the projected field at the left end of each, and at the right end of the last
   /// @param closing  the condition that is zero at the end; nullptr: the end is fixed, or a time event
   /// @param changing what is held up to the end; nullopt: it is not the time of an event
@@ -46,7 +46,7 @@ class SensitivityPropagation {
   /// @param set, selections, held  those before the switch
   void switched_here(double t, const std::vector<double>& x, const std::vector<double>& selections, const double* held,
                      const ActiveSet& set, const Condition& condition);
-  /// Without switch detection: from here `count` elements of equal length go to `end`.
+  /// Follows a step without switch detection. From here `count` elements of equal length go to `end`.
   struct End {
     double t = 0.0;
     const double* x = nullptr;  ///< discrete states are all that counts of it
@@ -54,12 +54,12 @@ class SensitivityPropagation {
     std::optional<std::size_t> changing;
   };
   void begin_fixed_steps(int count, const End& end);
-  /// One of these elements, or `part` of it; an active set for every stage.
+  /// Follows one of these elements, or `part` of it; an active set for every stage.
   void fixed_step(const Element& element, std::span<const ActiveSet> sets, const double* held, double part);
   /// At the last boundary: something held has changed from `before` to `behind`; `selections` are those before it.
   void held_changed(double t, const double* x, const double* selections, const double* before, const double* behind);
 
-  /// At the last boundary, which must be the fixed end of the run.
+  /// Returns those at the last boundary, which must be the fixed end of the run.
   [[nodiscard]] result::Sensitivities sensitivities(const std::vector<std::string>& parameter_names) const;
 
  private:

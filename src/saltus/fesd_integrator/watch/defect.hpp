@@ -24,9 +24,9 @@ class Defect {
   /// The solver must outlive it.
   explicit Defect(const ElementSolver& solver);
 
-  /// Where f is wanted.
+  /// Returns where f is wanted.
   [[nodiscard]] double place() const { return place_; }
-  /// max over theta of |u(theta) - x(theta)| by component, from f at the place and at the left end.
+  /// Finds max over theta of |u(theta) - x(theta)| by component, from f at the place and at the left end.
   /// @param f, f_left, error  n_x
   void errors(const Element& element, const double* f, const double* f_left, std::vector<double>& error);
 

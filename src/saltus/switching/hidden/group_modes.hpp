@@ -7,7 +7,7 @@
 
 namespace saltus::switching {
 
-/// A mode of all surfaces of a group with its selections, m each.
+/// Holds a mode of all surfaces of a group with its selections, m each.
 struct GroupMode {
   std::vector<int> mode;
   std::vector<double> alpha;
@@ -16,14 +16,14 @@ struct GroupMode {
 /// Largest group whose modes are looked for: 3^m of them.
 inline constexpr int largest_enumerated = 4;
 
-/// What becomes of modes of which an inequality is an equality, to 1e-10: the solution may move along a surface that it
-/// is beside, or slide with a selection at its bound.
+/// Says what becomes of modes of which an inequality is an equality, to 1e-10: the solution may move along a surface
+/// that it is beside, or slide with a selection at its bound.
 enum class Borderline {
   left_out,
   kept,  ///< and of modes that slide only those whose root some scaling makes stable
 };
 
-/// The modes k that continue a solution in the sense of Definition 2.1 of [guglielmi2022], each by its own
+/// Returns the modes k that continue a solution in the sense of Definition 2.1 of [guglielmi2022], each by its own
 /// inequalities:
 ///   g_j(alpha) = 0 with alpha_j in (0, 1) where k_j = 0, k_j g_j(alpha) > 0 elsewhere (regions: by the drifts),
 /// whatever the stability of their roots.

@@ -10,7 +10,7 @@
 
 namespace saltus::switching {
 
-/// How the solution got to the surfaces.
+/// Says how the solution got to the surfaces.
 struct HiddenSituation {
   std::vector<Arrival> arrival;  ///< m
   std::vector<double> alpha;     ///< m; read where the arrival is `along`: the selection with which it slid so far
@@ -23,7 +23,7 @@ struct HiddenOptions {
   int budget = 100000;  ///< Runge-Kutta steps and changes of zone per trajectory before it is given up
 };
 
-/// How a trajectory of the hidden dynamics ends.
+/// Says how a trajectory of the hidden dynamics ends.
 enum class HiddenLimit {
   settled,      ///< every surface is left for good, or its selection has a stable limit
   oscillating,  ///< recurrent: the solution slides, the regularised solution oscillates about it

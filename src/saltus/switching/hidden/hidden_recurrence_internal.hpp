@@ -10,7 +10,7 @@
 
 namespace saltus::switching {
 
-/// What the trajectory was doing between two passages of one section, in the same zones and direction.
+/// Says what the trajectory was doing between two passages of one section, in the same zones and direction.
 struct Lap {
   enum class Kind { none, cycle, spiral_out } kind = Kind::none;
   double remaining = 0.0;    ///< how far the limit of the passages is still away
@@ -22,8 +22,8 @@ struct Lap {
   std::vector<double> change;  ///< m: of u_j in a lap
 };
 
-/// Passages of sections: changes of zone, and maxima of components inside a zone. A passage is compared with up to four
-/// earlier ones of the same section (cycles may pass a section more than once).
+/// Notes passages of sections: changes of zone, and maxima of components inside a zone. A passage is compared with up
+/// to four earlier ones of the same section (cycles may pass a section more than once).
 ///
 /// A limit cycle is taken for proven in two cases, between passages with turns of one duration. The distances of
 /// successive passages shrink geometrically towards a limit that is close, or they are 0 up to rounding. A spiral, and

@@ -41,7 +41,7 @@ class HiddenTrajectory {
   HiddenTrajectory(HiddenFace& face, const TrajectoryOptions& options);
   /// @param u  m numbers: the start
   TrajectoryEnd follow(const std::vector<double>& u);
-  /// Whether all components rest at an unstable root inside the cube, close to u.
+  /// Returns whether all components rest at an unstable root inside the cube, close to u.
   [[nodiscard]] bool rests_near(const std::vector<double>& u);
 
  private:

@@ -9,11 +9,11 @@ namespace saltus::switching {
 /// alpha_j = k_j.
 using PairCorners = std::array<std::array<double, 2>, 4>;
 
-/// Of the two roots of g(alpha_1, alpha_2) = 0 the one with det G > 0 or < 0, G_jp = d g_j / d alpha_p. Only the first
-/// kind can attract; the other one is a solution where a mode is forced.
+/// Says which of the two roots of g(alpha_1, alpha_2) = 0 is meant: that with det G > 0 or < 0, G_jp = d g_j / d
+/// alpha_p. Only the first kind can attract; the other one is a solution where a mode is forced.
 enum class RootKind { rising, falling };
 
-/// Such a root.
+/// Holds such a root.
 struct BilinearRoot {
   std::array<double, 2> alpha{};      ///< not finite where the root is at infinity
   std::array<double, 2> from_one{};   ///< alpha - 1, relatively exact near 0
@@ -35,11 +35,11 @@ struct BilinearRoot {
 /// operations, one square root. [guglielmi2022], eq. (4.6).
 [[nodiscard]] BilinearRoot bilinear_root(const PairCorners& g, RootKind kind);
 
-/// The selections to evaluate the field with: g(alpha) = 0 to the rounding u of its terms, as far as det G goes to 0.
-/// Those of `root` are each known to u condition_j and leave as much of g. For G of rank one what both errors leave is
-/// in the column space of G. There the smallest change of alpha that balances the longer row balances the other one to
-/// u. Both rows count in their sizes. The same numbers as in `root` where their residual is below 1e-10, a tenth of
-/// what selections may leave, and where there is no root. Cost: 40 operations where not.
+/// Returns the selections to evaluate the field with: g(alpha) = 0 to the rounding u of its terms, as far as det G goes
+/// to 0. Those of `root` are each known to u condition_j and leave as much of g. For G of rank one what both errors
+/// leave is in the column space of G. There the smallest change of alpha that balances the longer row balances the
+/// other one to u. Both rows count in their sizes. The same numbers as in `root` where their residual is below 1e-10, a
+/// tenth of what selections may leave, and where there is no root. Cost: 40 operations where not.
 [[nodiscard]] std::array<double, 2> balanced_selections(const PairCorners& g, const BilinearRoot& root);
 
 }  // namespace saltus::switching

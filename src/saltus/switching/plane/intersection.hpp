@@ -26,7 +26,7 @@
 
 namespace saltus::switching {
 
-/// The leaves of the trees; docs/switching-trees.md draws them.
+/// Names the leaves of the trees; docs/switching-trees.md draws them.
 enum class Leaf {
   none,
   // clang-format off
@@ -40,7 +40,7 @@ enum class Leaf {
   spiral_in, spiral_out,                               // (4.14)
   // clang-format on
 };
-/// Name of a leaf: "E1", "C9-2".
+/// Returns the name of a leaf: "E1", "C9-2".
 [[nodiscard]] std::string_view name(Leaf leaf);
 
 struct PlaneDecision {
@@ -59,12 +59,12 @@ struct PlaneDecision {
   [[nodiscard]] bool unique() const { return others.size() == 0 && !spirals_out; }
 };
 
-/// The usual passage of a solution that slides on one surface across the other: on both sides the first one attracts,
-/// and all four fields lead across. The mode behind is the only one, leaf E3 of decide_entering(), whose answer this
-/// is; nullopt where it is not so, or not clear of any rounding. Cost: O(1), the tree is not gone through.
+/// Decides the usual passage of a solution that slides on one surface across the other: on both sides the first one
+/// attracts, and all four fields lead across. The mode behind is the only one, leaf E3 of decide_entering(), whose
+/// answer this is; nullopt where it is not so, or not clear of any rounding. Cost: O(1), the tree is not gone through.
 /// @param incoming  0 for the surface that is slid on, the side it comes from for the other
 [[nodiscard]] std::optional<PlaneContinuation> pass_across(const PlaneTable& table, PlaneMode incoming);
-/// Why: of static duration.
+/// Returns why; the text has static duration.
 [[nodiscard]] std::string_view reason_of_passage();
 
 /// Sliding on one surface arrives at the other (Figs. 5 and 6; Theorems 6.1, 6.2 of [guglielmi2022]).

@@ -7,7 +7,7 @@
 
 namespace saltus::switching {
 
-/// n regions with equal indicators g_i at a point, and their fields f_j:
+/// Holds n regions with equal indicators g_i at a point, and their fields f_j:
 ///   rates[i n + j] = w_ij = d/dt g_i along f_j, up to a constant per column j.
 struct RegionRates {
   int regions = 0;
@@ -17,7 +17,7 @@ struct RegionRates {
   }
 };
 
-/// A set of regions I that moves on with equal, and smallest, indicators: a solution of Stewart's linear
+/// Holds a set of regions I that moves on with equal, and smallest, indicators: a solution of Stewart's linear
 /// complementarity system ([stewart1990])
 ///   theta >= 0, sum_i theta_i = 1,   w_i = sum_j w_ij theta_j >= mu,   theta_i (w_i - mu) = 0.
 struct RegionSet {
@@ -32,11 +32,11 @@ struct RegionSet {
   bool marginal = false;  ///< it is within rounding of 0, and stays there: for who looks along the motion to set
 };
 
-/// Weights of the set `active` (ascending) as they solve the equalities, admissible or not; nothing if they are not
-/// determined. Cost: one linear system of order |I| + 1.
+/// Finds the weights of the set `active` (ascending) as they solve the equalities, admissible or not; nothing if they
+/// are not determined. Cost: one linear system of order |I| + 1.
 [[nodiscard]] bool solve_region_set(const RegionRates& rates, const std::vector<int>& active, RegionSet& set);
 
-/// All sets whose margin is at least -tolerance, by enumeration of the 2^n - 1 subsets; n <= 12.
+/// Returns all sets whose margin is at least -tolerance, by enumeration of the 2^n - 1 subsets; n <= 12.
 [[nodiscard]] std::vector<RegionSet> admissible_region_sets(const RegionRates& rates, double tolerance);
 
 /// Of marginal sets that move alike, with the same weights, the largest one stands for all: at an equilibrium of one of

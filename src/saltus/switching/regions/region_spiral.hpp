@@ -21,8 +21,8 @@ struct RegionCycle {
   [[nodiscard]] double duration() const;
 };
 
-/// The cycle that begins with the region of the smallest number; nullopt if the fields of the regions do not all turn
-/// in one sense, or the tie is not one of the plane.
+/// Returns the cycle that begins with the region of the smallest number; nullopt if the fields of the regions do not
+/// all turn in one sense, or the tie is not one of the plane.
 [[nodiscard]] std::optional<RegionCycle> region_spiral(const RegionTie& tie);
 
 }  // namespace saltus::switching

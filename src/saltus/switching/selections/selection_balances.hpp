@@ -8,7 +8,7 @@
 
 namespace saltus::switching {
 
-/// Conditions a + B lambda = 0 that share selections, directly or by others: what determines selections.
+/// Holds conditions a + B lambda = 0 that share selections, directly or by others: what determines selections.
 struct Balance {
   std::vector<std::size_t> functions;  ///< rows of B
   std::vector<std::size_t> rows;       ///< columns of B: the selections that are in it

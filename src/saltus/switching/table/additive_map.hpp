@@ -10,7 +10,7 @@
 
 namespace saltus::switching {
 
-/// value(alpha) = constant + effects alpha for alpha in [0, 1]^q.
+/// Holds value(alpha) = constant + effects alpha for alpha in [0, 1]^q.
 struct AdditiveMap {
   Eigen::VectorXd constant;  ///< r
   Eigen::MatrixXd effects;   ///< r x q
