@@ -70,6 +70,7 @@ class EventSeries {
   /// Returns whether the last event has closed a cycle that was shorter than the one before: only then there may be a
   /// limit, but for chattering.
   [[nodiscard]] bool shrinks() const { return shrinks_; }
+  /// Returns the limit of a sequence, once it can be told.
   /// @param shortest  by jump: cycles not longer than this are lost in the rounding of its guard; their sequence is
   ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
   ///                  hundredth of it, in any order, have their limit where they are.
@@ -83,7 +84,7 @@ class EventSeries {
   [[nodiscard]] std::optional<double> closed_cycle() const;
   /// Returns how long the last cycle of a shrinking sequence was; nullopt outside of one.
   [[nodiscard]] std::optional<double> last_cycle() const;
-  /// Behind a limit, or where guards came to rest: cycles start anew. Rattling is followed through such rests.
+  /// Starts cycles anew, behind a limit, or where guards came to rest. Rattling is followed through such rests.
   void clear_cycles();
   void clear();
   [[nodiscard]] bool empty() const { return entries_.empty(); }

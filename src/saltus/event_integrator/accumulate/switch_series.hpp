@@ -13,6 +13,7 @@ namespace saltus::event_integrator {
 /// finite time; in doubles they end in a loop of modes at one time.
 class SwitchSeries {
  public:
+  /// Begins without switches.
   /// @param span  of the whole run, in units of time
   explicit SwitchSeries(double span) : span_(span) {}
 

@@ -20,10 +20,10 @@ class NestedZeroApproach {
                      const StepTolerances& tolerances, ZeroApproach& zeros)
       : kernel_(kernel), here_(here), search_(search), tolerances_(tolerances), zeros_(zeros), rates_(kernel, here) {}
 
-  /// The mode that begins here is watched for such functions; returns whether the one before had any.
+  /// Watches the mode that begins here for such functions; returns whether the one before had any.
   bool begin_mode();
   [[nodiscard]] bool watches() const { return !functions_.empty(); }
-  /// A step of length h was accepted; the position is still at its begin.
+  /// Notes that a step of length h was accepted; the position is still at its begin.
   void accepted(double h);
   /// Lowers what errors of a step may be, as parts of those of the mode.
   void limit(ode::Tolerances& parts);

@@ -47,7 +47,7 @@ class ZeroApproach {
   [[nodiscard]] bool keep_their_signs(int surface, double t, const double* x);
   /// Returns the surfaces that are zero here, as far as the tolerances tell; with their signs before.
   [[nodiscard]] std::vector<const EventFunction*> unresolved();
-  /// Something has happened, or a search has found the roundings of functions anew.
+  /// Forgets what was asked: something has happened, or a search has found the roundings of functions anew.
   void forget() { none_at_.reset(); }
 
  private:

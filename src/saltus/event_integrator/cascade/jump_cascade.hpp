@@ -65,9 +65,9 @@ class JumpCascade {
   /// Reads the signs of all user functions at the point as it is. One that was located here and is still at zero keeps
   /// the sign just behind this time; one that a jump has put there has none yet (0).
   void read_user_signs();
-  /// The mode is decided anew: motions along the one before are no more.
+  /// Forgets motions along the mode before, as the mode is decided anew.
   void forget_motions() { motions_.assign(motions_.size(), std::nullopt); }
-  /// Functions that are at zero behind jumps get the signs to which the motion takes them.
+  /// Gives functions that are at zero behind jumps the signs to which the motion takes them.
   void give_directions();
   /// Gives guards that are left in the mode that was entered here the sign to which they go. Before, what slid kept
   /// them at zero. They get it at this time and not where it is seen first.

@@ -61,7 +61,7 @@ class Contacts {
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
   /// Returns whether a jump of a contact has only bounded the speed of a slip in a plane anew.
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
-  /// Impulses belong to one instant.
+  /// Forgets impulses, which belong to one instant.
   void forget_impulses(std::vector<double>& x) const;
 
  private:

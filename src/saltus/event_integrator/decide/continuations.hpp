@@ -12,8 +12,7 @@ namespace saltus::event_integrator {
 /// Decides the mode behind a switching point with the modes of some surfaces at zero given and the rest decided for
 /// them.
 /// @return nullopt if it does not continue the solution: the rest has no mode, or one of the given ones does not move
-/// to
-///         where it says.
+///         to where it says.
 [[nodiscard]] std::optional<Transition> decide_with(const SwitchingContext& switching_context, const ModeState& before,
                                                     const SwitchingPoint& switching_point,
                                                     const std::vector<GivenMode>& given);

@@ -35,16 +35,16 @@ std::string two_fold_at(const std::string& surface, double t);
 std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
                             const std::vector<double>& alpha, int surface, double t);
 
-/// Where no rule decides: all surfaces at zero held there, together with their derivatives that no selection enters, if
+/// Holds all surfaces at zero there where no rule decides, together with their derivatives that no selection enters, if
 /// some selections do. `alternatives` are the regions that the solution can leave into.
 std::optional<Transition> hold_with_higher_order(const SwitchingContext& s, const ModeState& before,
                                                  const SwitchingPoint& switching_point);
 
-/// Where `failed` does not move to where it says: the modes of the surfaces at zero of which an inequality is an
-/// equality (fields tangent to several surfaces at once, selections at their bounds) by the check along their own
-/// fields. The first one that it passes, those with fewer surfaces in other modes than `failed` before the others;
-/// nullopt if there is none. Not for regions, functions nested around the surfaces, or more surfaces than are
-/// enumerated. Cost: milliseconds.
+/// Decides where `failed` does not move to where it says. It takes the modes of the surfaces at zero of which an
+/// inequality is an equality (fields tangent to several surfaces at once, selections at their bounds). They are checked
+/// along their own fields. The first one that it passes, those with fewer surfaces in other modes than `failed` before
+/// the others; nullopt if there is none. Not for regions, functions nested around the surfaces, or more surfaces than
+/// are enumerated. Cost: milliseconds.
 std::optional<Transition> borderline_mode(const SwitchingContext& s, const ModeState& before,
                                           const SwitchingPoint& switching_point, const ModeState& failed);
 
@@ -94,7 +94,7 @@ std::optional<Transition> decide_dependent(const SwitchingContext& s, const Mode
 std::optional<Transition> rest_where_nested_meet(const SwitchingContext& s, const ModeState& before,
                                                  const SwitchingPoint& switching_point);
 
-/// Where nothing holds them: the regions that the solution leaves such a point into, if no rule has found one.
+/// Finds the regions that the solution leaves such a point into, where nothing holds them and no rule has found one.
 std::optional<Transition> leave_where_nested_meet(const SwitchingContext& s, const ModeState& before,
                                                   const SwitchingPoint& switching_point);
 

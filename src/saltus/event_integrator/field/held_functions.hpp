@@ -30,6 +30,7 @@ class HeldFunctions {
  public:
   explicit HeldFunctions(const evaluation::ModelKernel& kernel);
 
+  /// Takes the functions.
   /// @param alpha  n_psi selections to evaluate with, 1/2 for the sliding surfaces
   void set(std::vector<HeldFunction> functions, std::vector<double> alpha);
   [[nodiscard]] const std::vector<HeldFunction>& list() const { return functions_; }

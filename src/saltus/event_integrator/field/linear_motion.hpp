@@ -22,7 +22,7 @@ class LinearMotion {
   LinearMotion(const LinearMotion&) = delete;  // known_ points into it
   LinearMotion& operator=(const LinearMotion&) = delete;
 
-  /// Another mode begins.
+  /// Forgets it, as another mode begins.
   void forget() { known_.reset(); }
   /// Returns null where the field is not affine. Valid until forget().
   [[nodiscard]] const ode::LinearField* of_region(const evaluation::ModelKernel& kernel,

@@ -89,7 +89,7 @@ class ModeField {
   /// evaluation in the mode.
   ode::Attempt attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
                        const ode::Tolerances& tolerances);
-  /// Attempts from its beginning follow this polynomial from now on, until the mode changes. Null: none.
+  /// Lets attempts from its beginning follow this polynomial from now on, until the mode changes. Null: none.
   void follow_known(const ode::DenseStep* known) { known_ = known; }
   [[nodiscard]] const ode::DenseStep* known() const { return known_; }
   /// Returns the selections of the last evaluation (those of attempts do not count), n_psi.

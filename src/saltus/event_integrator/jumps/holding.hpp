@@ -41,7 +41,7 @@ class Holding {
   [[nodiscard]] std::optional<std::string> hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, double t,
                                                 const std::vector<double>& alpha, std::vector<double>& x);
   void release_all();
-  /// Contacts are held at zero with the guards.
+  /// Holds contacts at zero with the guards.
   void keep(Contacts* contacts) { contacts_ = contacts; }
   /// Puts x on g = 0, dg/dt = 0; returns whether it changed.
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);

@@ -29,7 +29,7 @@ class Jumps {
   Jumps(const evaluation::ModelKernel& kernel, const model::System& system, double from);
 
   [[nodiscard]] bool none() const { return system_.jumps.empty(); }
-  /// The start: every condition counts as true before it, with at_start as false.
+  /// Begins at the start: every condition counts as true before it, with at_start as false.
   void begin(const JumpPoint& point);
   /// Reads all conditions and times anew: what became true, and times that have come, are triggered; waiting executions
   /// of jumps with persistent = false whose condition is false are dropped.

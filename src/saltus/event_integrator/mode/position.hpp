@@ -23,7 +23,7 @@ struct Position {
 
   Position(double begin, std::vector<double> initial) : t(begin), x(std::move(initial)), slope(x.size()) {}
 
-  /// A step below this is no longer seen in t.
+  /// Returns the smallest step that is still seen in t.
   [[nodiscard]] double smallest_step() const {
     return std::max(4.0 * rounding_unit * std::abs(t), std::numeric_limits<double>::min());
   }

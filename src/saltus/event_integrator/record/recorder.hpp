@@ -60,8 +60,8 @@ class Recorder {
     ranges_ = &ranges;
     cut_outputs_ = selections;
   }
-  /// One row in a mode; `alpha` over switching functions (the sliding values at this point).
-  /// Selections that nothing determines are recorded as NaN; outputs have the ones that they are handed.
+  /// Adds one row in a mode; `alpha` over switching functions (the sliding values at this point). Selections that
+  /// nothing determines are recorded as NaN; outputs have the ones that they are handed.
   void row(double t, const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha);
   /// Adds a row with the mode before the events at t, of which this is the first one (or would be, if there are none).
   void row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event);
@@ -77,7 +77,7 @@ class Recorder {
     const auto& event = recording_.event_list.back();
     append_row(event.t, x, alpha, event.mode);
   }
-  /// Where only the selection of `surface` may differ from that of the mode behind it.
+  /// Does the same where only the selection of `surface` may differ from that of the mode behind it.
   void row_behind_last_event(const std::vector<double>& x, const std::vector<double>& alpha, std::size_t surface) {
     const auto& event = recording_.event_list.back();
     const int mode = recording_.modes.last_mode(surface);

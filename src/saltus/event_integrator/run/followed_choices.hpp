@@ -42,9 +42,9 @@ class FollowedChoices {
   }
   /// Gives a decision its number, and makes it the alternative that the run was asked to go on with.
   void choose(Transition& transition, const Progress& progress);
-  /// The departure that was asked for is now: an open family, or nullptr where it is closed.
+  /// Returns the family that the run is asked to leave into now; nullptr where it is closed.
   [[nodiscard]] const Families::Open* departing() const;
-  /// That choice is made by the next decision.
+  /// Makes that choice with the next decision.
   void depart(const Progress& progress) { note(decisions_, progress); }
   /// Watches, behind an event, what its mode may be left into, now or later.
   void watch(const ModeField& field);

@@ -81,7 +81,7 @@ class AffineForms {
 
   /// Watches no function.
   void watch_none();
-  /// From now on function i, whose sign is `sign` (+1, -1), is among those that may_vanish and append_suspects look at.
+  /// Watches function i, whose sign is `sign` (+1, -1): may_vanish and append_suspects look at it from now on.
   void watch(std::size_t i, int sign);
   /// Watches it no longer. Cost: of the nearest threshold of a state, the way to the next one that is watched.
   void ignore(std::size_t i);

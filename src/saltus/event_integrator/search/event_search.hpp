@@ -85,14 +85,14 @@ class EventSearch {
   /// orders (in t; 1 without). Takes effect with the next enter().
   void set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish,
                       const std::vector<int>& orders = {});
-  /// Time has passed since the user functions were at zero, or they have jumped.
+  /// Forgets user zeros: time has passed since the user functions were at zero, or they have jumped.
   void forget_user_zeros() { user_.forget_zeros(); }
-  /// Held guards of jumps are not searched, their releases are. Takes effect with the next enter().
+  /// Holds guards of jumps: they are not searched, their releases are. Takes effect with the next enter().
   void set_held(std::vector<HeldGuard> held, std::vector<HeldGuard> followers) {
     held_.guards = std::move(held);
     held_.followers = std::move(followers);
   }
-  /// The next enter() is at the end of a cell that was just entered there.
+  /// Tells that the next enter() is at the end of a cell that was just entered there.
   void entered_cell(const EventFunction& reached);
   /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.
   void set_user_sign(std::size_t function, int sign, double t, const double* x);

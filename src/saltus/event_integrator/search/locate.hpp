@@ -41,8 +41,7 @@ class Locator {
   /// safeguarded by the bracket of signs seen, retakes the step. Of several functions the earliest zero is located;
   /// those that vanish with it to rounding are one event.
   /// @return nullptr if the right-hand side is undefined up to the event, or the function does not get to zero but
-  /// touches
-  ///         it (shorten the step); valid until the next call.
+  ///         touches it (shorten the step); valid until the next call.
   /// Cost: usually one step and one evaluation of f.
   [[nodiscard]] const Located* locate(const StepStart& start, const ode::DenseStep& dense, Hit hit);
 

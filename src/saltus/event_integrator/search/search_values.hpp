@@ -52,7 +52,7 @@ struct FunctionLevels {
   std::vector<double> noise, accuracy;
 
   void reset(std::size_t functions);
-  /// Levels that are not finite are 0.
+  /// Sets the levels; those that are not finite are 0.
   void set(std::size_t function, double rounding, double wanted);
 };
 

@@ -17,7 +17,7 @@ class JumpAccumulation {
   /// Notes the jumps of a cascade: when, where to, and which guards were at zero.
   void note(const JumpCascade& cascade, const Jumps& jumps, const std::vector<int>& user_signs);
   [[nodiscard]] std::optional<SeriesLimit> limit() const { return series_.limit(shortest_cycle_); }
-  /// Behind a limit the sequence is over, but for what chatters.
+  /// Ends the sequence behind a limit, but for what chatters.
   void end(const SeriesLimit& limit);
   void clear() { series_.clear(); }
   /// Returns how long the last cycle of a contracting sequence was.

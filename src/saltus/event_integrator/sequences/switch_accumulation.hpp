@@ -50,8 +50,8 @@ class SwitchAccumulation {
   /// Does the same whatever remains: cycles that hardly contract are too many for their time before a limit is asked
   /// for.
   [[nodiscard]] std::optional<SeriesLimit> dense_limit() const;
-  /// A switch of this surface cannot be decided, in a cycle of this duration: cycles that are not longer than the
-  /// rounding of psi resolves have their limit where they are.
+  /// Returns the limit where a switch of this surface cannot be decided, in a cycle of this duration. Cycles that are
+  /// not longer than the rounding of psi resolves have their limit where they are.
   [[nodiscard]] std::optional<SeriesLimit> unresolved(int surface, int mode, double duration) const;
   /// Returns whether limits follow each other at once, cycles of rounding between them: the solution stays where the
   /// switches have come together (sliding of second order on some surfaces), and no mode found there is that.

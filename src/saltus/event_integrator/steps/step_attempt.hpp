@@ -52,7 +52,7 @@ class StepAttempt {
   [[nodiscard]] double rejected(double error) { return control_.rejected(error); }
   void follow_method() { control_.follow(stepper_.method()); }
 
-  /// The last attempt, of length h, was accepted, and the position is at its end.
+  /// Notes that the last attempt, of length h, was accepted, and the position is at its end.
   void accepted(double h);
   /// Returns what the control proposes behind it.
   [[nodiscard]] double proposed(double h) { return h * control_.accepted(error_norm()); }
@@ -60,7 +60,7 @@ class StepAttempt {
   void watch_stiffness();
   [[nodiscard]] std::optional<double> stiff_at() const { return stiff_at_; }
 
-  /// The field has become another one.
+  /// Begins a mode: the field has become another one.
   void begin_mode();
   /// Begins the control anew behind an event; `repeats`: steps may be like ones before.
   enum class Steps { may_repeat, are_new };

@@ -12,7 +12,7 @@ namespace saltus::event_integrator {
 /// without this a switch costs several rejected steps. Cost: O(n_psi) per switch.
 class StepMemory {
  public:
-  /// The solution goes on in `mode` from t; any mode before ends here.
+  /// Goes on in `mode` from t; any mode before ends here.
   /// @return the step to start with: the remembered one, or `proposed`
   [[nodiscard]] double change(const std::vector<int>& mode, double t, double proposed);
   /// Does the same where the mode differs from the one before in this surface only. Cost: one comparison of modes.

@@ -27,7 +27,7 @@ class StepTolerances {
   [[nodiscard]] const ode::Tolerances& mode() const { return mode_; }
   /// Begins a mode here, maybe inside of layers. Roots of the mode before are none of it.
   void begin_mode(const evaluation::ModelKernel& kernel, const ThinLayers& layers, const Position& here);
-  /// From now on a reason leaves these parts, in (0, 1].
+  /// Limits what a reason leaves from now on to these parts, in (0, 1].
   void limit(Reason reason, const ode::Tolerances& parts);
   void lift(Reason reason) { limit(reason, unlimited); }
   [[nodiscard]] const ode::Tolerances& part(Reason reason) const { return parts_[static_cast<std::size_t>(reason)]; }

@@ -46,9 +46,10 @@ class ActiveSet {
   [[nodiscard]] const std::vector<int>& modes() const { return modes_; }
   [[nodiscard]] const std::vector<Sliding>& sliding() const { return sliding_; }
   [[nodiscard]] const std::vector<Condition>& conditions() const { return conditions_; }
-  /// Where surfaces that slide have gradients that depend on each other: those whose selections share their conditions,
-  /// fewer than these are (numbers in sliding()). Such a selection is not determined; its conditions `lower` and
-  /// `upper` are SelectionMargins::value. They belong to a place, not to the modes.
+  /// Returns the balances of surfaces that slide and have gradients that depend on each other. Those of one balance
+  /// have selections that share their conditions, fewer than these are (numbers in sliding()). Such a selection is not
+  /// determined; its conditions `lower` and `upper` are SelectionMargins::value. They belong to a place, not to the
+  /// modes.
   [[nodiscard]] const std::vector<switching::Balance>& balances() const { return balances_; }
   void set_balances(std::vector<switching::Balance> balances);
   [[nodiscard]] bool is_determined(int selection) const { return balances_.empty() || !undetermined_[at(selection)]; }

@@ -21,6 +21,7 @@ class ProjectedField {
   ProjectedField(ProjectedField&&) noexcept;
   ~ProjectedField();
 
+  /// Solves for the selections that slide.
   /// @param selections  all of them; the sliding ones are found
   /// @param rounding    of the state per time: rates that no selection changes are zero within it
   /// @return false where Newton's method finds none. values() are those at the solution.

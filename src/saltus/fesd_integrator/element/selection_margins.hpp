@@ -42,6 +42,7 @@ struct DenseMatrices {
 /// zonotope's width.
 class SelectionMargins {
  public:
+  /// Evaluates the velocities of all balances and the selections in them.
   /// @param at          at the point and `selections`, into which those of the balances enter additively
   /// @param selections  n; those of balances become the ones in the box nearest to 1/2 that hold their surfaces
   /// Cost: B, and a product with the normal of every facet; facets are found again where B has changed.

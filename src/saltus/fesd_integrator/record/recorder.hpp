@@ -31,8 +31,9 @@ class Recorder {
   /// outputs differ.
   enum class RowBefore { kept, replaced };
   void row_behind(RowBefore before, const ActiveSet& set, const std::vector<double>& selections, const double* held);
-  /// The set changed at t, or was chosen at a start (`before` nullptr; then `at_zero` tells which selections are zero).
-  /// Two rows and an event if a listed function changed; at a start a row, and an event if one is at zero.
+  /// Records that the set changed at t, or was chosen at a start (`before` nullptr; then `at_zero` tells which
+  /// selections are zero). Two rows and an event if a listed function changed; at a start a row, and an event if one is
+  /// at zero.
   struct Side {
     const ActiveSet* set = nullptr;
     const std::vector<double>* selections = nullptr;
@@ -49,7 +50,7 @@ class Recorder {
               const std::vector<Continuation>& found, const double* held, std::string_view reason);
   bool started(double t, const std::vector<double>& x, const std::vector<Continuation>& found, const double* held,
                const std::vector<int>& at_zero);
-  /// Switches have a limit at t: `x` is the last state before it.
+  /// Records that switches have a limit at t: `x` is the last state before it.
   void accumulated(double t, const std::vector<double>& x, const std::vector<double>& x_limit, const Side& before,
                    const std::vector<Continuation>& found, const double* held);
   void user(double t, const std::vector<double>& x, const Side& side, std::size_t event, std::string_view reason);

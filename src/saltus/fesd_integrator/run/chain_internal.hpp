@@ -32,7 +32,7 @@ class Chain {
   void look_again(int count, Take&& take);
   /// Returns whether an element's estimated error is beyond its share, and shorter ones are allowed; notes the share.
   [[nodiscard]] bool is_too_coarse(const Element& element, const std::vector<double>& errors);
-  /// What was divided because it jumped over a switch has got to one, or to an end.
+  /// Forgets divisions: what was divided because it jumped over a switch has got to one, or to an end.
   void forget_jumps() { divided_for_look_ = 0; }
 
   /// Returns how many are solved.

@@ -28,7 +28,7 @@ class PartLength {
   /// Returns where the part ends that begins at t, in a simulation step that goes to `end`. `last_switch`: its time.
   [[nodiscard]] double end_of_part(double t, double end, double last_switch);
 
-  /// A chain of elements is solved anew: no share of the error is known of it.
+  /// Begins a chain of elements that is solved anew: no share of the error is known of it.
   void begin_chain() { share_ = 0.0; }
   /// Notes an element's share (Coarseness::share). True if the chain is beyond its share, and may be shorter.
   [[nodiscard]] bool is_too_coarse(double h, double share);
@@ -36,7 +36,7 @@ class PartLength {
   void shorten_behind(double h);
   void lengthen_behind(double h);
 
-  /// Between switches that accumulate elements are so short that they resolve what is between two of them.
+  /// Follows switches that accumulate: elements are so short that they resolve what is between two of them.
   void follow(const CycleSeries& series, double t);
   void stop_following() { between_switches_ = 0.0; }
   [[nodiscard]] bool is_following() const { return between_switches_ > 0.0; }

@@ -15,7 +15,7 @@ namespace saltus::fesd_integrator {
 class Position {
  public:
   Position() = default;
-  /// The set has all `selections` on the side where they are 0 until continue_with().
+  /// Puts all `selections` of the set on the side where they are 0 until continue_with().
   Position(double t, std::vector<double> x, std::size_t selections);
 
   [[nodiscard]] double t() const { return t_; }
@@ -29,7 +29,7 @@ class Position {
   [[nodiscard]] double size() const { return size_; }
   /// Returns the left end of an element that begins here; the reference is valid until the next call.
   [[nodiscard]] Point& left_end();
-  /// What slides is on its surfaces, whatever its rounding.
+  /// Returns the selections that slide, with their references: they are on their surfaces, whatever the rounding.
   [[nodiscard]] std::vector<int> on_surfaces() const;
 
   /// Moves to the right end of an element, or to a point inside it; allocates nothing.

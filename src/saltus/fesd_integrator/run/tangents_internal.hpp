@@ -24,7 +24,8 @@ class Tangents {
   /// Notes what is held, if its change ends the part of a simulation step that is under way.
   void set_time_event(double t, std::optional<std::size_t> changing);
 
-  /// `closing`: the condition that is zero at the end of the elements; nullptr if the end is fixed.
+  /// Follows a chain of elements. `closing`: the condition that is zero at the end of the elements; nullptr if the end
+  /// is fixed.
   void chain(Chain& chain, std::size_t count, double end, const Condition* closing);
   /// Notes a switch right where the last chain ended.
   void switched_here(const Condition& condition);

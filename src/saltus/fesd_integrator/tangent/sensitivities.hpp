@@ -42,7 +42,7 @@ class SensitivityPropagation {
   /// Cost: per element the solution of its linear system for n_x + n_p + 1 right-hand sides. Allocates.
   void chain(std::span<const Element> elements, std::span<const std::vector<double>> left, const ActiveSet& set,
              const double* held, const Condition* closing, std::optional<std::size_t> changing);
-  /// At the last boundary, a fixed end, a switch turns out to lie: it moves off it with the field before it.
+  /// Notes that a switch turns out to lie at the last boundary, a fixed end. It moves off it with the field before it.
   /// @param set, selections, held  those before the switch
   void switched_here(double t, const std::vector<double>& x, const std::vector<double>& selections, const double* held,
                      const ActiveSet& set, const Condition& condition);
@@ -56,7 +56,8 @@ class SensitivityPropagation {
   void begin_fixed_steps(int count, const End& end);
   /// Follows one of these elements, or `part` of it; an active set for every stage.
   void fixed_step(const Element& element, std::span<const ActiveSet> sets, const double* held, double part);
-  /// At the last boundary: something held has changed from `before` to `behind`; `selections` are those before it.
+  /// Notes that something held has changed at the last boundary from `before` to `behind`; `selections` are those
+  /// before it.
   void held_changed(double t, const double* x, const double* selections, const double* before, const double* behind);
 
   /// Returns those at the last boundary, which must be the fixed end of the run.

@@ -8,11 +8,11 @@ namespace saltus::switching {
 namespace {
 
 constexpr double close = 1e-6;              ///< a thousand times the integration's tolerance
-constexpr double rounding_of_laps = 1e-12;  ///< of closed forms, some laps long
-constexpr double shrinking = 0.9;           ///< a factor per lap that truncation errors do not imitate
+constexpr double rounding_of_laps = 1e-12;  ///< of closed forms, some turns long
+constexpr double shrinking = 0.9;           ///< a factor per turn that truncation errors do not imitate
 constexpr double affine_match = 1e-6;       ///< to which two factors of an affine return map agree
 constexpr double large = 1e6;               ///< times the cube: what happens inside it no longer matters
-constexpr double growing = 1.001;           ///< per lap, at large amplitudes
+constexpr double growing = 1.001;           ///< per turn, at large amplitudes
 constexpr double neutral = 1e-7;            ///< factors closer to 1 are not told from it
 /// Of the durations of successive turns of a limit cycle. What slides along one surface before it enters the square
 /// comes in at one point, closer and closer from turn to turn. Its turns grow all the same (by a third and more, or

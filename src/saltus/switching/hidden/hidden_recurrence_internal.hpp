@@ -15,11 +15,11 @@ struct Lap {
   enum class Kind { none, cycle, spiral_out } kind = Kind::none;
   double remaining = 0.0;    ///< how far the limit of the passages is still away
   std::vector<int> side;     ///< m: 0 if the selection varied, else the side on which u_j stayed
-  std::vector<double> mean;  ///< m: selections averaged over the lap
-  /// Laps that can be skipped before the first saturated component is back, whose distance shrinks by `change` per lap:
-  /// 0 where all go outwards.
+  std::vector<double> mean;  ///< m: selections averaged over the turn
+  /// Turns that can be skipped before the first saturated component is back, whose distance shrinks by `change` per
+  /// turn: 0 where all go outwards.
   double laps_to_skip = 0.0;
-  std::vector<double> change;  ///< m: of u_j in a lap
+  std::vector<double> change;  ///< m: of u_j in a turn
 };
 
 /// Notes passages of sections: changes of zone, and maxima of components inside a zone. A passage is compared with up
@@ -41,6 +41,7 @@ class Recurrence {
   /// Notes that a zone is visited: its free components vary; `closed_form` if it is solved exactly.
   void visit(const std::vector<int>& zone, bool closed_form);
 
+  /// Notes a passage, and says what the trajectory did since an earlier one.
   /// @param section  identifies zone and event
   Lap pass(std::uint64_t section, const std::vector<double>& u, const std::vector<int>& zone);
 
@@ -53,7 +54,7 @@ class Recurrence {
     double time = 0.0;
     double amplitude = 0.0;
     std::array<double, lags> distance{}, ratio{}, period{};
-    std::array<int, lags> compared{};  ///< laps in a row
+    std::array<int, lags> compared{};  ///< turns in a row
   };
 
   /// Of passage number i (all are numbered, the last `remembered` are kept), with u and the integrals: m doubles each.

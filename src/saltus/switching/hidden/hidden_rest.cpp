@@ -119,8 +119,8 @@ bool HiddenTrajectory::rests_near(const std::vector<double>& u) {
   return !is_hurwitz(rest_.jacobian(), m_);
 }
 
-/// The root that a cycle surrounds: with a stabilising scaling if there is one, the nearest to the mean over the lap.
-/// Returns false if there is none, which needs three surfaces (in the plane a cycle has a root inside).
+/// The root that a limit cycle surrounds: with a stabilising scaling if there is one, the nearest to the mean over a
+/// turn. Returns false if there is none, which needs three surfaces (in the plane a cycle has a root inside).
 bool HiddenTrajectory::enclosed_root(const Lap& lap) {
   face_.enter(lap.side);
   const auto& free = face_.free();

@@ -39,6 +39,7 @@ struct TrajectoryOptions {
 class HiddenTrajectory {
  public:
   HiddenTrajectory(HiddenFace& face, const TrajectoryOptions& options);
+  /// Follows the trajectory to its end.
   /// @param u  m numbers: the start
   TrajectoryEnd follow(const std::vector<double>& u);
   /// Returns whether all components rest at an unstable root inside the cube, close to u.

@@ -34,9 +34,9 @@ struct IntersectionRoots {
   std::optional<SlidingRoot> rising, falling;
 };
 
-/// A root that does not exist, or is at infinity, is missing. Evaluated without cancellation, polished by a Newton
-/// step; near a double root the accuracy is the square root of rounding. Invariant under scaling of a row by powers of
-/// two.
+/// Finds both roots. One that does not exist, or is at infinity, is missing. Evaluated without cancellation, polished
+/// by a Newton step; near a double root the accuracy is the square root of rounding. Invariant under scaling of a row
+/// by powers of two.
 [[nodiscard]] IntersectionRoots intersection_roots(const PlaneTable& table);
 
 }  // namespace saltus::switching

@@ -39,8 +39,8 @@ struct RegionSet {
 /// Returns all sets whose margin is at least -tolerance, by enumeration of the 2^n - 1 subsets; n <= 12.
 [[nodiscard]] std::vector<RegionSet> admissible_region_sets(const RegionRates& rates, double tolerance);
 
-/// Of marginal sets that move alike, with the same weights, the largest one stands for all: at an equilibrium of one of
-/// the fields the indicators of all regions stay equal.
+/// Lets the largest one of marginal sets that move alike, with the same weights, stand for all. At an equilibrium of
+/// one of the fields the indicators of all regions stay equal.
 void merge_same_motions(std::vector<RegionSet>& sets);
 
 /// Decides which of several sets to go on with. A set comes before another one for the first of these that tells them

@@ -19,6 +19,7 @@ struct Balances {
   std::vector<std::size_t> unused;  ///< columns that are in none
 };
 
+/// Finds the balances of conditions with these effects of selections.
 /// @param effects  B, r x q
 /// @param terms    sizes of what each entry is the sum of (gradient times jump): what is below 1e-9 of these is 0
 /// @return         by their first function; no function and no selection is in two of them

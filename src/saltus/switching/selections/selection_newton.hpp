@@ -17,9 +17,9 @@ class SelectionNewton {
  public:
   explicit SelectionNewton(int surfaces, Interpolation interpolation = Interpolation::multi_affine);
 
+  /// Finds the root from a start.
   /// @param alpha  m doubles: the start; afterwards the root to rounding level, or where the iteration stopped. The
-  /// root
-  ///               may lie outside the cube: that is for the caller to see (an event function needs it).
+  ///               root may lie outside the cube: that is for the caller to see (an event function needs it).
   /// @return false if G becomes singular or the iteration does not settle within 30 steps (a double root close by)
   /// Cost: m + 1 evaluations of g per iteration, quadratic convergence: 2 to 4 iterations from nearby.
   bool solve(ProjectedField g, double* alpha);

@@ -25,10 +25,12 @@ class SelectionRange {
     double terms = 0.0;  ///< sizes of what they are the sum of: bounds their rounding
   };
 
+  /// Takes the set of this B.
   /// @param effects  B, r x q
   /// @return false if its rank is below r, or there are more flats of one rank than `most_flats`
   bool set(const Eigen::MatrixXd& effects);
   [[nodiscard]] const std::vector<Facets>& facets() const { return facets_; }
+  /// Returns the span along the normal of a pair of facets.
   /// @param constant  a, r
   [[nodiscard]] Span span(std::size_t facets, const Eigen::VectorXd& constant) const;
 

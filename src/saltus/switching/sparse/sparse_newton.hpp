@@ -17,6 +17,7 @@ class SparseEffects {
  public:
   explicit SparseEffects(const Influence& influence);
 
+  /// Finds G at one point.
   /// @param alpha  m selections; changed during the call and put back
   /// @param g      g(alpha), m
   void find(ProjectedField field, double* alpha, const double* g);

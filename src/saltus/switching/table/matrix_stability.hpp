@@ -10,6 +10,7 @@ namespace saltus::switching {
 class LuFactors {
  public:
   explicit LuFactors(int n);
+  /// Factors a matrix.
   /// @return false if the matrix is singular to working precision: solve is then not to be called
   bool factor(std::span<const double> matrix);
   void solve(double* b) const;  ///< b := A^-1 b, n doubles
