@@ -212,7 +212,7 @@ TEST(HigherOrder, SuperTwistingLosesAgainstADisturbanceThatGrows) {
 /// Continuous twisting: x and v and then e + 0.2 sin(t) are zero behind one approach along which nothing switches, with
 /// roots of both, so that no cycles shrink; where x and v cannot be told from zero any more they are held, with e on
 /// -0.2 sin(t), as |0.2 cos(t)| is less than 0.75.
-TEST(HigherOrder, ContinuousTwistingIsHeldWhereItDrowns) {
+TEST(HigherOrder, ContinuousTwistingIsHeldWhereItIsUnresolved) {
   const std::string text = R"toml(
 [model]
 name = "m"

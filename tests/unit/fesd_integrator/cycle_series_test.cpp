@@ -36,7 +36,7 @@ TEST(CycleSeries, FindsTheLimitOfGeometricCycles) {
   }
 }
 
-TEST(CycleSeries, AsksForNothingMoreWhereCyclesDrown) {
+TEST(CycleSeries, AsksForNothingMoreWhereCyclesAreUnresolved) {
   CycleSeries series;
   for (int k = 0; k < 12; ++k) {
     auto next = nth(k, 0.5);
