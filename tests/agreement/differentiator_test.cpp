@@ -1,5 +1,5 @@
 // Roots of switching functions that move, or are differences of large states: robust exact differentiators and
-// observers, whose psi is no more than rounding of its terms long before its laps are over.
+// observers, whose psi is no more than rounding of its terms long before its cycles are over.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -51,7 +51,7 @@ std::optional<Event> accumulation(const Result& result) {
 TEST(Differentiator, OfARampIsExactAfterTheTimeOfSuperTwisting) {
   const double r = std::exp(-M_PI * (1.5 / 4) / std::sqrt(1.1 / 2 - 1.5 * 1.5 / 16));
   const double limit = (1 + r) / (1.1 * (1 - r));
-  // psi is known to the rounding of its terms, r: laps shorter than some hundred sqrt(r) are over, and the rest is
+  // psi is known to the rounding of its terms, r: cycles shorter than some hundred sqrt(r) are over, and the rest is
   // extrapolated. Steps of dopri5 are less accurate beside the root.
   const double rounded = 2e-6, loose = 4e-6;
   for (const double level : {0.0, 3.0, -50.0}) {
@@ -75,7 +75,7 @@ TEST(Differentiator, OfARampIsExactAfterTheTimeOfSuperTwisting) {
 
 // On the signal: z1 = d/dt, and the selection is what makes z1 the second derivative: alpha = 1/2 + sin(t)/(2 k2).
 TEST(Differentiator, FollowsASignalThatCurves) {
-  // From (0.01, 1) few laps are left before the limit; with radau5 from (0.93771, -2.36334) stages that begin at the
+  // From (0.01, 1) few cycles are left before the limit; with radau5 from (0.93771, -2.36334) stages that begin at the
   // state are beyond the surface, which moves.
   for (const char* start : {"z0 = 0\nz1 = 0", "z0 = 0.3\nz1 = 0", "z0 = -0.5\nz1 = 2", "z0 = 0.01\nz1 = 1",
                             "z0 = 0.93771\nz1 = -2.36334"}) {
@@ -119,7 +119,7 @@ until = 8
   EXPECT_NEAR(result.final.x[2], -std::sin(8.0), 1e-11);
 }
 
-// The states of a pendulum with dry friction are known exactly behind the laps; the friction, which the observer does
+// The states of a pendulum with dry friction are known exactly behind the cycles; the friction, which the observer does
 // not know, is its disturbance.
 TEST(Differentiator, AnObserverKnowsTheStateOfItsPlant) {
   const auto plant = [](const std::string& observer, const std::string& states) {

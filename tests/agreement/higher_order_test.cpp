@@ -59,7 +59,7 @@ TEST(HigherOrder, TwistingReachesTheOriginAndStays) {
       ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
       const auto limits = of_kind(result, EventKind::accumulation);
       ASSERT_EQ(limits.size(), 1U);
-      // What the laps leave behind the extrapolation: their rounding, divided by one minus the ratio.
+      // What the cycles leave behind the extrapolation: their rounding, divided by one minus the ratio.
       EXPECT_NEAR(limits[0].t, twisting_ends, 1e-10);
       EXPECT_EQ(limits[0].surfaces, (std::vector<std::string>{"s1", "s2"}));
       EXPECT_EQ(*limits[0].mode_after, (std::vector<int>{0, 0}));
@@ -210,9 +210,9 @@ TEST(HigherOrder, SuperTwistingLosesAgainstADisturbanceThatGrows) {
 }
 
 /// Continuous twisting: x and v and then e + 0.2 sin(t) are zero behind one approach along which nothing switches, with
-/// roots of both, so that no laps shrink; where x and v cannot be told from zero any more they are held, with e on
+/// roots of both, so that no cycles shrink; where x and v cannot be told from zero any more they are held, with e on
 /// -0.2 sin(t), as |0.2 cos(t)| is less than 0.75.
-TEST(HigherOrder, ContinuousTwistingIsHeldWhereItDrowns) {
+TEST(HigherOrder, ContinuousTwistingIsHeldWhereItIsUnresolved) {
   const std::string text = R"toml(
 [model]
 name = "m"

@@ -97,7 +97,7 @@ json stored(const std::string& id) {
 }
 
 // Which spiral of the family leaves is free, but each passes the ray y1 > 0, y2 = 0 at y1 = elapsed (gamma - 1)/kappa,
-// nine times farther out from lap to lap.
+// nine times farther out from cycle to cycle.
 TEST(Intersection, ASpiralLeavesSelfSimilar) {
   const json problem = stored("P13");
   const Result result = simulate_text(text_of(closed_form(problem)), fine);
@@ -107,15 +107,15 @@ TEST(Intersection, ASpiralLeavesSelfSimilar) {
   const json& spiral = problem.at("spiral");
   const double ratio = spiral.at("gamma");
   const double rate = spiral.at("y_star")[0].get<double>() / spiral.at("elapsed").get<double>();
-  std::vector<double> laps;
+  std::vector<double> cycles;
   for (const Event& event : switches_of(result)) {
     const bool ray = event.surfaces == std::vector<std::string>{"s2"} && event.x[0] > 0.0;
     if (!ray) continue;
-    laps.push_back(event.x[0]);
+    cycles.push_back(event.x[0]);
     EXPECT_NEAR(event.x[0] / event.t, rate, 1e-9);
   }
-  ASSERT_GE(laps.size(), 3U);
-  for (std::size_t k = 1; k < laps.size(); ++k) EXPECT_NEAR(laps[k] / laps[k - 1], ratio, 1e-9);
+  ASSERT_GE(cycles.size(), 3U);
+  for (std::size_t k = 1; k < cycles.size(); ++k) EXPECT_NEAR(cycles[k] / cycles[k - 1], ratio, 1e-9);
 }
 
 std::string plane(const std::string& x1, const std::string& x2, const std::string& f1, const std::string& f2,
@@ -158,7 +158,7 @@ TEST(Intersection, SpiralsArriveAtTheirExactTime) {
 }
 
 // x1' = -a sign(x1) - b sign(x2), x2' = b sign(x1) - a sign(x2): |x1| + |x2| falls at the rate 2 a wherever the
-// solution is. Quarter turns shrink by (b - a)/(b + a) = 0.999 and 0.9995, laps of four by 0.996 and 0.998.
+// solution is. Quarter turns shrink by (b - a)/(b + a) = 0.999 and 0.9995, cycles of four by 0.996 and 0.998.
 TEST(Intersection, SpiralsThatShrinkByAThousandthInAQuarterTurnArrive) {
   for (const double a : {0.5, 0.25}) {
     const Result result = simulate_text(plane("1", "0", fmt::format("-{}*sign(x1) - {}*sign(x2)", a, 1000 - a),
@@ -167,7 +167,7 @@ TEST(Intersection, SpiralsThatShrinkByAThousandthInAQuarterTurnArrive) {
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     const auto arrival = accumulation_of(result);
     ASSERT_TRUE(arrival.has_value());
-    // What remains when the limit is announced is 2e-8; its ratio, from laps of 2e-11 that t resolves to 1e-16, is
+    // What remains when the limit is announced is 2e-8; its ratio, from cycles of 2e-11 that t resolves to 1e-16, is
     // wrong by 1e-7 over 48 of them, that is what remains by 1e-4.
     EXPECT_NEAR(arrival->t, 0.5 / a, 1e-11);
     EXPECT_EQ(*arrival->mode_after, (std::vector<int>{0, 0}));

@@ -160,7 +160,7 @@ TEST(SwitchingCases, NoScalingStabilisesTheRoot) {
     for (std::size_t k = 0; k < switches.size(); ++k) {
       const auto& event = switches[k];
       EXPECT_NE(event.mode_after.value()[0] * event.mode_after.value()[1], 0) << event.reason;
-      // Only where it begins do both surfaces meet, and every lap takes longer than the one before.
+      // Only where it begins do both surfaces meet, and every cycle takes longer than the one before.
       EXPECT_EQ(event.intersection.has_value(), k == 0) << event.reason;
       if (k < 9) continue;
       EXPECT_GT(event.t - switches[k - 4].t, switches[k - 4].t - switches[k - 8].t) << event.reason;

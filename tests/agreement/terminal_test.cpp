@@ -187,7 +187,7 @@ TEST(TimeOptimal, FeedbackWithARootGoesAlongItsCurve) {
 }
 
 // A curve that is too steep, x = v^2/4, is crossed: from v = 0 at x to v = 0 at -x/3 in 4 sqrt(x/3). 4/(sqrt(3) - 1) in
-// all; laps are extrapolated.
+// all; cycles are extrapolated.
 TEST(TimeOptimal, CurvesThatAreCrossedSpiralIntoTheOrigin) {
   for (const std::string force : {"-sign(x+v*abs(v)/4)", "-sign(v+2*sqrt(abs(x))*sign(x))"}) {
     for (const double x : {1.0, -1.0}) {

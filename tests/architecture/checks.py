@@ -8,6 +8,7 @@ import fnmatch
 import re
 from pathlib import Path
 
+from prose import PROSE_CHECKS
 from sizes import SIZE_CHECKS
 from sources import lines_of
 
@@ -221,4 +222,5 @@ ALL_CHECKS = {
     "citations": check_citations,
     "names_of_sources": check_names_of_sources,
     **SIZE_CHECKS,
+    **PROSE_CHECKS,
 }

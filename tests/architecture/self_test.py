@@ -232,6 +232,46 @@ class SelfTest(unittest.TestCase):
         data = more.replace("class A", "struct A").replace("  void f(int a);\n", "")
         self.assertEqual(self.complaints("data_members", {"src/saltus/ode/a.hpp": data}), [])
 
+    def assert_sentences(self, text, *expected):
+        found = self.complaints("comment_sentences", {"src/saltus/ode/a.cpp": text})
+        self.assertEqual(len(found), len(expected), found)
+        for complaint, part in zip(found, expected):
+            self.assertIn(part, complaint)
+
+    def test_long_sentences(self):
+        limit = TABLE["sizes"]["words_in_sentence"]
+        short, long = "word " * (limit - 1) + "end", "word " * limit + "end"
+        for comment in (f"// {short}.", f"int a;  ///< {short}", f"/// - {short}.\n/// - {short}.", f"/// {short};\n/// {short}."):
+            self.assert_sentences(comment + "\n")
+        half = "word " * (limit // 2 + 1)
+        for comment, line in (
+            (f"int b;\n// {long}.", 2),
+            (f"int a;  ///< {long}", 1),
+            (f"/// {half}\n/// {half}", 1),
+            (f"int a;  // {half}\n        // {half}", 1),
+            (f"/// First.\n/// - {half}\n///   {half}", 2),
+            (f"/// @param x, y  {half}\n///              {half}", 1),
+        ):
+            self.assert_sentences(comment + "\n", f"a.cpp:{line}: {limit + 1 if long in comment else 2 * (limit // 2 + 1)} words")
+
+    def test_what_is_no_sentence(self):
+        half = "word " * 20
+        for text in (
+            f"/// With\n///   x = {half},\n///   y = {half}\n/// {half}",  # displayed lines
+            f"/// {half}\n///\n/// {half}",  # paragraphs
+            f"/// {half} ({half} (and so on)) end.",
+            f'auto a = "// {half} {half}";',
+            f'auto a = R"(\n// {half} {half}\n)";',
+            f"int a;  // {half}\nint b;  // {half}",
+        ):
+            self.assert_sentences(text + "\n")
+
+    def test_ellipses(self):
+        for formula in ("k_1, ..., k_m", "m = 1 ... n", "c0 + c1 r + ...", "t_0 < … < t_n", "psi_0 … psi_n", "f(x_0, ...)"):
+            self.assert_sentences(f"/// Numbers {formula} of it.\n")
+        for prose in ("states, controls, ...", "What it sets …", "… and their values", "{ initial = … }", "if(...)"):
+            self.assert_sentences(f"int a;  ///< {prose}\n", "an ellipsis")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -29,7 +29,7 @@ struct AtlasInstance {
   Relabelling frame{0};           ///< from the frame in which the instance was made to its own
 
   /// Of fields that turn around the intersection.
-  [[nodiscard]] bool inwards() const { return spiral_lap(plane_table(f), 0)->lap_ratio < 1.0; }
+  [[nodiscard]] bool inwards() const { return spiral_cycle(plane_table(f), 0)->cycle_ratio < 1.0; }
   [[nodiscard]] std::array<double, 2> kappa(std::array<double, 2> made) const {
     if (frame.exchange) std::swap(made[0], made[1]);
     return made;

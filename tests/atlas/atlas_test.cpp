@@ -89,7 +89,7 @@ TEST(Atlas, ExitsWhereTheRootLosesItsStability) {
 }
 
 /// A root that no scaling stabilises has no cycle about it at equal speeds either: integrations from beside it all
-/// leave (the table above, and of README.md). Some of the resolver's laps enter the square at nearly the
+/// leave (the table above, and of README.md). Some of the resolver's turns enter the square at nearly the
 /// same point while they grow outside, 8 of these instances so nearly that they once passed for a cycle.
 TEST(Atlas, NothingStaysAboutARootThatHasLostItsStability) {
   AtlasInstances instances(1);
@@ -109,7 +109,7 @@ TEST(Atlas, Spirals) {
   auto table = compare_tree(Tree::spiral, {.instances = 200, .seed = 7, .simulate_every = 1, .scalings = 2});
   EXPECT_EQ(leaves(table),
             (std::set<std::string>{"spiral in", "spiral out, root stable", "spiral out, root unstable"}));
-  // Where the root is almost neutral a limit cycle may surround it, or the laps do not come to an end.
+  // Where the root is almost neutral a limit cycle may surround it, or the turns do not come to an end.
   for (std::size_t s = 0; s < 2; ++s) {
     auto& cell = table.at({"spiral out, root unstable", s});
     for (AtlasTally* tally : {&cell.resolver, &cell.simulated}) {

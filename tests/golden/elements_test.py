@@ -122,7 +122,7 @@ fesd = { reformulation = "stewart" }
             self.assertLess(result["statistics"]["steps"], 2000)
 
     def test_switches_that_roundings_repeat_do_not_stop_time(self):
-        # x leaves 0 like (0.5 cos 2t)^4: laps that seem to shrink to 1e-23 where time has roundings of 1e-16.
+        # x leaves 0 like (0.5 cos 2t)^4: cycles that seem to shrink to 1e-23 where time has roundings of 1e-16.
         result = self.run_terminal("1/4", "--until", "2.5", "--set", "simulate.fesd.stages=4")
         self.assertAlmostEqual(result["final"]["x"][0], 3.21380053e-4, delta=1e-9)
         self.assertLess(result["statistics"]["steps"], 2000)

@@ -198,7 +198,7 @@ class Tried(tool.ToolTest):
         self.write("m.toml", RELAY.replace('name = "off"', 'name = "on"'))
         self.assertIn("on", self.run_tool("simulate", "m.toml", code=2)[1])
 
-    def test_the_layer_that_is_advised_resolves_the_laps(self):
+    def test_the_layer_that_is_advised_resolves_the_cycles(self):
         _, _, err = self.simulated(FEEDBACK, code=3)
         epsilon = err.split("simulate.smoothed.epsilon = ")[1].split(",")[0]
         result, _, err = self.simulated(FEEDBACK, "--method", "smoothed", "--set", f"simulate.smoothed.epsilon={epsilon}")

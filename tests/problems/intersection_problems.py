@@ -90,7 +90,7 @@ def filippov_spiral():
     def solution():
         velocity = lambda k: [mpf(-k[0] + 2 * k[1]), mpf(-2 * k[0] - k[1])]
         events = [dict(t=mpf(0), kind="start", surfaces=["x1"], mode_before=None, mode_after=[1, 1], x=[mpf(0), mpf(1)])]
-        # Four laps of four crossings must have shrunk, behind two to compare with: by then 1e-8 of the time is left.
+        # Four cycles of four crossings must have shrunk, behind two to compare with: by then 1e-8 of the time is left.
         crossings = turns([0, 1], velocity, ["x1", "x2"], on=0)
         events += [next(crossings) for _ in range(FILIPPOV_CROSSINGS)]
         last = events[-1]

@@ -38,7 +38,8 @@ double slope(const Course& course, double t) {
 /// A stretch of one mode: its laws' signs (0: sticks), and the walls that hold.
 class Stretch {
  public:
-  /// A wall holds where the state is at rest on it at both ends. Laps that tighten have turning points 1e-13 before it.
+  /// A wall holds where the state is at rest on it at both ends. Cycles that tighten have turning points 1e-13 before
+  /// it.
   Stretch(const Hybrid& hybrid, std::vector<int> signs, const State& x, const State& x_next)
       : hybrid_(hybrid), signs_(std::move(signs)) {
     for (const Wall& wall : hybrid.walls) {
@@ -224,8 +225,8 @@ std::vector<int> signs_of(const Hybrid& hybrid, const Result& result, std::size_
   return signs;
 }
 
-/// What the state may move by at a time: rounding, or where jumps have their limit what their last lap, which is
-/// extrapolated, leaves of velocities, and what it moves by at these rates in the time that is left: laps that shrink
+/// What the state may move by at a time: rounding, or where jumps have their limit what their last cycle, which is
+/// extrapolated, leaves of velocities, and what it moves by at these rates in the time that is left: cycles that shrink
 /// by 0.95, the largest restitution, leave 19 times the last one.
 double limit_moves(const Result& result, double t, const State& x, const State& rates) {
   double last = t, before = t, moves = 1e-13 * size_of(x);

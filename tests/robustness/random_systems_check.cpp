@@ -233,7 +233,7 @@ std::string surfaces_of(const Event& event, const ListedResult& result, const st
   return "";
 }
 
-/// Where a surface is met tangentially its laps are resolved to the square root of rounding: a run may go on from the
+/// Where a surface is met tangentially its cycles are resolved to the square root of rounding: a run may go on from the
 /// limit of what it has seen this long before it.
 constexpr double before_limit = 1e-5;
 
@@ -241,27 +241,27 @@ bool same_change(const Event& a, const Event& b) {
   return a.mode_before == b.mode_before && a.mode_after == b.mode_after;
 }
 
-/// What the last two laps leave to their limit, as far as they shrink geometrically.
+/// What the last two cycles leave to their limit, as far as they shrink geometrically.
 struct Remaining {
   double t = 0.0;
   double x = 0.0;  ///< the largest component
 };
 
-/// Between the last event before limit number k and the limit; 0 if the limit is elsewhere than where the laps lead. A
-/// surface that is met tangentially at the limit ends the laps of a slow sequence long before it.
+/// Between the last event before limit number k and the limit; 0 if the limit is elsewhere than where the cycles lead.
+/// A surface that is met tangentially at the limit ends the cycles of a slow sequence long before it.
 Remaining remaining_before(const std::vector<Event>& events, std::size_t k) {
   std::vector<const Event*> last;
   for (std::size_t i = k; i-- > 0 && last.size() < 3;) {
     if (same_change(events[i], events[k - 1])) last.push_back(&events[i]);
   }
   if (last.size() < 3) return {};
-  const double lap = last[0]->t - last[1]->t;
-  const double ratio = lap / (last[1]->t - last[2]->t);
+  const double cycle = last[0]->t - last[1]->t;
+  const double ratio = cycle / (last[1]->t - last[2]->t);
   if (!(ratio < 1.0)) return {};
-  const double laps = ratio / (1.0 - ratio);
+  const double cycles = ratio / (1.0 - ratio);
   const double stretch = events[k].t - last[0]->t;
-  if (!(std::abs(stretch - lap * laps) <= 0.05 * lap * laps)) return {};
-  return {stretch, distance(last[0]->x, last[1]->x) * laps};
+  if (!(std::abs(stretch - cycle * cycles) <= 0.05 * cycle * cycles)) return {};
+  return {stretch, distance(last[0]->x, last[1]->x) * cycles};
 }
 
 /// The limit of a sequence of switches at t, where they do follow each other faster than any bound.
@@ -281,7 +281,7 @@ bool is_near_limit(const ListedResult& result, double t) {
   return false;
 }
 
-/// The first lap of a solution that spirals out of an intersection is passed in one step, from its closed form.
+/// The first cycle of a solution that spirals out of an intersection is passed in one step, from its closed form.
 bool begins_to_spiral(const ListedResult& result, double t) {
   const auto& events = result.events;
   const auto first =
@@ -293,7 +293,7 @@ bool begins_to_spiral(const ListedResult& result, double t) {
 }
 
 /// Whether the switches of a surface at t are part of an accumulation that the run passes, or in which it ends. One
-/// whose laps shrink fast is over where two surfaces are met together: sliding on both.
+/// whose cycles shrink fast is over where two surfaces are met together: sliding on both.
 bool in_accumulation(const ListedResult& result, double t, std::size_t surface) {
   if (is_near_limit(result, t)) return true;
   const auto ends_it = [&](const Event& event) {
@@ -305,13 +305,13 @@ bool in_accumulation(const ListedResult& result, double t, std::size_t surface) 
          result.status.message.starts_with("switches accumulate") && result.status.time_reached - t < 1e-6;
 }
 
-/// Whether events i < k that follow each other are those of laps that shrink: the same two changes have followed each
+/// Whether events i < k that follow each other are those of cycles that shrink: the same two changes have followed each
 /// other twice before, each time in less time. A stretch of sliding that ends where a second surface is met shrinks
-/// like the square of its lap, so that it is this short long before the limit.
-bool shrinks_from_lap_to_lap(const std::vector<Event>& events, std::size_t i, std::size_t k) {
+/// like the square of its cycle, so that it is this short long before the limit.
+bool shrinks_from_cycle_to_cycle(const std::vector<Event>& events, std::size_t i, std::size_t k) {
   double shorter = events[k].t - events[i].t;
-  int laps = 0;
-  for (std::size_t first = i; first-- > 0 && laps < 2;) {
+  int cycles = 0;
+  for (std::size_t first = i; first-- > 0 && cycles < 2;) {
     const std::size_t second = first + (k - i);
     if (!same_change(events[first], events[i]) || !same_change(events[second], events[k])) continue;
     const double duration = events[second].t - events[first].t;
@@ -320,9 +320,9 @@ bool shrinks_from_lap_to_lap(const std::vector<Event>& events, std::size_t i, st
     constexpr double resolution = 2.0 * std::numeric_limits<double>::epsilon();
     if (!(duration > shorter - 4.0 * resolution * events[k].t)) return false;
     shorter = duration;
-    ++laps;
+    ++cycles;
   }
-  return laps == 2;
+  return cycles == 2;
 }
 
 /// The same change of the same surfaces twice at one time. A limit is not one of the switches that it is the limit of.
@@ -354,7 +354,8 @@ std::string events_of(const RandomSystem& system, const ListedResult& result, co
       }
       if (from == to) continue;
       if (last[j] && event.t - events[*last[j]].t < 1e-9 && !in_accumulation(result, event.t, j) &&
-          !shrinks_from_lap_to_lap(events, *last[j], i) && !is_unresolved(system, listed, result.whole, *last[j], i)) {
+          !shrinks_from_cycle_to_cycle(events, *last[j], i) &&
+          !is_unresolved(system, listed, result.whole, *last[j], i)) {
         const bool back = *events[*last[j]].mode_before == *event.mode_after;
         return fmt::format("s{} changes {} at t = {}", j, back ? "there and back" : "twice", event.t);
       }
@@ -371,7 +372,7 @@ bool same_where_listed(const result::Mode& a, const result::Mode& b, const std::
   return true;
 }
 
-/// What the state may move by at a time: nothing, or from the last computed lap to the limit that is extrapolated.
+/// What the state may move by at a time: nothing, or from the last computed cycle to the limit that is extrapolated.
 double step_at(const ListedResult& result, double t) {
   double step = 1e-13;
   for (std::size_t k = 1; k < result.events.size(); ++k) {
@@ -392,18 +393,18 @@ std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& l
     // Behind a stop the last row may stand where no mode goes on.
     if (last && result.status.termination != result::Termination::completed) break;
     const ModeCheck check(system, listed, rows.mode[i], rtol);
-    // The last laps before a limit are smaller than what the tolerances leave of psi.
+    // The last cycles before a limit are smaller than what the tolerances leave of psi.
     const bool behind_limit = any_limit && has_limit(result, rows.t[i]) && (last || rows.t[i + 1] > rows.t[i]);
-    const bool in_last_laps = any_limit && is_near_limit(result, rows.t[i]) && !behind_limit;
-    std::string problem = in_last_laps ? "" : check.row(rows.t[i], rows.x[i], rows.alpha[i]);
+    const bool in_last_cycles = any_limit && is_near_limit(result, rows.t[i]) && !behind_limit;
+    std::string problem = in_last_cycles ? "" : check.row(rows.t[i], rows.x[i], rows.alpha[i]);
     if (problem.empty() && !last) {
       const bool later = rows.t[i + 1] > rows.t[i];
-      if (later && in_last_laps && has_limit(result, rows.t[i + 1])) {
-        // What is left of the laps is extrapolated: no single mode leads there.
-        if (!same_state(rows.x[i], rows.x[i + 1], 1e-5)) problem = "the limit is far from the last lap";
+      if (later && in_last_cycles && has_limit(result, rows.t[i + 1])) {
+        // What is left of the cycles is extrapolated: no single mode leads there.
+        if (!same_state(rows.x[i], rows.x[i + 1], 1e-5)) problem = "the limit is far from the last cycle";
       } else if (later && begins_to_spiral(result, rows.t[i])) {
-        // All four modes of the lap: the fields are constant to a millionth over it.
-        if (!same_state(rows.x[i], rows.x[i + 1], 1e-5)) problem = "the first lap of a spiral is long";
+        // All four modes of the cycle: the fields are constant to a millionth over it.
+        if (!same_state(rows.x[i], rows.x[i + 1], 1e-5)) problem = "the first cycle of a spiral is long";
       } else if (later) {
         if (!same_where_listed(rows.mode[i], rows.mode[i + 1], listed)) problem = "the mode changes between rows";
         if (problem.empty()) {
@@ -421,24 +422,25 @@ std::string trajectory_of(const RandomSystem& system, const std::vector<bool>& l
   return "";
 }
 
-/// Whether a run has ended with max_events in laps that shrink like a power of their number, each of the same changes,
-/// and says so: that many events are its solution. With intervals like k^-p a quarter of the events takes less time
-/// than the one before, by (3/4)^p or so for the last two; p is 1/4 or more, or nobody speaks of laps that shrink.
-bool ends_in_shrinking_laps(const Result& result) {
+/// Whether a run has ended with max_events in cycles that shrink like a power of their number, each of the same
+/// changes, and says so: that many events are its solution. With intervals like k^-p a quarter of the events takes less
+/// time than the one before, by (3/4)^p or so for the last two; p is 1/4 or more, or nobody speaks of cycles that
+/// shrink.
+bool ends_in_shrinking_cycles(const Result& result) {
   if (result.status.termination != result::Termination::iteration_limit) return false;
   if (result.status.message.find("shrink like the power") == std::string::npos) return false;
   const std::vector<Event> events = result.events;
   const std::size_t quarter = events.size() / 4;
   const auto taken = [&](std::size_t last) { return events[last].t - events[last - quarter].t; };
   const std::size_t end = events.size() - 1;
-  const auto repeats = [&](std::size_t lap) {
+  const auto repeats = [&](std::size_t cycle) {
     for (std::size_t k = events.size() - quarter; k <= end; ++k) {
-      if (!same_change(events[k], events[k - lap])) return false;
+      if (!same_change(events[k], events[k - cycle])) return false;
     }
     return true;
   };
-  constexpr std::size_t laps[] = {1, 2, 3, 4, 5, 6, 7, 8};
-  return std::any_of(std::begin(laps), std::end(laps), repeats) && taken(end) < 0.95 * taken(end - quarter) &&
+  constexpr std::size_t cycles[] = {1, 2, 3, 4, 5, 6, 7, 8};
+  return std::any_of(std::begin(cycles), std::end(cycles), repeats) && taken(end) < 0.95 * taken(end - quarter) &&
          taken(end - quarter) < 0.95 * taken(end - 2 * quarter);
 }
 
@@ -448,7 +450,7 @@ std::string complaint(const RandomSystem& system, const std::vector<bool>& liste
   using result::Termination;
   const bool accepted = result.status.termination == Termination::completed ||
                         (result.status.termination == Termination::outside_class && !result.status.message.empty()) ||
-                        ends_in_shrinking_laps(result);
+                        ends_in_shrinking_cycles(result);
   if (!accepted) return fmt::format("{}: {}", result::name(result.status.termination), result.status.message);
   if (result.status.termination == Termination::completed && result.trajectory.t.back() != result.final.t) {
     return "the last row is not the end";

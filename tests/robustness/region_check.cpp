@@ -177,17 +177,17 @@ std::string complaint(const RegionSystem& system, const Result& result, double r
     const auto where = [&](const std::string& problem) {
       return fmt::format("row {} (t = {:.17g}, regions {}): {}", i, rows.t[i], fmt::join(active, " "), problem);
     };
-    // The last laps before a limit, and what is extrapolated of them.
-    const bool in_laps = limit_at(rows.t[i]);
-    if (const auto problem = in_laps ? "" : row_of(system, active, x, rows.theta[i]); !problem.empty())
+    // The last cycles before a limit, and what is extrapolated of them.
+    const bool in_cycles = limit_at(rows.t[i]);
+    if (const auto problem = in_cycles ? "" : row_of(system, active, x, rows.theta[i]); !problem.empty())
       return where(problem);
     if (i + 1 == rows.t.size()) break;
     const VectorXd x_next = vector_of(rows.x[i + 1]);
     const double moves = (x_next - x).cwiseAbs().maxCoeff();
     const double duration = rows.t[i + 1] - rows.t[i];
     if (duration < 0.0) return where("the next row is earlier");
-    if (duration == 0.0 || (in_laps && limit_at(rows.t[i + 1]))) {
-      if (!(moves <= (in_laps ? 1e-5 : 1e-12 * (1.0 + x.norm()))))
+    if (duration == 0.0 || (in_cycles && limit_at(rows.t[i + 1]))) {
+      if (!(moves <= (in_cycles ? 1e-5 : 1e-12 * (1.0 + x.norm()))))
         return where(fmt::format("moves by {} at once", moves));
       continue;
     }

@@ -20,7 +20,8 @@ namespace saltus::discretization {
 /// Lifted variables replaced by their products: row k of the lifting is beta_k less a product of earlier ones.
 [[nodiscard]] inline casadi::SX without_lifting(const reformulation::Dcs& dcs, casadi::SX expression) {
   for (casadi_int k = dcs.lifted.numel(); k-- > 0;) {
-    // Solved for beta_k by its value at 0: whether beta_k - (beta_k - ...) is simplified depends on how it was written.
+    // Solved for beta_k by its value at 0: whether beta_k - (beta_k - product) is simplified depends on how it was
+    // written.
     const casadi::SX product = -casadi::SX::substitute(dcs.lifting(k), dcs.lifted(k), 0.0);
     expression = casadi::SX::substitute(expression, dcs.lifted(k), product);
   }

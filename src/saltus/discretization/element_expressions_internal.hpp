@@ -61,17 +61,17 @@ void add_paper_cross_complementarity(const Boundary& boundary, LocalExpressions&
 /// How many variables a boundary has, with their bounds.
 [[nodiscard]] mpcc::Bounds boundary_bounds(StepEquilibration mode, int pairs);
 
-/// Values of these variables with which the rows of mode mlcp hold: from the first sides of its pairs where the variables
-/// are zero, and h_n - h_(n-1).
+/// Values of these variables with which the rows of mode mlcp hold: from the first sides of its pairs where the
+/// variables are zero, and h_n - h_(n-1).
 [[nodiscard]] Eigen::VectorXd boundary_values(const Eigen::VectorXd& first_sides, double difference);
 void add_step_equilibration(const FesdOptions& options, const std::vector<SelectionPair>& kinds,
                             const Boundary& boundary, LocalExpressions& expressions);
 
 /// What elements share in an optimal control problem.
 struct SharedInputs {
-  casadi::SX symbols;         ///< local inputs of every element: controls, free parameters, horizon, ...
-  casadi::SX length_factor;   ///< h = length_factor times the element's variable
-  bool needs_time = false;    ///< whether something else than the dynamics depends on time
+  casadi::SX symbols;        ///< local inputs of every element: controls, free parameters, horizon and the like
+  casadi::SX length_factor;  ///< h = length_factor times the element's variable
+  bool needs_time = false;   ///< whether something else than the dynamics depends on time
 };
 
 /// Time, state and selections at a stage or at the right end, over the inputs of the element.
@@ -87,10 +87,10 @@ struct ElementExpressions {
   /// Left state, left time (if it matters), left lambda, shared inputs, the element's variables.
   casadi::SX element_inputs;
   LocalExpressions element;
-  casadi::SX boundary_inputs;  ///< left lambda and variables of the element before, variables of the one after, own
+  casadi::SX boundary_inputs;   ///< left lambda and variables of the element before, variables of the one after, own
   LocalExpressions neighbours;  ///< complementarities across the boundary (mode paper)
   LocalExpressions boundary;    ///< step equilibration
-  casadi::SX h;                ///< length
+  casadi::SX h;                 ///< length
   std::vector<ElementPoint> stages;
   ElementPoint left, end;  ///< the left end has no selections
   mpcc::Bounds boundary_own_bounds;

@@ -31,8 +31,12 @@ struct SelectionPair {
 /// number of elements.
 class FesdKernel {
  public:
-  /// Fails (invalid_option) for weights and gamma_h outside their ranges, (not_available) for Lobatto IIIA,
-  /// (invalid_model) if the symbolic layer refuses an expression, and as StageKernel if native code cannot be had.
+  /// Fails in these ways:
+  /// - invalid_option for weights and gamma_h outside their ranges;
+  /// - not_available for Lobatto IIIA;
+  /// - invalid_model if the symbolic layer refuses an expression;
+  /// - as StageKernel if native code cannot be had.
+  ///
   /// Cost: that of building second derivatives of n_s copies of the model.
   /// @param parameters  values of Dcs::p; controls are replaced by their inputs
   [[nodiscard]] static Expected<std::shared_ptr<FesdKernel>> compile(

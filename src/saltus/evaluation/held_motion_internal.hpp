@@ -15,8 +15,8 @@ namespace saltus::evaluation {
 struct HeldGuard {
   std::string jump;                   ///< its name, for errors
   casadi::SX guard;                   ///< g, scalar
-  std::vector<int> targets;           ///< states the jump sets …
-  casadi::SX values;                  ///< … and their new values
+  std::vector<int> targets;           ///< states that the jump sets
+  casadi::SX values;                  ///< the new values of these states
   std::vector<bool> discrete_states;  ///< n_x
 };
 

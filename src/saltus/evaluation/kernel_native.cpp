@@ -13,9 +13,9 @@ namespace {
 
 std::string name_of_direct(const casadi::Function& field) { return field.name() + "_direct"; }
 
-/// States, and operations of the field, up to which the stages of steps are compiled with the field inside: they hold
-/// it 18 times, and 36 times more where the solution slides, which takes the compiler about as long as everything else
-/// does at these limits, and what is around the field matters less the larger it is.
+/// States, and operations of the field, up to which the stages of steps are compiled with the field inside. They hold
+/// it 18 times, and 36 times more where the solution slides. At these limits that takes the compiler about as long as
+/// everything else does. What is around the field matters less the larger it is.
 struct Limits {
   int states;
   long operations;

@@ -84,9 +84,12 @@ struct FieldConstants {
   [[nodiscard]] bool has_steps() const { return steps != nullptr && use->motion == motion; }
 };
 
-/// Event functions are numbered: psi_0 … psi_{n_psi-1}, then the expressions of [[events]], then the comparisons
-/// (guards) of their conditions, then the guards of [[jumps]], jump by jump, then two for every cell: its argument less
-/// the upper end of the cell it is in, and less the lower end.
+/// Event functions are numbered in this order:
+/// - psi_0 … psi_{n_psi-1};
+/// - the expressions of [[events]];
+/// - the comparisons (guards) of their conditions;
+/// - the guards of [[jumps]], jump by jump;
+/// - two for every cell: its argument less the upper end of the cell it is in, and less the lower end.
 ///
 /// Floor, tables and sampled inputs are smooth in the cells of their arguments. The kernel holds in which cell each is
 /// (set_cell), and all functions are those of these cells, also where the argument has left them.

@@ -10,7 +10,7 @@ namespace saltus::evaluation {
 /// Laid out as the C code declares it.
 struct SlidingConstants {
   const double* below = nullptr;  ///< constants of f-
-  const double* above = nullptr;  ///< … of f+
+  const double* above = nullptr;  ///< constants of f+
   const double* row = nullptr;    ///< n doubles
   double rate = 0.0;
   double row_square = 0.0;  ///< |row|^2

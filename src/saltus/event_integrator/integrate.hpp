@@ -12,7 +12,7 @@
 
 namespace saltus::event_integrator {
 
-/// The parts of a result that an engine computes; `final` is the last row.
+/// Holds the parts of a result that an engine computes; `final` is the last row.
 struct Integration {
   result::Status status;
   result::Final final;
@@ -30,10 +30,10 @@ using TakeRecorded = std::function<void(result::Trajectory, result::Events)>;
 
 /// Integrates xdot in F(t, x) by classical and sliding motion, mode by mode ([guglielmi2022], sections 3, 4.1, 4.2).
 ///
-/// Between events the order is that of the method: a switch is found on the dense output, then the step is retaken to
-/// exactly that time and corrected until the event function is at rounding level.
-/// With choices it is the same run up to the last of them, with everything that waits, is held or was seen there, goes
-/// on in the chosen mode, and has that event with its two rows first.
+/// Between events the order is that of the method. A switch is found on the dense output. Then the step is retaken to
+/// exactly that time and corrected until the event function is at rounding level. With choices it is the same run up to
+/// the last of them, with everything that waits, is held or was seen there. It goes on in the chosen mode, and has that
+/// event with its two rows first.
 /// @param take  gets all rows and events, of which the result then has none; memory does not grow with their number
 ///              (but by 8 bytes for each event). May be empty. Not together with choices.
 /// @return everything computed up to the termination; never throws for numerical reasons. Independent of the output

@@ -13,7 +13,7 @@
 
 namespace saltus::event_integrator {
 
-/// Rows of the trajectory beside the two of every event and the last one.
+/// Says which rows the trajectory has beside the two of every event and the last one.
 struct OutputTimes {
   enum class Rows { at_times, at_steps };
   Rows rows = Rows::at_steps;
@@ -24,7 +24,7 @@ struct OutputTimes {
   std::size_t selections = 0;  ///< so many of the last outputs are selections, cut to [0, 1]
 };
 
-/// Layers of a regularised system: inside one, psi + half_width > 0 > psi - half_width.
+/// Holds the layers of a regularised system: inside one, psi + half_width > 0 > psi - half_width.
 struct ThinLayers {
   struct Corners {
     int lower = 0, upper = 0;  ///< switching functions psi + half_width and psi - half_width
@@ -37,7 +37,7 @@ struct ThinLayers {
   [[nodiscard]] bool empty() const { return corners.empty() && weights.empty(); }
 };
 
-/// Checked by the pipeline: from < until, rtol > 0, atol >= 0, max_step > 0.
+/// Holds options that the pipeline has checked: from < until, rtol > 0, atol >= 0, max_step > 0.
 struct IntegrationOptions {
   ode::Method method = ode::Method::dopri5;
   ode::Tolerances tolerances;

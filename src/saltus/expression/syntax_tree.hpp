@@ -37,7 +37,7 @@ struct Number {
 };
 struct Name {
   std::string name;
-};  ///< states, parameters, definitions, `t`, `pi`, `otherwise` …: resolved by the model
+};  ///< of a state, a parameter or a definition, or `t`, `pi`, `otherwise`; the model resolves it
 struct Unary {
   UnaryOperator op;
   NodePtr operand;

@@ -17,7 +17,8 @@ namespace saltus::fesd_integrator {
 
 class StepProblem;
 
-/// Checked by the pipeline: from < until, steps >= 1, elements >= 1 (2 with switch detection), 0 < step_bounds <= 1.
+/// Holds options that the pipeline has checked: from < until, steps >= 1, elements >= 1 (2 with switch detection), 0 <
+/// step_bounds <= 1.
 struct IntegrationOptions {
   enum class Switches {
     detected,  ///< lengths of elements follow the switches
@@ -35,7 +36,7 @@ struct IntegrationOptions {
   double step_bounds = 1.0;  ///< gamma: lengths within (1 - gamma, 1 + gamma) times their mean
   long max_steps = 1000000;  ///< elements, and simulation steps that were divided
   long max_events = 100000;
-  /// Rows at these times instead of at the ends of all elements; ascending, inside [from, until].
+  /// Asks for rows at these times instead of at the ends of all elements; ascending, inside [from, until].
   enum class Rows { at_elements, at_times };
   Rows rows = Rows::at_elements;
   std::vector<double> times;
@@ -60,7 +61,7 @@ using result::Continue;
 using result::Progress;
 using result::StepObserver;
 
-/// The parts of a result that an engine computes; `final` is the last row.
+/// Holds the parts of a result that an engine computes; `final` is the last row.
 struct Integration {
   result::Status status;
   result::Final final;

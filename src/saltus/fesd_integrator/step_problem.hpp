@@ -16,7 +16,7 @@ struct Dcs;
 
 namespace saltus::fesd_integrator {
 
-/// What the problem says of one element.
+/// Says what the problem says of one element.
 struct ElementGuess {
   double t = 0.0;
   double h = 0.0;

@@ -26,7 +26,7 @@ class NlLines {
   /// First character of the line: what segments and operands are called by.
   [[nodiscard]] char letter() const { return words_.empty() ? '\0' : words_.front().front(); }
 
-  /// Word i as a whole number from low to high. `what` completes "expected ...".
+  /// Word i as a whole number from low to high. `what` is what was expected, for the error.
   long whole(std::size_t i, std::string_view what, long low, long high);
   /// What follows the letter of the line.
   long whole_behind_letter(std::string_view what, long low, long high);

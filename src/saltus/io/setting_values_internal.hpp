@@ -11,7 +11,7 @@ namespace saltus::io {
 /// "--set KEY" as the place of an error.
 [[nodiscard]] SourceLocation place_of_setting(std::string_view key);
 
-/// An error of --set KEY=….
+/// An error of --set KEY=VALUE.
 [[nodiscard]] tl::unexpected<Error> refused_setting(std::string_view key, ErrorCode code, std::string message,
                                                     std::string remedy);
 

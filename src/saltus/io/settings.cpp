@@ -172,7 +172,7 @@ Expected<void> set_input_expression(model::Description& description, std::string
   return {};
 }
 
-/// simulate.inputs.u.file=… and simulate.inputs.u.result=…, relative to the working folder.
+/// simulate.inputs.u.file=PATH and simulate.inputs.u.result=PATH, relative to the working folder.
 Expected<void> set_samples(ModelFile& model, std::string_view name, std::string_view source, std::string_view file) {
   const auto place = place_of_setting(fmt::format("simulate.inputs.{}.{}", name, source));
   auto input = sampled_input(std::string(name), source, std::string(file), place, model.files);

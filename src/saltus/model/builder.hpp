@@ -158,7 +158,7 @@ class Builder {
   /// At times in ascending order.
   void jump_at(const std::vector<double>& times, const std::map<std::string, casadi::SX>& set,
                const JumpOptions& options = {});
-  /// At start + period, start + 2 period, …
+  /// At start + k period, k = 1, 2, …
   void jump_every(double period, const std::map<std::string, casadi::SX>& set, const JumpOptions& options = {});
   /// The control during a simulation, an expression of time and parameters; its initial value otherwise.
   void input(const std::string& control, const casadi::SX& expression);

@@ -21,7 +21,7 @@ std::vector<double> spline_slopes(const std::vector<double>& x, const std::vecto
   const auto h = [&](std::size_t k) { return x[k + 1] - x[k]; };
   const auto secant = [&](std::size_t k) { return (y[k + 1] - y[k]) / h(k); };
   std::vector<double> diagonal(n + 1), above(n + 1), slope(n + 1);
-  // h_1 s_0 + (h_0 + h_1) s_1 = …: the two pieces that meet at x_1 are one cubic.
+  // The row of h_1 s_0 + (h_0 + h_1) s_1: the two pieces that meet at x_1 are one cubic.
   const double first = h(0) + h(1);
   diagonal[0] = h(1);
   above[0] = first;

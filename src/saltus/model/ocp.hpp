@@ -55,9 +55,11 @@ struct OcpClock {
   double speed_lower = 1.0, speed_upper = 1.0;
 };
 
-/// min  int L dt + E(x(T), T, p) + w T + least squares + penalties
-/// over u_k (one per interval), free T, free x_i(from) and free p, subject to xdot = f(t, x, u, p, alpha), bounds,
-/// path and terminal constraints and complementarities. Every expression is an output of `system`: L, E, constraints.
+/// An optimal control problem is
+///   min  int L dt + E(x(T), T, p) + w T + least squares + penalties
+///   over u_k (one per interval), free T, free x_i(from) and free p
+///   subject to xdot = f(t, x, u, p, alpha), bounds, path and terminal constraints and complementarities.
+/// Every expression is an output of `system`: L, E, constraints.
 struct Ocp {
   System
       system;  ///< controls: the user's, then one per kink of controls; outputs: the user's, then those of the problem

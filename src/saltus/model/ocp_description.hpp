@@ -87,7 +87,7 @@ struct ClockDescription {
   std::string clock;                             ///< the state that is physical time; empty: there is none by hand
   expression::NodePtr speed_lower, speed_upper;  ///< null: 1
   expression::NodePtr a_n, stiffness, stabilisation, transfer;  ///< null: the default
-  /// { initial = …, final = … }: with what an optimisation begins, `stabilisation` is where it ends; null: it is fixed.
+  /// { initial = a, final = b }: an optimisation begins with a, and `stabilisation` is b; null: it is fixed.
   expression::NodePtr stabilisation_initial;
   expression::NodePtr correction;   ///< of held gaps: a speed; null: the default
   expression::NodePtr penetration;  ///< how deep an optimum may be in a contact; null: the default

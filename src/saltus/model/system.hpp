@@ -72,7 +72,7 @@ struct Jump {
   casadi::SX guard_alpha;              ///< one symbol per guard
   std::vector<bool> true_at_equality;  ///< step(guard) counts as 1 where the guard is 0
   std::vector<double> times;           ///< trigger times: `at`, ascending
-  double every = 0.0;                  ///< trigger times: at from + every, from + 2 every, …; 0 without
+  double every = 0.0;                  ///< trigger times: at from + k every, k = 1, 2, …; 0 without
   std::vector<int> targets;            ///< states that are set
   casadi::SX values;                   ///< one per target, over t, x, u, p, alpha
   casadi::SX priority, delay;          ///< scalars over t, x, u, p, alpha
@@ -116,7 +116,7 @@ struct FrozenSystem;
 /// model's. Structure (which functions exist, what folded, what is a kink) holds for parameter_values.
 ///
 /// A branch of if, abs, max, min that can be NaN or infinite is guarded: alpha = 0 and 1 select a branch exactly, also
-/// when the other is NaN. Take derivatives with respect to alpha as differences of corners, not by differentiating a
+/// when the other is NaN. Take derivatives with respect to alpha as differences of corners. Do not differentiate a
 /// guarded term at alpha = 0 or 1, where the branch not taken is missing from it.
 struct System {
   std::string name;
@@ -149,7 +149,7 @@ struct System {
 
   bool multi_affine = true;                        ///< f_as_written is, in the alphas of listed functions, by its form
   std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ on a surface
-  std::vector<std::string> warnings;               ///< unused names, aliases, …
+  std::vector<std::string> warnings;               ///< of unused names, aliases and the like
 };
 
 }  // namespace saltus::model

@@ -35,10 +35,10 @@ struct Bounds {
 /// Whether one side of a pair is known to be nonnegative.
 enum class Sign {
   constrained,  ///< 0 <= G_i(w) is a constraint of its own
-  /// Follows from the bounds of w, nobody need impose it again: the side is affine, a sum of distances of variables
-  /// from their finite bounds with positive weights (w_k - lower_k where dG_i/dw_k > 0, upper_k - w_k where it is < 0),
-  /// so that it is zero if and only if each of them is at that bound. A product of such sums is `implied`, too, but
-  /// then it has to be a method's own (Problem::pair_group -1).
+  /// Follows from the bounds of w, nobody need impose it again. The side is affine, a sum of distances of variables
+  /// from their finite bounds with positive weights (w_k - lower_k where dG_i/dw_k > 0, upper_k - w_k where it is < 0).
+  /// So it is zero if and only if each of them is at that bound. A product of such sums is `implied`, too, but then it
+  /// has to be a method's own (Problem::pair_group -1).
   implied,
 };
 
@@ -112,7 +112,7 @@ class Problem {
   /// Structure for solvers that use it; null for problems without any.
   [[nodiscard]] virtual const Chain* chain() const { return nullptr; }
 
-  // A discretisation may add terms of its own to the objective and rows of its own to g, which steer the relaxed
+  // A discretisation may add terms of its own to the objective and rows of its own to g. They steer the relaxed
   // problems and are no part of what the user asks for.
 
   /// From now on objective() and its derivatives contain the method's terms, scaled for a relaxed problem that starts

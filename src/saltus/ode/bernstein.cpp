@@ -10,8 +10,8 @@ const std::array<double, event_nodes>& interpolation_nodes() { return lobatto_no
 const std::array<double, event_degree>& check_nodes() { return between_nodes; }
 
 // The matrix B_i(node_j) is totally positive: elimination without pivoting has no cancellation, its residual is a few
-// roundings of the coefficients. The explicit inverse would have errors of 184 roundings of the values, and they show
-// in the values of the polynomial, since those of neighbouring coefficients do not cancel.
+// roundings of the coefficients. The explicit inverse would have errors of 184 roundings of the values. They show in
+// the values of the polynomial, since those of neighbouring coefficients do not cancel.
 BernsteinCoefficients to_bernstein(std::span<const double, event_nodes> values) {
   constexpr std::size_t n = inner_nodes;
   const double first = values.front();

@@ -53,9 +53,9 @@ struct SignChange {
   double upper = 0.0;
 };
 
-/// Whether coefficients are beyond the noise at first, then within it, then beyond it on the other side, so that the
-/// polynomial falls through the noise once (variation diminishing property). Behind a zero at 0 of the order `begin`
-/// the first coefficients, which are 0, do not count. False for NaN.
+/// Returns whether coefficients are beyond the noise at first, then within it, then beyond it on the other side. Then
+/// the polynomial falls through the noise once (variation diminishing property). Behind a zero at 0 of the order
+/// `begin` the first coefficients, which are 0, do not count. False for NaN.
 template <std::size_t nodes>
 [[nodiscard]] inline bool falls_once(const std::array<double, nodes>& b, double noise, std::size_t begin = 0) {
   if (!(b.back() < -noise)) return false;
@@ -82,11 +82,11 @@ template <std::size_t nodes = event_nodes>
   return beyond == 0;
 }
 
-/// The first sign change in (0, 1] of a polynomial whose sign just behind 0 is `sign` (+1 or -1).
+/// Finds the first sign change in (0, 1] of a polynomial whose sign just behind 0 is `sign` (+1 or -1).
 ///
-/// A sign change is a zero behind which the value is beyond the noise on the other side before it is beyond it on the
-/// first side again. So a touch is none, nor is a value at 1 within the noise: the next step, which starts there with
-/// the same expected sign, finds that one.
+/// A sign change is a zero. Behind it the value is beyond the noise on the other side before it is beyond the noise on
+/// the first side again. So a touch is none, nor is a value at 1 within the noise: the next step, which starts there
+/// with the same expected sign, finds that one.
 ///
 /// @param coefficients  Bernstein coefficients on [0, 1], finite
 /// @param zero_order    0: the value at 0 has the expected sign or is within the noise; 1, 2: the polynomial has a zero
@@ -94,10 +94,9 @@ template <std::size_t nodes = event_nodes>
 ///                      as 0) and not found again
 /// @param noise         absolute rounding level of the values, >= 0; anything within it counts as having the expected
 ///                      sign (a dip that exceeds it by less than a sixteenth may count as within it)
-/// @return the bracket (width <= 2^-40, or the resolution that the noise permits), nullopt if there is none. It begins
-/// at
-///         0 where the value there is on the other side already (within the noise, or beyond it: {0, 0}). Scaling
-///         coefficients and noise by a power of two changes no bit.
+/// @return the bracket (width <= 2^-40, or the resolution that the noise permits), nullopt if there is none. It
+///         begins at 0 where the value there is on the other side already (within the noise, or beyond it: {0, 0}).
+///         Scaling coefficients and noise by a power of two changes no bit.
 /// Cost: no allocation; a few microseconds where there is a sign change.
 /// Method: variation diminishing property; bisection where the coefficients change sign more than once.
 [[nodiscard]] std::optional<SignChange> first_sign_change(const BernsteinCoefficients& coefficients, int sign,

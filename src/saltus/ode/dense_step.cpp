@@ -118,7 +118,7 @@ BernsteinCoefficients bernstein_form(const double* coefficients, std::size_t n, 
   return b;
 }
 
-/// The nested form on [from, to]: its Newton form gets the nodes from, to, from, ..., the last one first.
+/// The nested form on [from, to]: its Newton form gets the nodes `from` and `to` in turn, the last one first.
 template <std::size_t degree>
 void cut_component(double* coefficients, std::size_t n, std::size_t i, double from, double to) {
   std::array<double, degree + 1> c;

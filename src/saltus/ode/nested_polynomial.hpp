@@ -26,10 +26,10 @@ struct PlainZero {
   double slope = 0.0;  ///< dp/dtheta there, to eight digits or so
 };
 
-/// What first_sign_change looks for, where the Bernstein coefficients of the polynomial's own degree show it: none is
-/// below the noise on the other side, or they are beyond it on this side, then within it, then beyond it on the other
-/// side, which makes one zero (variation diminishing property), and Halley's method, from where the inverse cubic of
-/// the ends and their slopes is 0, converges to it at once.
+/// Finds what first_sign_change looks for, where the Bernstein coefficients of the polynomial's own degree show it.
+/// Either none is below the noise on the other side. Or they are beyond it on this side, then within it, then beyond it
+/// on the other side, which makes one zero (variation diminishing property). Halley's method then has to converge to it
+/// at once, from where the inverse cubic of the ends and their slopes is 0.
 /// @param sign        of p just behind 0: +1 or -1
 /// @param zero_order  0, or 1: p has a zero at 0, which is removed (c0 is taken as 0); 2 is unclear
 /// @param noise       as there; at least eight roundings of the largest coefficient count

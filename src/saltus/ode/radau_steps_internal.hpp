@@ -15,8 +15,8 @@
 
 namespace saltus::ode {
 
-/// Simplified Newton iteration for the increments z_j = x(t + c_j h) - x(t) of the stages, in the variables that split
-/// it into real and complex systems of size n.
+/// Solves for the increments z_j = x(t + c_j h) - x(t) of the stages by a simplified Newton iteration. Its variables
+/// are those that split it into real and complex systems of size n.
 ///
 /// The iteration ends at rounding level, not at a share of the tolerance: steps of different lengths from one start
 /// then end on one smooth curve, on which events are located. The Jacobian (forward differences) belongs to the start

@@ -124,9 +124,9 @@ double StepControl::factor(double error_norm) {
   __builtin_unreachable();
 }
 
-/// Where the error of a step of the same length grows from step to step (the predictive controller of Gustafsson;
-/// Hairer & Wanner, (IV.8.25)), the next one has to be shorter by as much, at most 1. Before the first rejection steps
-/// are short enough for other reasons: there it would cost a few per cent, behind it saves a tenth to a fifth.
+/// The error of a step of the same length may grow from step to step. Then the next one has to be shorter by as much,
+/// at most 1 (the predictive controller of Gustafsson; Hairer & Wanner, (IV.8.25)). Before the first rejection steps
+/// are short enough for other reasons. There it would cost a few per cent, behind it saves a tenth to a fifth.
 double StepControl::growth(double error_norm) {
   const double least = std::max(error_norm, least_error);
   const double root =

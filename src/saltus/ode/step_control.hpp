@@ -7,9 +7,9 @@
 
 namespace saltus::ode {
 
-/// PI controller (Gustafsson; Hairer & Wanner IV.2) of dopri5; dop853 and radau5 without memory of errors, but dop853,
-/// once a step was rejected, foresees that the error per step goes on growing as it did: a value, one per run; reset at
-/// every restart.
+/// Controls the length of steps: a value, one per run; reset at every restart. dopri5 has a PI controller (Gustafsson;
+/// Hairer & Wanner IV.2). dop853 and radau5 have no memory of errors. Once a step was rejected, dop853 foresees that
+/// the error per step goes on growing as it did.
 class StepControl {
  public:
   explicit StepControl(Method method);
@@ -53,8 +53,8 @@ class StiffnessWatch {
   int innocent_ = 0;
 };
 
-/// First step size, signed like `span` and at most as long (Hairer, Norsett & Wanner, II.4, algorithm 4.14), from the
-/// sizes of x, of its slope and of the change of the slope along an explicit Euler step.
+/// Returns the first step size, signed like `span` and at most as long (Hairer, Norsett & Wanner, II.4, algorithm
+/// 4.14). It follows from the sizes of x, of its slope and of the change of the slope along an explicit Euler step.
 ///
 /// Here the unit of time, which is 1 in that algorithm, is the time in which x would change by its own size (|span|
 /// where x is negligible): scaling t and span, or x and atol, scales the result (exactly for powers of two).

@@ -19,10 +19,10 @@ inline constexpr int times_of_moving_surface = 9;
 /// not move gets room of its own size.
 [[nodiscard]] Interval drawn_range(const result::Result& result, int state);
 
-/// Where the switching functions and the guards of jumps of `system` are zero and where two of its regions by
-/// `indicator` meet, within the range of the trajectory and a quarter of it on either side. Depends on the trajectory,
-/// never the other way round: results are the same without. Cost: O(rows n_x); for every function that is not affine
-/// and has one state or two about 20 000 evaluations, nine times as many if it moves.
+/// Finds where the switching functions and the guards of jumps of `system` are zero and where two of its regions by
+/// `indicator` meet. It looks within the range of the trajectory and a quarter of it on either side. Depends on the
+/// trajectory, never the other way round: results are the same without. Cost: O(rows n_x); for every function that is
+/// not affine and has one state or two about 20 000 evaluations, nine times as many if it moves.
 [[nodiscard]] std::vector<result::Surface> surfaces(const model::System& system, const result::Result& result);
 
 }  // namespace saltus::pipeline

@@ -33,7 +33,8 @@ struct DcsPart {
   /// Step: one per selection. Stewart: those whose sign patterns are the regions, none with indicators of the user.
   std::vector<int> surfaces{};
   /// Stewart: rows regions, columns `surfaces`, entries -1 and 1. Every pattern is a region of its own: with zeros in
-  /// S, g = -S psi would compare sums of different lengths, and the smallest g need not be that of the region x is in.
+  /// S, g = -S psi would compare sums of different lengths. The smallest g would not have to be that of the region x is
+  /// in.
   Eigen::MatrixXi signs{};
   int mode_group = -1;  ///< Stewart, indicators of the user: index into System::mode_groups
 };
@@ -80,7 +81,7 @@ struct Dcs {
   std::vector<DcsPart> parts;
 
   // Powers base^c, c in (0, 1), of what is zero on a surface: sqrt(|x|) sign(x). They are in f as odd functions of
-  // their bases, which elements that end at the surface need, and as 0 while the solution slides on it.
+  // their bases, which elements that end at the surface need. While the solution slides on it they are 0.
   casadi::SX roots;                    ///< symbols of their values; 0 x 1 without any
   casadi::SX root_bases;               ///< over t, x, u, p, held
   std::vector<double> root_exponents;  ///< c

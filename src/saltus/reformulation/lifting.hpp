@@ -29,10 +29,11 @@ struct Lifting {
   std::vector<LiftedProduct> theta;  ///< one per row of S, in its order
 };
 
-/// theta_i = prod_j (1 - S_ij)/2 + S_ij alpha_j (eq. (21) of [nurkanovic2024]) with at most `most_factors` factors per
-/// product, a beta counted as one: from the column `most_factors` on, what a row has so far becomes a beta, shared by
-/// all rows that have the same, and takes one more factor at a time (Algorithm 1, with 0 in S as the factor 1 and a row
-/// closed at its last nonzero column; as printed it fails on such S). All 2^n sign patterns of n functions need
+/// Lifts theta_i = prod_j (1 - S_ij)/2 + S_ij alpha_j (eq. (21) of [nurkanovic2024]) to at most `most_factors` factors
+/// per product, a beta counted as one. From the column `most_factors` on, what a row has so far becomes a beta and
+/// takes one more factor at a time. All rows that have the same share it. This is Algorithm 1, with 0 in S as the
+/// factor 1 and a row closed at its last nonzero column; as printed it fails on such S. All 2^n sign patterns of n
+/// functions need
 ///   n_beta = 2^n - 2^most_factors   for most_factors <= n, else 0.
 /// @param signs         rows of -1, 0, 1, one per region
 /// @param most_factors  n_d >= 2

@@ -27,9 +27,9 @@ struct ActiveSetRank {
   double smallest_singular_value = 0.0;  ///< infinity where nothing is unknown
 };
 
-/// With K the surfaces that are 0, I the active regions of a simplex with more than one, the derivatives with respect
-/// to time of what stays 0 (psi_K, g_I + mu e) and e'theta = 1 are equations for alpha_K, theta_I and the rate of mu.
-/// Their matrix must be regular:
+/// Decides whether selections follow from what stays 0. Let K be the surfaces that are 0, and I the active regions of a
+/// simplex with more than one. Equations for alpha_K, theta_I and the rate of mu are the derivatives of psi_K and g_I +
+/// mu e with respect to time, and e'theta = 1. Their matrix must be regular:
 ///   step:     W_{K,I} B_{K,I} = grad psi_K' (df/dalpha_K), |K| x |K|      (Assumption 7 of [nurkanovic2024])
 ///   Stewart:  [grad g_I' f_I, e; e', 0]                                  [stewart1990]
 /// Where two surfaces meet, Stewart's form has four regions and only three equations: it is singular there, whatever

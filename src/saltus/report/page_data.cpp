@@ -201,8 +201,8 @@ void for_each_list_of_columns(const result::Result& result, Visit visit) {
   visit("theta", trajectory.theta, width(result::region_labels(result.region_groups)));
 }
 
-/// Rows of a trajectory of many columns, and a tolerance with which the points of all of them are about as many numbers
-/// as there is room for.
+/// Chooses the rows of a trajectory of many columns, and a tolerance. With it the points of all of them are about as
+/// many numbers as there is room for.
 KeptRows rows_of_many(const result::Result& result, std::size_t limit) {
   constexpr std::size_t most_rows = 20000;
   constexpr double coarsest = 0.05;

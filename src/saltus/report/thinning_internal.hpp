@@ -11,10 +11,10 @@ namespace saltus::report {
 
 /// Rows that a drawing of the trajectory needs.
 ///
-/// Kept: the first and the last row, and pairs of rows that share their time (both sides of an event) or have a change
-/// of mode between them: all pairs, or every second, third, … if they were more than half of `limit`. The other rows
-/// are cut into runs of equal length, of each run those rows stay that hold the least, the greatest or the first
-/// non-finite value of a column.
+/// Kept are the first and the last row, and pairs of rows that share their time (both sides of an event) or have a
+/// change of mode between them. All pairs are kept, or every k-th with the least k that leaves half of `limit` at most.
+/// The other rows are cut into runs of equal length. Of each run those rows stay that hold the least, the greatest or
+/// the first non-finite value of a column.
 ///
 /// @param limit         number of rows to aim at, > 0; exceeded by at most its half and twice the number of columns.
 /// @param most_columns  columns of each table that are drawn
@@ -22,9 +22,9 @@ namespace saltus::report {
 [[nodiscard]] std::vector<std::size_t> rows_to_draw(const result::Trajectory& trajectory, std::size_t limit,
                                                     std::size_t most_columns = std::numeric_limits<std::size_t>::max());
 
-/// Places of a curve between which straight lines are within `tolerance` of all of its values. Both sides of a jump (two
-/// values at one time) and of missing values stay. Greedy: each line is as long as lines from its begin that end on the
-/// curve can be. Cost: O(values).
+/// Places of a curve between which straight lines are within `tolerance` of all of its values. Both sides of a jump
+/// (two values at one time) and of missing values stay. Greedy: each line is as long as lines from its begin that end
+/// on the curve can be. Cost: O(values).
 [[nodiscard]] std::vector<std::size_t> straight_places(const std::vector<double>& t, const std::vector<double>& values,
                                                        double tolerance);
 

@@ -158,7 +158,7 @@ struct Family {
   std::size_t event = 0;            ///< with which the mode, or the spiral, begins: number in the events, from 0
   double from = 0.0, until = 0.0;   ///< times at which they may leave; of a spiral both are the time of its event
   Alternative to;                   ///< what they leave into, with its selections at `from`
-  std::optional<double> lap_ratio;  ///< of a spiral: from one lap to the next; the phase is the part of it, 0 to 1
+  std::optional<double> lap_ratio;  ///< of a spiral: from one cycle to the next; the phase is the part of it, 0 to 1
 };
 
 /// Where a branch leaves its parent: at an event, or as a member of a family.

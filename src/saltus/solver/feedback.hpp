@@ -9,13 +9,14 @@
 
 namespace saltus::solver {
 
-/// Of each interval the gain K_k = d u_k / d x_k: how the first `controls` variables that the interval shares change
-/// with the first `states` of its left node, if everything from there on is optimal again to first order, with the
-/// sides of all pairs, the active constraints, and the horizon as they are. That of the first interval is 0, whose node
-/// is given.
+/// Returns of each interval the gain K_k = d u_k / d x_k. It says how the first `controls` variables that the interval
+/// shares change with the first `states` of its left node. Everything from there on then is optimal again to first
+/// order. The sides of all pairs, the active constraints, and the horizon stay as they are. The gain of the first
+/// interval is 0, whose node is given.
 ///
-/// They are columns of the inverse of the optimality conditions from node k on, the same as those of the Riccati
-/// recursion over the linearised intervals, with 1e-9 on both diagonals: rows that depend on each other do no harm.
+/// They are columns of the inverse of the optimality conditions from node k on. The Riccati recursion over the
+/// linearised intervals gives the same. Both diagonals have 1e-9 added, so that rows that depend on each other do no
+/// harm.
 /// @param problem  with a chain; else there are none
 /// Cost: per interval a sparse factorisation of what is behind it.
 [[nodiscard]] std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Solution& solution,

@@ -11,11 +11,13 @@
 
 namespace saltus::solver {
 
-/// min cost'd   subject to   lower_row <= A d <= upper_row,   lower <= d <= upper (a trust region among them, so finite),
-/// and of each disjunction (rows i, j) that row i or row j of A d is at its lower bound.
+/// A linear problem with disjunctions is
+///   min cost'd   subject to   lower_row <= A d <= upper_row,   lower <= d <= upper.
+/// A trust region is among the bounds, so they are finite. Of each disjunction (rows i, j) row i or row j of A d is at
+/// its lower bound.
 struct LpccProblem {
   Eigen::VectorXd cost;
-  mpcc::Pattern pattern;    ///< of A
+  mpcc::Pattern pattern;  ///< of A
   Eigen::VectorXd entries;
   mpcc::Bounds rows;
   mpcc::Bounds variables;

@@ -3,7 +3,7 @@
 
 namespace saltus::switching {
 
-/// Where several continuations are limits of regularised solutions, which one.
+/// Says which of several continuations is taken where they are limits of regularised solutions.
 enum class SelectionPolicy {
   active_dominant,   ///< weight on the surface that was slid on: kappa_active / kappa_passive -> infinity
   passive_dominant,  ///< weight on the surface that is reached

@@ -386,9 +386,9 @@ TEST(Behaviour, ARootIsCrossedWhereItsSlopeIsInfinite) {
   }
 }
 
-/// x'' = -sign x - d x': a lap from the speed v takes 4 v and leaves v (1 - 4/3 d v), so that laps shrink like 1/k and
-/// the speed like exp(-d t / 3). Cubic damping: k^-1/3.
-TEST(Behaviour, LapsThatShrinkLikeAPowerOfTheirNumberAreSaidToDoSo) {
+/// x'' = -sign x - d x': a cycle from the speed v takes 4 v and leaves v (1 - 4/3 d v), so that cycles shrink like 1/k
+/// and the speed like exp(-d t / 3). Cubic damping: k^-1/3.
+TEST(Behaviour, CyclesThatShrinkLikeAPowerOfTheirNumberAreSaidToDoSo) {
   const auto message = [](const auto& damping) {
     Builder b("relay");
     const SX x = b.state("x", {1});
@@ -406,9 +406,9 @@ TEST(Behaviour, LapsThatShrinkLikeAPowerOfTheirNumberAreSaidToDoSo) {
     return result.status.message;
   };
   const std::string damped = message([](Builder&, const SX& v) { return 0.7 * v; });
-  EXPECT_NE(damped.find("laps of 's' shrink like the power -1 of"), std::string::npos) << damped;
+  EXPECT_NE(damped.find("cycles of 's' shrink like the power -1 of"), std::string::npos) << damped;
   EXPECT_NE(damped.find("no limit"), std::string::npos) << damped;
-  // A lap leaves v - c v^4.
+  // A cycle leaves v - c v^4.
   const std::string slowly = message([](Builder&, const SX& v) { return v * v * v; });
   EXPECT_NE(slowly.find("shrink like the power -0.33 of"), std::string::npos) << slowly;
 }

@@ -61,8 +61,8 @@ TEST(Coupled, BehindACrossingNestedFunctionsHaveTheSelectionsOfTheNewSliding) {
   EXPECT_NEAR(result.final.x[0], -0.25 * (2.0 - 1.0 / 2.2), 1e-9);
 }
 
-TEST(Coupled, LapsAboutAnIntersectionThatShrinkLikeAPowerAreSaidToBeOfBothSurfaces) {
-  // A centre with damping: each quarter of a lap from a to a takes about a and loses d a^2 / 2, so that a ~ 1/k.
+TEST(Coupled, CyclesAboutAnIntersectionThatShrinkLikeAPowerAreSaidToBeOfBothSurfaces) {
+  // A centre with damping: each quarter of a cycle from a to a takes about a and loses d a^2 / 2, so that a ~ 1/k.
   Builder b("centre");
   const SX x = b.state("x", {0.5});
   const SX y = b.state("y", {0});
@@ -75,7 +75,7 @@ TEST(Coupled, LapsAboutAnIntersectionThatShrinkLikeAPowerAreSaidToBeOfBothSurfac
   options.tolerances = {1e-9, 1e-11};
   const auto result = testing::run_model(b, options);
   EXPECT_EQ(result.status.termination, Termination::iteration_limit) << result.status.message;
-  const std::string wanted = "laps of 'sx', 'sy' shrink like the power -1 of";
+  const std::string wanted = "cycles of 'sx', 'sy' shrink like the power -1 of";
   EXPECT_NE(result.status.message.find(wanted), std::string::npos) << result.status.message;
 }
 

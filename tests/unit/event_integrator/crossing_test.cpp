@@ -1,4 +1,4 @@
-// The short way behind ordinary switches and the general one give the same recording, bit for bit.
+// The fast path behind ordinary switches and the full decision give the same recording, bit for bit.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -68,10 +68,10 @@ void expect_same(const Recording& a, const Recording& b) {
   }
 }
 
-/// Returns how many evaluations of the field the short way saves.
+/// Returns how many evaluations of the field the fast path saves.
 long compare(const model::System& system, IntegrationOptions options) {
-  const auto quick = run(system, options, Run::Way::short_where_ordinary);
-  const auto full = run(system, options, Run::Way::general);
+  const auto quick = run(system, options, Run::Way::fast_where_ordinary);
+  const auto full = run(system, options, Run::Way::full);
   EXPECT_EQ(quick.status.termination, full.status.termination) << quick.status.message << full.status.message;
   EXPECT_EQ(quick.status.message, full.status.message);
   EXPECT_EQ(quick.status.time_reached, full.status.time_reached);
@@ -93,7 +93,7 @@ IntegrationOptions options_of(ode::Method method, double until, OutputTimes::Row
   return options;
 }
 
-/// The short way is taken, which takes fewer evaluations.
+/// The fast path is taken, which takes fewer evaluations.
 void expect_agreement(const model::System& system, double until) {
   for (const auto method : all_methods) {
     for (const auto rows : {OutputTimes::Rows::at_steps, OutputTimes::Rows::at_times}) {
@@ -102,11 +102,13 @@ void expect_agreement(const model::System& system, double until) {
   }
 }
 
-TEST(ShortWay, EntersAndLeavesSlidingAsTheGeneralOne) { expect_agreement(testing::stick_slip(), 40.0); }
+TEST(FastPath, EntersAndLeavesSlidingAsTheFullDecision) { expect_agreement(testing::stick_slip(), 40.0); }
 
-TEST(ShortWay, PassesTangentialExitsAsTheGeneralOne) { expect_agreement(testing::relay(), 6.0); }
+TEST(FastPath, PassesTangentialExitsAsTheFullDecision) { expect_agreement(testing::relay(), 6.0); }
 
-TEST(ShortWay, TouchesSeveralIndependentSurfacesAsTheGeneralOne) { expect_agreement(testing::friction_blocks(), 20.0); }
+TEST(FastPath, TouchesSeveralIndependentSurfacesAsTheFullDecision) {
+  expect_agreement(testing::friction_blocks(), 20.0);
+}
 
 /// An oscillator drives s, which slides on 0, and r, which passes 0.2 meanwhile; `coupling` of each selection is in the
 /// other rate; `bend` is that of the surface that is slid on.
@@ -122,16 +124,16 @@ model::System sliding_across(double coupling, double bend) {
   return system;
 }
 
-TEST(ShortWay, PassesASurfaceThatTheSlidingFeelsAsTheGeneralOne) {
+TEST(FastPath, PassesASurfaceThatTheSlidingFeelsAsTheFullDecision) {
   expect_agreement(sliding_across(0.2, 0.2), 20.0);
   expect_agreement(sliding_across(0.2, 0.0), 20.0);
 }
 
-TEST(ShortWay, PassesASurfaceWhileSlidingOnOneThatDoesNotFeelItAsTheGeneralOne) {
+TEST(FastPath, PassesASurfaceWhileSlidingOnOneThatDoesNotFeelItAsTheFullDecision) {
   expect_agreement(sliding_across(0.0, 0.0), 20.0);
 }
 
-TEST(ShortWay, CrossesSurfacesThatDependOnTimeAsTheGeneralOne) {
+TEST(FastPath, CrossesSurfacesThatDependOnTimeAsTheFullDecision) {
   auto system = testing::blank(2, 2);
   testing::add_surface(system, "moving", system.x(0) - 0.3 * system.t);
   testing::add_surface(system, "curved", system.x(0) * system.x(1) - 0.1);
@@ -142,7 +144,7 @@ TEST(ShortWay, CrossesSurfacesThatDependOnTimeAsTheGeneralOne) {
 }
 
 /// The matrix of the field that is slid on changes at the other surface, which only its linear part knows.
-TEST(ShortWay, CrossesWhileSlidingWhereTheMatrixChangesAsTheGeneralOne) {
+TEST(FastPath, CrossesWhileSlidingWhereTheMatrixChangesAsTheFullDecision) {
   auto system = testing::blank(3, 2);
   testing::add_surface(system, "held", system.x(0));
   testing::add_surface(system, "turns", system.x(1));
@@ -155,8 +157,8 @@ TEST(ShortWay, CrossesWhileSlidingWhereTheMatrixChangesAsTheGeneralOne) {
   }
 }
 
-/// Switches that tighten towards an equilibrium: laps, tolerances that follow them, and the limit.
-TEST(ShortWay, FollowsAccumulationsAsTheGeneralOne) {
+/// Switches that tighten towards an equilibrium: cycles, tolerances that follow them, and the limit.
+TEST(FastPath, FollowsAccumulationsAsTheFullDecision) {
   auto system = testing::blank(2, 2);
   testing::add_surface(system, "x", system.x(0));
   testing::add_surface(system, "y", system.x(1));
@@ -190,7 +192,7 @@ model::System random_system(std::uint32_t seed) {
   return system;
 }
 
-TEST(ShortWay, AgreesOnRandomSystems) {
+TEST(FastPath, AgreesOnRandomSystems) {
   long saved = 0;
   for (std::uint32_t seed = 0; seed < 120; ++seed) {
     SCOPED_TRACE(seed);

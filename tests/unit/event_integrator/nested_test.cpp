@@ -1,4 +1,4 @@
-// Switching functions that hold signs of others: where several of those are slid on, and where laps lead about them.
+// Switching functions that hold signs of others: where several of those are slid on, and where cycles lead about them.
 #include <cmath>
 #include <string>
 
@@ -45,11 +45,11 @@ TEST(Nested, BesideSeveralSlidingSurfacesAFunctionWithoutAJumpIsCrossed) {
   EXPECT_NEAR(result.events[1].t, 2.0, 1e-12);
 }
 
-TEST(Nested, AFunctionThatJumpsInEveryLapIsNotHeldAtItsLimit) {
-  // (x, y) spirals into the origin, to a quarter from lap to lap: x' = -sign(y)(1 + s/3), y' = sign(x)(1 - s/3), with
-  // s = sign(x) sign(y). w = z + sign(y) has the sign of y, and jumps with it; z, which is 0.2 - 0.1 t, does not depend
-  // on it.
-  Builder b("laps");
+TEST(Nested, AFunctionThatJumpsInEveryCycleIsNotHeldAtItsLimit) {
+  // (x, y) spirals into the origin, to a quarter from cycle to cycle: x' = -sign(y)(1 + s/3), y' = sign(x)(1 - s/3),
+  // with s = sign(x) sign(y). w = z + sign(y) has the sign of y, and jumps with it; z, which is 0.2 - 0.1 t, does not
+  // depend on it.
+  Builder b("cycles");
   const SX x = b.state("x", {0});
   const SX y = b.state("y", {1});
   const SX z = b.state("z", {0.2});

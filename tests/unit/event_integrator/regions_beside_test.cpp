@@ -145,7 +145,7 @@ TEST(RegionsBeside, AStartWhereAllRepelHasEveryAlternativeAndFollowsTheOneThatIs
 TEST(RegionsBeside, ASpiralEndsWhereThreeMeet) {
   // Sectors of 120 degrees with the constant field (-1, 8) in the frame of their axis. From one border, at the distance
   // d, (d/2 - t, -d sin 60 + 8 t) is at the next one after t = d sqrt(3) / (8 + sqrt(3)), at the distance q d,
-  // q = 1 - 2 t / d: the limit of the laps is t / (1 - q) = d / 2.
+  // q = 1 - 2 t / d: the limit of the cycles is t / (1 - q) = d / 2.
   Builder b("spiral");
   const SX x = b.state("x", {0.5});
   const SX y = b.state("y", {-std::sqrt(0.75)});

@@ -1,4 +1,4 @@
-// The short way of the usual event against the general decision, and what an event costs.
+// The fast path of the usual event against the full decision, and what an event costs.
 #include "saltus/event_integrator/decide/fast/single_surface.hpp"
 
 #include <cmath>

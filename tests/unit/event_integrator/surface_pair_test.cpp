@@ -1,4 +1,4 @@
-// The short way of the usual meeting of two surfaces against the general decision.
+// The fast path of the usual meeting of two surfaces against the full decision.
 #include "saltus/event_integrator/decide/fast/surface_pair.hpp"
 
 #include <algorithm>

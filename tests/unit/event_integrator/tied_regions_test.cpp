@@ -151,7 +151,7 @@ TEST(TiedRegions, WeightsThatLoseTheirStabilityAreLeft) {
     EXPECT_EQ(exit.unique, false);
     EXPECT_EQ(exit.regions_before->front().size(), 4U);
     EXPECT_EQ(exit.regions_after->front().size(), 1U);
-    // A lap is four borders further on; from the exit on times grow as laps do.
+    // A cycle is four borders further on; from the exit on times grow as cycles do.
     const double first = regions.events[spiral.event + 4].t - exit.t;
     const double second = regions.events[spiral.event + 8].t - exit.t;
     EXPECT_NEAR(second / first, *spiral.lap_ratio, 1e-3 * *spiral.lap_ratio);
@@ -191,7 +191,7 @@ TEST(TiedRegions, ASpiralEndsAtTheCornerAndRestsThere) {
   EXPECT_NEAR(limit.t, 0.5, 1e-11);
   EXPECT_EQ(*limit.regions_after, (Regions{{"pp", "mp", "pm", "mm"}}));
   for (const double theta : run.final.theta) EXPECT_NEAR(theta, 0.25, 1e-12);
-  // z' = 1 in pp only: 1/4 of the laps' quarters from 0, 4, 8, ..., 1/4 (1 + 1/16 + ...) = 4/15, then a quarter.
+  // z' = 1 in pp only: 1/4 of the cycles' quarters from 0, 4, 8, ..., 1/4 (1 + 1/16 + ...) = 4/15, then a quarter.
   EXPECT_NEAR(run.final.x[2], 4.0 / 15.0 + 0.25 * 1.5, 1e-10);
 }
 

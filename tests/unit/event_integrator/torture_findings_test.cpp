@@ -184,9 +184,9 @@ TEST(TortureFindings, StepsFromUserEventToUserEventFindThemAll) {
   }
 }
 
-/// q'' = -sign(q - c) - q', in rotated coordinates, so that psi is a sum of three terms. Laps of two steps in all: what
-/// rounding leaves of psi at one event must not be handed on to the next one.
-TEST(TortureFindings, LapsOfOneStepEachEndOnTheirSurface) {
+/// q'' = -sign(q - c) - q', in rotated coordinates, so that psi is a sum of three terms. Cycles of two steps in all:
+/// what rounding leaves of psi at one event must not be handed on to the next one.
+TEST(TortureFindings, CyclesOfOneStepEachEndOnTheirSurface) {
   auto s = testing::blank(2, 1);
   const SX psi = 0.6 * s.x(0) + 0.8 * s.x(1) - 0.3;
   testing::add_surface(s, "s", psi);

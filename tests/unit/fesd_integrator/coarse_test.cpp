@@ -301,7 +301,7 @@ TEST(Accumulation, TwistingComesToRest) {
       const auto integration = run(twisting(), 15.0, {.steps = steps, .form = form});
       const auto& last = integration.events.back();
       EXPECT_EQ(last.kind, result::EventKind::accumulation);
-      // The field is constant between switches: the method is exact. Laps of 1e-8 are extrapolated to 2e-10.
+      // The field is constant between switches: the method is exact. Cycles of 1e-8 are extrapolated to 2e-10.
       EXPECT_NEAR(last.t, exact, 1e-9);
       EXPECT_EQ(std::set(last.surfaces.begin(), last.surfaces.end()), (std::set<std::string>{"v", "x"}));
       EXPECT_EQ(*last.mode_after, (result::Mode{0, 0}));

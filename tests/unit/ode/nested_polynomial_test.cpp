@@ -105,7 +105,7 @@ TEST(PlainZero, behind_a_zero_at_the_start_is_the_other_one) {
 }
 
 TEST(PlainZero, beside_an_extremum_is_as_good_as_elsewhere) {
-  // a - theta^2 = a - s + s r, of laps far shorter than the step.
+  // a - theta^2 = a - s + s r, of cycles far shorter than the step.
   for (double a = 1e-12; a < 1.0; a *= 1.7) {
     NestedPolynomial p;
     p.degree = 4;

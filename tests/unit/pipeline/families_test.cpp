@@ -290,8 +290,8 @@ TEST(Families, OfASpiralHaveAllPhases) {
     const auto other = std::find_if(events.rbegin(), events.rend(),
                                     [&](const auto& event) { return event.mode_after == own.mode_after; });
     ASSERT_NE(other, events.rend());
-    const double laps = std::log(own.t / other->t) / std::log(81.0) - phase;
-    EXPECT_NEAR(laps, std::round(laps), 1e-9);
+    const double cycles = std::log(own.t / other->t) / std::log(81.0) - phase;
+    EXPECT_NEAR(cycles, std::round(cycles), 1e-9);
   }
   EXPECT_EQ(members, 3);
 }

@@ -197,7 +197,7 @@ TEST(HiddenSurfaces, DoNotDependOnTheUnitsOfSurfaces) {
     EXPECT_EQ(other.limit, decision.limit);
     if (decision.limit > HiddenLimit::oscillating) continue;
     EXPECT_EQ(other.mode, decision.mode);
-    // What is oscillated about is found to the accuracy to which laps repeat.
+    // What is oscillated about is found to the accuracy to which cycles repeat.
     const double tolerance = decision.limit == HiddenLimit::oscillating ? 1e-3 : 1e-9;
     for (std::size_t j = 0; j < 3; ++j) EXPECT_NEAR(other.alpha[j], decision.alpha[j], tolerance);
   }

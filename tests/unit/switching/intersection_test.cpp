@@ -85,7 +85,7 @@ TEST(Intersection, PassagesHaveTheOnlyAdmissibleModeOnBothWays) {
   std::uniform_real_distribution<double> size(0.1, 1.0);
   int passages = 0;
   for (int trial = 0; trial < 2000; ++trial) {
-    // Of one field hardly anything leads across: in every other trial less than the short way wants (1e-4).
+    // Of one field hardly anything leads across: in every other trial less than the fast path wants (1e-4).
     const double slow = trial % 2 == 0 ? 1.0 : 1e-5;
     const Velocities f{{{size(random), -size(random), size(random), -size(random)},
                         {slow * size(random), size(random), size(random), size(random)}}};

@@ -14,13 +14,13 @@ namespace {
 using Real = long double;
 
 /// The solution of constant fields from (psi_1, psi_2) = (-delta, 0), surface by surface.
-struct Lap {
+struct Cycle {
   Real time = 0, psi_1 = 0;
   std::array<Real, 4> in_region{};
 };
 
-Lap lap_by_hand(const Velocities& f, Real delta) {
-  Lap lap;
+Cycle cycle_by_hand(const Velocities& f, Real delta) {
+  Cycle cycle;
   Real psi_1 = -delta;
   Real psi_2 = 0;
   constexpr std::array<std::size_t, 4> regions{0, 1, 3, 2};
@@ -30,46 +30,46 @@ Lap lap_by_hand(const Velocities& f, Real delta) {
     const Real time = i % 2 == 0 ? -psi_1 / v_1 : -psi_2 / v_2;
     psi_1 = i % 2 == 0 ? 0 : psi_1 + time * v_1;
     psi_2 = i % 2 == 0 ? psi_2 + time * v_2 : 0;
-    lap.in_region[i] = time;
-    lap.time += time;
+    cycle.in_region[i] = time;
+    cycle.time += time;
   }
-  lap.psi_1 = psi_1;
-  return lap;
+  cycle.psi_1 = psi_1;
+  return cycle;
 }
 
-TEST(Spiral, LimitIsThatOfLapByLapSimulation) {
+TEST(Spiral, LimitIsThatOfCycleByCycleSimulation) {
   RandomFields random(21);
   int inward = 0;
   while (inward < 500) {
     const Velocities f = random.spiral();
-    const auto lap = spiral_lap(plane_table(f), 0);
-    ASSERT_TRUE(lap);
+    const auto cycle = spiral_cycle(plane_table(f), 0);
+    ASSERT_TRUE(cycle);
     EXPECT_EQ(turning(plane_table(f)), Turning::counterclockwise);
-    if (lap->lap_ratio > 0.95) continue;
+    if (cycle->cycle_ratio > 0.95) continue;
     ++inward;
     std::array<Real, 4> total{};
     Real delta = 0.01L;
     while (delta > 1e-25L) {
-      const Lap next = lap_by_hand(f, delta);
-      EXPECT_NEAR(static_cast<double>(-next.psi_1 / delta), lap->lap_ratio, 1e-14 * lap->lap_ratio);
+      const Cycle next = cycle_by_hand(f, delta);
+      EXPECT_NEAR(static_cast<double>(-next.psi_1 / delta), cycle->cycle_ratio, 1e-14 * cycle->cycle_ratio);
       for (std::size_t i = 0; i < 4; ++i) total[i] += next.in_region[i];
       delta = -next.psi_1;
     }
-    const auto times = lap->times_to_limit(0.01);
+    const auto times = cycle->times_to_limit(0.01);
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_NEAR(times[i] / static_cast<double>(total[i]), 1.0, 1e-13);
     }
   }
 }
 
-TEST(Spiral, DurationOfALapNotThePrintedOne) {
+TEST(Spiral, DurationOfACycleNotThePrintedOne) {
   RandomFields random(22);
   int printed_wrong = 0;
   for (int n = 0; n < 1000; ++n) {
     const Velocities f = random.spiral();
-    const auto lap = spiral_lap(plane_table(f), 0);
-    const double simulated = static_cast<double>(lap_by_hand(f, 1.0L).time);
-    EXPECT_NEAR(lap->duration() / simulated, 1.0, 1e-14);
+    const auto cycle = spiral_cycle(plane_table(f), 0);
+    const double simulated = static_cast<double>(cycle_by_hand(f, 1.0L).time);
+    EXPECT_NEAR(cycle->duration() / simulated, 1.0, 1e-14);
     // (6.3) with the last factor corrected, and as printed.
     const auto kappa = [&f](double last) {
       return (1.0 - f[1][0] / f[1][1] * (1.0 - f[0][1] / f[0][3] * (1.0 - f[1][3] / last))) / f[0][0];
@@ -93,7 +93,7 @@ TEST(Spiral, FactsThatTheDecisionsUse) {
     const auto& g = roots.rising->sliding_jacobian;
     const double rho_1 = f[0][2] * f[0][1] / (f[0][3] * f[0][0]);
     const double rho_2 = f[1][3] * f[1][0] / (f[1][2] * f[1][1]);
-    const double gamma = spiral_lap(table, 0)->lap_ratio;
+    const double gamma = spiral_cycle(table, 0)->cycle_ratio;
     EXPECT_NEAR(rho_1 * rho_2 / gamma, 1.0, 1e-13);
     if (std::abs(rho_1 - 1.0) > 1e-12) {
       EXPECT_EQ(rho_1 > 1.0, g[0][0] > 0.0);
@@ -132,19 +132,19 @@ TEST(Spiral, VerifiedCases) {
       const bool clockwise = c.all["orientation"] == "clockwise";
       const auto first = relabelling.signs(std::array<int, 2>{clockwise ? 1 : -1, -1});
       const PlaneTable table = plane_table(relabelling.fields(c.f));
-      const auto lap = spiral_lap(table, (first[0] > 0 ? 1U : 0U) + (first[1] > 0 ? 2U : 0U));
-      ASSERT_TRUE(lap);
+      const auto cycle = spiral_cycle(table, (first[0] > 0 ? 1U : 0U) + (first[1] > 0 ? 2U : 0U));
+      ASSERT_TRUE(cycle);
       const bool reversed = (i == 1 || i == 2 || i == 4 || i == 7);
       EXPECT_EQ(turning(table) == Turning::clockwise, clockwise != reversed);
-      EXPECT_NEAR(lap->lap_ratio, c.all["gamma"], 1e-13 * lap->lap_ratio);
-      EXPECT_NEAR(lap->duration(), c.all["kappa"], 1e-13 * lap->duration());
-      for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(delta * lap->durations[j], c.all["t_j"][j], 1e-15);
+      EXPECT_NEAR(cycle->cycle_ratio, c.all["gamma"], 1e-13 * cycle->cycle_ratio);
+      EXPECT_NEAR(cycle->duration(), c.all["kappa"], 1e-13 * cycle->duration());
+      for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(delta * cycle->durations[j], c.all["t_j"][j], 1e-15);
       if (c.situation == "spiral_out") {
-        EXPECT_GT(lap->lap_ratio, 1.0);
-        EXPECT_NEAR(delta * lap->duration(), c.all["elapsed"], 1e-14);
+        EXPECT_GT(cycle->cycle_ratio, 1.0);
+        EXPECT_NEAR(delta * cycle->duration(), c.all["elapsed"], 1e-14);
         continue;
       }
-      const auto times = lap->times_to_limit(delta);
+      const auto times = cycle->times_to_limit(delta);
       EXPECT_NEAR(times[0] + times[1] + times[2] + times[3], c.all["arrival_time"], 1e-13);
       const auto decision = decide_spiral_in(table);
       EXPECT_EQ(decision.chosen.mode, (PlaneMode{0, 0}));
@@ -156,17 +156,17 @@ TEST(Spiral, VerifiedCases) {
 }
 
 TEST(Spiral, LeavesByTheFamilyOfSolutions) {
-  // psi along the lap that (6.5) adds up: on psi_2 = 0 at distance delta (gamma - 1).
+  // psi along the cycle that (6.5) adds up: on psi_2 = 0 at distance delta (gamma - 1).
   RandomFields random(24);
   for (int n = 0; n < 1000; ++n) {
     const Velocities f = random.spiral();
-    const auto lap = spiral_lap(plane_table(f), 0);
+    const auto cycle = spiral_cycle(plane_table(f), 0);
     std::array<double, 2> psi{};
     for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = 0; j < 2; ++j) psi[j] += lap->durations[i] * f[j][lap->corners[i]];
+      for (std::size_t j = 0; j < 2; ++j) psi[j] += cycle->durations[i] * f[j][cycle->corners[i]];
     }
-    EXPECT_NEAR(psi[0], 1.0 - lap->lap_ratio, 1e-13 * (1.0 + lap->lap_ratio));
-    EXPECT_NEAR(psi[1], 0.0, 1e-13 * (1.0 + lap->lap_ratio));
+    EXPECT_NEAR(psi[0], 1.0 - cycle->cycle_ratio, 1e-13 * (1.0 + cycle->cycle_ratio));
+    EXPECT_NEAR(psi[1], 0.0, 1e-13 * (1.0 + cycle->cycle_ratio));
   }
 }
 
@@ -174,7 +174,7 @@ TEST(Spiral, NoneWhereOneFieldDoesNotTurn) {
   Velocities f = RandomFields(25).spiral();
   f[1][3] = -f[1][3];
   EXPECT_FALSE(turning(plane_table(f)));
-  EXPECT_FALSE(spiral_lap(plane_table(f), 0));
+  EXPECT_FALSE(spiral_cycle(plane_table(f), 0));
   EXPECT_FALSE(decide_spiral_in(plane_table(f)).undecided.empty());
 }
 

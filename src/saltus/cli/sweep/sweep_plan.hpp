@@ -25,8 +25,10 @@ inline constexpr std::size_t unconfirmed_runs = 10'000'000;
 /// The values of all runs, made when they are asked for. The last axis of a grid changes fastest, samples within it.
 class SweepPlan {
  public:
-  /// Fails (parse_failure, invalid_option) for what is no range, list or distribution, for empty ones, for a name
-  /// twice, pairs of different length, samples without a number of runs, and too many runs.
+  /// Fails (parse_failure, invalid_option) for these:
+  /// - what is no range, list or distribution, and empty ones;
+  /// - a name twice, and pairs of different length;
+  /// - samples without a number of runs, and too many runs.
   [[nodiscard]] static Expected<SweepPlan> make(const SweepRequest& request);
 
   [[nodiscard]] std::size_t runs() const { return runs_; }

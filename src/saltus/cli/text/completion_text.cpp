@@ -20,7 +20,7 @@ std::string flags_of(const ShownCommand& command) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-/// The commands that take a model: "simulate|sweep|…".
+/// The commands that take a model, as "simulate|sweep".
 std::string model_commands(const std::vector<ShownCommand>& commands, std::string_view between) {
   std::vector<std::string> names;
   for (const auto& command : commands) {

@@ -115,9 +115,12 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] int pair_group(int pair) const override;
   [[nodiscard]] mpcc::BranchClosure close_branch(const std::vector<mpcc::ActiveSide>& sides) const override;
   void complete(mpcc::VectorView w) override;
-  /// A switch at the end of an interval can as well be in the interval before or behind it, in an element that has
-  /// vanished; an element that has vanished can as well have the modes of a neighbour; between two elements of equal
-  /// modes and others a switch can be written with one element more on the side whose lengths are at their bound.
+  /// Gives other ways to write the same solution:
+  /// - A switch at the end of an interval can as well be in the interval before or behind it, in an element that has
+  ///   vanished.
+  /// - An element that has vanished can as well have the modes of a neighbour.
+  /// - Between two elements of equal modes and others a switch can be written with one element more. It is on the side
+  ///   whose lengths are at their bound.
   [[nodiscard]] std::vector<mpcc::BranchMove> equal_branches(const std::vector<mpcc::ActiveSide>& sides,
                                                              mpcc::ConstVectorView w) const override;
 

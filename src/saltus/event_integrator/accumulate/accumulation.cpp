@@ -41,13 +41,13 @@ double EventSeries::Executed::largest(const std::vector<double>& values) const {
 }
 
 void EventSeries::clear() {
-  clear_laps();
+  clear_cycles();
   recent_.clear();
 }
 
-void EventSeries::clear_laps() {
+void EventSeries::clear_cycles() {
   entries_.clear();
-  std::fill(std::begin(laps_), std::end(laps_), std::size_t{0});
+  std::fill(std::begin(cycles_), std::end(cycles_), std::size_t{0});
   shortest_repeated_ = 0;
   shrinks_ = is_sequence_ = false;
 }
@@ -72,28 +72,28 @@ void EventSeries::add(double t, const std::vector<int>& jumps, const std::vector
   shrinks_ = is_sequence_ = false;
   for (std::size_t period = 1; period <= longest_period && entries_.size() > period; ++period) {
     if (lately_[period] != lately_[0] || !repeats(0, period)) {
-      laps_[period] = 0;
+      cycles_[period] = 0;
       continue;
     }
     if (shortest_repeated_ == 0) shortest_repeated_ = period;
     const double before = back(period).t;
     const bool shrinks = entries_.size() > 2 * period && t - before < before - back(2 * period).t;
-    if (laps_[period] == 0 || !shrinks) {
+    if (cycles_[period] == 0 || !shrinks) {
       start_[period] = before;
-      laps_[period] = 1;
+      cycles_[period] = 1;
     } else {
-      ++laps_[period];
+      ++cycles_[period];
     }
-    shrinks_ = shrinks_ || laps_[period] >= 2;
-    is_sequence_ = is_sequence_ || laps_[period] >= 2 * period;
+    shrinks_ = shrinks_ || cycles_[period] >= 2;
+    is_sequence_ = is_sequence_ || cycles_[period] >= 2 * period;
   }
 }
 
 EventSeries::Durations EventSeries::durations(std::size_t period, std::size_t skipped, std::size_t most) const {
   Durations result;
-  for (std::size_t lap = skipped; lap < skipped + most && (lap + 1) * period < entries_.size(); ++lap) {
-    if (!repeats(lap * period, (lap + 1) * period)) break;
-    const double duration = back(lap * period).t - back((lap + 1) * period).t;
+  for (std::size_t cycle = skipped; cycle < skipped + most && (cycle + 1) * period < entries_.size(); ++cycle) {
+    if (!repeats(cycle * period, (cycle + 1) * period)) break;
+    const double duration = back(cycle * period).t - back((cycle + 1) * period).t;
     // Before the sequence began to shrink its durations say nothing.
     if (result.count > 0 && !(duration > result.of[result.count - 1])) break;
     result.of[result.count++] = duration;
@@ -105,10 +105,10 @@ double EventSeries::ratio(std::size_t period, std::size_t skipped) const {
   const auto last = durations(period, skipped, 2);
   const double first = last.of[0] / last.of[1];
   if (!(first < 1.0)) return first;
-  const double wanted = std::min(std::ceil(1.0 / (1.0 - first)), static_cast<double>(most_laps));
-  const auto all = durations(period, skipped, std::min(static_cast<std::size_t>(wanted) + 1, most_laps));
-  const double laps = std::min(wanted, static_cast<double>(all.count - 1));
-  return std::pow(all.of[0] / all.of[static_cast<std::size_t>(laps)], 1.0 / laps);
+  const double wanted = std::min(std::ceil(1.0 / (1.0 - first)), static_cast<double>(most_cycles));
+  const auto all = durations(period, skipped, std::min(static_cast<std::size_t>(wanted) + 1, most_cycles));
+  const double cycles = std::min(wanted, static_cast<double>(all.count - 1));
+  return std::pow(all.of[0] / all.of[static_cast<std::size_t>(cycles)], 1.0 / cycles);
 }
 
 std::vector<double> EventSeries::extrapolated(std::size_t period, double ratio) const {
@@ -131,7 +131,7 @@ std::vector<int> EventSeries::last_jumps(std::size_t entries) const {
 }
 
 /// Whether so much time remains that limit_of would say nothing, whatever the ratio that it would find. That one is a
-/// mean of successive ratios over some laps, which shrink: at least the last of them over all of them together.
+/// mean of successive ratios over some cycles, which shrink: at least the last of them over all of them together.
 bool EventSeries::is_far_from_limit(std::size_t period, double resolved_to) const {
   const double t = back(0).t;
   const double resolution = rounding_unit * std::abs(t);
@@ -140,19 +140,19 @@ bool EventSeries::is_far_from_limit(std::size_t period, double resolved_to) cons
   const double before = back(period).t - back(2 * period).t;
   if (!(last < before)) return true;
   if (last * (last / before) <= resolved_to) return false;
-  const auto laps = static_cast<std::size_t>(std::min(std::ceil(before / (before - last)), double{most_laps})) + 2;
-  const double others = back(period).t - back(std::min(laps * period, entries_.size() - 1)).t;
+  const auto cycles = static_cast<std::size_t>(std::min(std::ceil(before / (before - last)), double{most_cycles})) + 2;
+  const double others = back(period).t - back(std::min(cycles * period, entries_.size() - 1)).t;
   // With twice what they are compared with the roundings of the ratio do not matter.
   return last * last > 2.0 * others * std::max(1e-8 * (t - start_[period]), 100.0 * resolution);
 }
 
-/// @param resolved_to  how long the laps are that are lost in roundings
+/// @param resolved_to  how long the cycles are that are lost in roundings
 std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double resolved_to) const {
-  const auto now = durations(period, 0, fewest_laps);
+  const auto now = durations(period, 0, fewest_cycles);
   const double t = back(0).t;
   const double resolution = rounding_unit * std::abs(t);
   if (now.count >= 2 && now.of[0] <= std::max(16.0 * resolution, hundredth * resolved_to)) {
-    // Laps that shrink fast leave little, but not nothing. Long ones are here because psi leaves its surface
+    // Cycles that shrink fast leave little, but not nothing. Long ones are here because psi leaves its surface
     // tangentially, with no rate: their limit is where they are.
     const double fast = now.of[0] / now.of[1];
     if (!(fast <= 0.5 && now.of[0] <= 1e-6 * (t - start_[period]))) {
@@ -161,13 +161,13 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double reso
     const double left = now.of[0] * fast / (1.0 - fast);
     return SeriesLimit{t + left, extrapolated(period, fast), last_jumps(period), now.of[0]};
   }
-  // Of laps that shrink to a tenth each the next one may be unresolved before there were four.
+  // Of cycles that shrink to a tenth each the next one may be unresolved before there were four.
   const bool is_fast = now.count >= 3 && now.of[0] <= 0.1 * now.of[1] && now.of[1] <= 0.1 * now.of[2] &&
                        now.of[0] * (now.of[0] / now.of[1]) <= resolved_to;
   const bool is_unresolved = is_fast || now.of[0] <= resolved_to;
-  const std::size_t fewest = is_fast ? fewest_laps - 1 : fewest_laps;
-  // The first of several laps does not count among those that have shrunk.
-  if (laps_[period] < (is_fast ? fewest - 1 : fewest) * period || now.count < fewest) return std::nullopt;
+  const std::size_t fewest = is_fast ? fewest_cycles - 1 : fewest_cycles;
+  // The first of several cycles does not count among those that have shrunk.
+  if (cycles_[period] < (is_fast ? fewest - 1 : fewest) * period || now.count < fewest) return std::nullopt;
   const double ratio_now = ratio(period, 0);
   if (!(ratio_now < 1.0)) return std::nullopt;
   const double remaining = now.of[0] * ratio_now / (1.0 - ratio_now);
@@ -176,7 +176,7 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double reso
   const double ratio_before = ratio(period, 1);
   if (!(ratio_before < 1.0)) return std::nullopt;
   const double remaining_before = now.of[1] * ratio_before / (1.0 - ratio_before);
-  // A fiftieth of what remains is 2e-10 of the time taken. The last of fast laps is to be what those before foretold,
+  // A fiftieth of what remains is 2e-10 of the time taken. The last of fast cycles is to be what those before foretold,
   // but for the quarter that rounding may make of it: the next one, a tenth as long, would be nothing else.
   const double expected = is_fast ? 0.25 * now.of[0] : 0.02 * remaining;
   const double difference = (t + remaining) - (back(period).t + remaining_before);
@@ -213,8 +213,8 @@ std::optional<SeriesLimit> EventSeries::limit(const std::vector<double>& shortes
   double resolved_to = 0.0;
   for (std::size_t period = 1; is_sequence_ && period <= longest_period && entries_.size() > 2 * period; ++period) {
     resolved_to = std::max(resolved_to, back(period - 1).executed.largest(shortest));
-    // Every jump of the cycle has shrunk its own laps: laps_ counts entries.
-    if (laps_[period] < 2 * period || is_far_from_limit(period, resolved_to)) continue;
+    // Every jump of the cycle has shrunk from cycle to cycle: cycles_ counts entries.
+    if (cycles_[period] < 2 * period || is_far_from_limit(period, resolved_to)) continue;
     if (auto found = limit_of(period, resolved_to)) return found;
   }
   return end_of_chattering(shortest);
@@ -224,27 +224,27 @@ std::optional<SeriesLimit> EventSeries::nearly() const {
   if (shortest_repeated_ == 0) return std::nullopt;
   for (std::size_t period = shortest_repeated_; period <= longest_period && entries_.size() > 2 * period; ++period) {
     if (!repeats(0, period) || !repeats(period, 2 * period)) continue;
-    const double lap = back(0).t - back(period).t;
+    const double cycle = back(0).t - back(period).t;
     const double before = back(period).t - back(2 * period).t;
-    if (!(before > lap)) continue;
+    if (!(before > cycle)) continue;
     // Of a shorter period that repeats, too, the longer ones are multiples.
-    if (!(lap <= hundredth * before)) return std::nullopt;
+    if (!(cycle <= hundredth * before)) return std::nullopt;
     // What would remain.
-    if (lap * (lap / before) <= 1e-7 * (back(0).t - entries_.front().t)) {
-      return SeriesLimit{back(0).t, last_state(), last_jumps(period), lap};
+    if (cycle * (cycle / before) <= 1e-7 * (back(0).t - entries_.front().t)) {
+      return SeriesLimit{back(0).t, last_state(), last_jumps(period), cycle};
     }
   }
   return std::nullopt;
 }
 
-std::optional<double> EventSeries::closed_lap() const {
+std::optional<double> EventSeries::closed_cycle() const {
   if (shortest_repeated_ == 0) return std::nullopt;
   return back(0).t - back(shortest_repeated_).t;
 }
 
-std::optional<double> EventSeries::last_lap() const {
+std::optional<double> EventSeries::last_cycle() const {
   for (std::size_t period = 1; period <= longest_period; ++period) {
-    if (laps_[period] >= 2 * period && entries_.size() > period) return back(0).t - back(period).t;
+    if (cycles_[period] >= 2 * period && entries_.size() > period) return back(0).t - back(period).t;
   }
   return std::nullopt;
 }

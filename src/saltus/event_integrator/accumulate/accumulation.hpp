@@ -9,28 +9,28 @@
 
 namespace saltus::event_integrator {
 
-/// How the events of a sequence with a limit follow each other.
+/// Says how the events of a sequence with a limit follow each other.
 enum class SeriesKind {
-  laps,        ///< one and the same list of events again and again
+  cycles,      ///< one and the same list of events again and again
   chattering,  ///< jumps in any order, faster than their guards are resolved
   unresolved   ///< functions that are zero together, as far as they are resolved
 };
 
-/// The limit of a sequence of events: of jumps, or of switches.
+/// Holds the limit of a sequence of events: of jumps, or of switches.
 struct SeriesLimit {
   double t = 0.0;
   std::vector<double> x;
-  std::vector<int> events;  ///< numbers of those of one lap, ascending, each once
-  double lap = 0.0;         ///< duration of the last one
-  SeriesKind kind = SeriesKind::laps;
+  std::vector<int> events;  ///< numbers of those of one cycle, ascending, each once
+  double cycle = 0.0;       ///< duration of the last one
+  SeriesKind kind = SeriesKind::cycles;
 };
 
-/// The last items of a sequence, at most `capacity`. The storage of those that are gone is used again.
+/// Holds the last items of a sequence, at most `capacity`. The storage of those that are gone is used again.
 template <class Item, std::size_t capacity>
 class LastItems {
  public:
   static constexpr std::size_t first_items = 32;  ///< room for them is made at once: most sequences are shorter
-  /// A new last item; its members hold what an earlier one has left there.
+  /// Returns a new last item; its members hold what an earlier one has left there.
   Item& append() {
     last_ = last_ + 1 == capacity ? 0 : last_ + 1;
     if (items_.empty()) items_.reserve(std::min(capacity, first_items));
@@ -38,7 +38,7 @@ class LastItems {
     size_ = std::min(size_ + 1, capacity);
     return items_[last_];
   }
-  /// `steps` before the last one, less than size().
+  /// Returns the item `steps` before the last one, less than size().
   [[nodiscard]] const Item& back(std::size_t steps) const {
     return items_[steps <= last_ ? last_ - steps : last_ + capacity - steps];
   }
@@ -56,33 +56,36 @@ class LastItems {
   std::size_t last_ = capacity - 1;
 };
 
-/// Watches the times and states of jumps (or of switches, which are numbered likewise) for laps whose durations shrink
-/// geometrically. A lap is a cycle of jumps that repeats, of up to eight times.
+/// Watches the times and states of jumps (or of switches, which are numbered likewise) for cycles whose durations
+/// shrink geometrically. A cycle is a list of at most eight jumps that repeats.
 ///
-/// With the duration T of the last lap and the ratio r < 1 of successive durations, T r / (1 - r) is what remains. The
-/// limit is announced once that is below 1e-8 of the time that the sequence has taken, or can no longer be told apart
-/// in t, and the extrapolations of the last laps agree. The state is extrapolated component by component (Aitken's
-/// delta-squared process), which is exact for geometric sequences of any ratio.
+/// With the duration T of the last cycle and the ratio r < 1 of successive durations, T r / (1 - r) is what remains.
+/// The limit is announced once the extrapolations of the last cycles agree and that is small. Small is 1e-8 of the time
+/// that the sequence has taken, or what can no longer be told apart in t. The state is extrapolated component by
+/// component (Aitken's delta-squared process), which is exact for geometric sequences of any ratio.
 class EventSeries {
  public:
-  /// Jumps executed at t in this order, and the state behind them.
+  /// Notes the jumps executed at t in this order, and the state behind them.
   void add(double t, const std::vector<int>& jumps, const std::vector<double>& x);
-  /// Whether the last event has closed a lap that was shorter than the one before: only then there may be a limit, but
-  /// for chattering.
+  /// Returns whether the last event has closed a cycle that was shorter than the one before: only then there may be a
+  /// limit, but for chattering.
   [[nodiscard]] bool shrinks() const { return shrinks_; }
-  /// @param shortest  by jump: laps not longer than this are lost in the rounding of its guard; their sequence is
+  /// Returns the limit of a sequence, once it can be told.
+  /// @param shortest  by jump: cycles not longer than this are lost in the rounding of its guard; their sequence is
   ///                  extrapolated when it gets near, whatever remains. Jumps that follow each other faster than a
   ///                  hundredth of it, in any order, have their limit where they are.
   [[nodiscard]] std::optional<SeriesLimit> limit(const std::vector<double>& shortest) const;
-  /// Where the last event is, if its lap was less than a hundredth of the one before and as much less again would be
-  /// 1e-7 of the time taken: too few laps to believe in a limit, unless there is something else that says so.
+  /// Returns where the last event is, if its cycle was less than a hundredth of the one before. As much less again has
+  /// to be 1e-7 of the time taken at most. These are too few cycles to believe in a limit, unless something else says
+  /// so.
   [[nodiscard]] std::optional<SeriesLimit> nearly() const;
-  /// How long the shortest lap is that the last event closes; nullopt if none of its like is among the last eight.
-  [[nodiscard]] std::optional<double> closed_lap() const;
-  /// How long the last lap of a shrinking sequence was; nullopt outside of one.
-  [[nodiscard]] std::optional<double> last_lap() const;
-  /// Behind a limit, or where guards came to rest: laps start anew. Rattling is followed through such rests.
-  void clear_laps();
+  /// Returns how long the shortest cycle is that the last event closes; nullopt if none of its like is among the last
+  /// eight.
+  [[nodiscard]] std::optional<double> closed_cycle() const;
+  /// Returns how long the last cycle of a shrinking sequence was; nullopt outside of one.
+  [[nodiscard]] std::optional<double> last_cycle() const;
+  /// Starts cycles anew, behind a limit, or where guards came to rest. Rattling is followed through such rests.
+  void clear_cycles();
   void clear();
   [[nodiscard]] bool empty() const { return entries_.empty(); }
 
@@ -113,8 +116,8 @@ class EventSeries {
   };
   /// Jumps without a pattern that are looked at together.
   static constexpr std::size_t many = 64;
-  /// Laps whose durations give the ratio, at most: more average out the rounding of t where the ratio is near 1.
-  static constexpr std::size_t most_laps = 48;
+  /// Cycles whose durations give the ratio, at most: more average out the rounding of t where the ratio is near 1.
+  static constexpr std::size_t most_cycles = 48;
   [[nodiscard]] const Entry& back(std::size_t steps) const { return entries_.back(steps); }
   [[nodiscard]] const double* state(std::size_t steps) const { return states_.data() + *back(steps).place; }
   [[nodiscard]] std::vector<double> last_state() const { return {state(0), state(0) + n_x_}; }
@@ -127,25 +130,25 @@ class EventSeries {
   [[nodiscard]] std::optional<SeriesLimit> end_of_chattering(const std::vector<double>& shortest) const;
   [[nodiscard]] std::vector<double> extrapolated(std::size_t period, double ratio) const;
   [[nodiscard]] std::vector<int> last_jumps(std::size_t entries) const;
-  /// Laps that must shrink before a sequence is believed to have a limit.
-  static constexpr std::size_t fewest_laps = 4;
+  /// Cycles that must shrink before a sequence is believed to have a limit.
+  static constexpr std::size_t fewest_cycles = 4;
   struct Durations {
-    std::array<double, most_laps> of;  ///< laps, the last one first
+    std::array<double, most_cycles> of;  ///< cycles, the last one first
     std::size_t count = 0;
   };
-  /// Of the laps behind the entry `skipped` laps ago, at most so many, as far as jumps repeat and laps shrink.
+  /// Of the cycles behind the entry `skipped` cycles ago, at most so many, as far as jumps repeat and cycles shrink.
   [[nodiscard]] Durations durations(std::size_t period, std::size_t skipped, std::size_t most) const;
-  /// Of successive durations, at least two of which there are, over as many laps as it takes to shrink to a third: the
-  /// rounding of t is divided by their number.
+  /// Of successive durations, at least two of which there are, over as many cycles as it takes to shrink to a third:
+  /// the rounding of t is divided by their number.
   [[nodiscard]] double ratio(std::size_t period, std::size_t skipped) const;
 
-  LastItems<Entry, longest_period*(most_laps + 2)> entries_;
+  LastItems<Entry, longest_period*(most_cycles + 2)> entries_;
   std::size_t n_x_ = 0;
   std::vector<double> states_;                    ///< behind the entries, n_x_ numbers each
   LastItems<Recent, many> recent_;                ///< for chattering
   std::array<int, longest_period + 1> lately_{};  ///< Executed::only of the last entries, the last one first
   double start_[longest_period + 1] = {};         ///< of the shrinking sequence of each period
-  std::size_t laps_[longest_period + 1] = {};     ///< in it
+  std::size_t cycles_[longest_period + 1] = {};   ///< in it
   std::size_t shortest_repeated_ = 0;             ///< the shortest period that the last event closes, 0 = none
   bool shrinks_ = false;                          ///< see shrinks()
   bool is_sequence_ = false;                      ///< some period has shrunk as often as limit() asks for

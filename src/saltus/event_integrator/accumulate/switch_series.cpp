@@ -42,9 +42,9 @@ void SwitchSeries::remember(double t) {
   ++switches_;
   const double before = times_[4] - times_[8];
   if (switches_ <= 8 || !(t - times_[4] < before)) {
-    first_lap_ = 0.0;
-  } else if (first_lap_ == 0.0) {
-    first_lap_ = before;
+    first_cycle_ = 0.0;
+  } else if (first_cycle_ == 0.0) {
+    first_cycle_ = before;
   }
 }
 
@@ -56,25 +56,25 @@ void SwitchSeries::note(double t, std::size_t surface, int before) {
 }
 
 bool SwitchSeries::shrinks(double t) const {
-  // Two laps within a few digits of t are what a sequence leaves that is lost in its rounding.
+  // Two cycles within a few digits of t are what a sequence leaves that is lost in its rounding.
   constexpr double unresolved = 128.0 * rounding_unit;
   if (switches_ > 4 && t - times_[4] <= unresolved * std::abs(t)) return true;
   // The last terms of a geometric series are lost in the rounding of t: a fast one is over after a few, and with more
-  // in a lap a slow one shrinks by half from lap to lap.
-  for (const std::size_t lap : {std::size_t{2}, std::size_t{4}}) {
-    if (switches_ <= 2 * lap || t - times_[lap] > 1e-9 * span_) continue;
-    if (times_[0] - times_[lap] <= 0.5 * (times_[lap] - times_[2 * lap])) return true;
+  // in a cycle a slow one shrinks by half from cycle to cycle.
+  for (const std::size_t cycle : {std::size_t{2}, std::size_t{4}}) {
+    if (switches_ <= 2 * cycle || t - times_[cycle] > 1e-9 * span_) continue;
+    if (times_[0] - times_[cycle] <= 0.5 * (times_[cycle] - times_[2 * cycle])) return true;
   }
   return false;
 }
 
 bool SwitchSeries::tightens() const {
-  for (std::size_t lap = 1; lap <= 4 && switches_ > 2 * lap; ++lap) {
-    // A cycle that is approached has laps of nearly one length.
-    if (times_[0] - times_[lap] < 0.995 * (times_[lap] - times_[2 * lap])) return true;
+  for (std::size_t cycle = 1; cycle <= 4 && switches_ > 2 * cycle; ++cycle) {
+    // Where a limit cycle is approached, cycles have nearly one length.
+    if (times_[0] - times_[cycle] < 0.995 * (times_[cycle] - times_[2 * cycle])) return true;
   }
   // Those of a slow spiral shrink without end.
-  return times_[0] - times_[4] < 0.5 * first_lap_;
+  return times_[0] - times_[4] < 0.5 * first_cycle_;
 }
 
 bool SwitchSeries::too_dense(double t) {

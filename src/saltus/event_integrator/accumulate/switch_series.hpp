@@ -13,23 +13,24 @@ namespace saltus::event_integrator {
 /// finite time; in doubles they end in a loop of modes at one time.
 class SwitchSeries {
  public:
+  /// Begins without switches.
   /// @param span  of the whole run, in units of time
   explicit SwitchSeries(double span) : span_(span) {}
 
-  /// Whether the solution changes from `before` to `after` at t, as it already did at this very time: a loop. Notes the
-  /// change. There and back once is none: a surface may be touched more shallowly than time resolves.
+  /// Returns whether the solution changes from `before` to `after` at t, as it already did at this very time: a loop.
+  /// Notes the change. There and back once is none: a surface may be touched more shallowly than time resolves.
   [[nodiscard]] bool repeats(double t, const std::vector<int>& before, const std::vector<int>& after);
   /// Notes that one surface has left the mode `before` at t, later than any change noted so far: no loop. Cost: O(1).
   void note(double t, std::size_t surface, int before);
-  /// Of the last change noted.
+  /// Returns the time of the last change noted.
   [[nodiscard]] double last() const { return last_; }
   /// Counts an event at t; whether there were too many in too short a time.
   [[nodiscard]] bool too_dense(double t);
-  /// Whether the switches before t have followed each other ever faster, down to a scale on which no model lives: a run
-  /// that cannot go on there has come to their limit.
+  /// Returns whether the switches before t have followed each other ever faster, down to a scale on which no model
+  /// lives: a run that cannot go on there has come to their limit.
   [[nodiscard]] bool shrinks(double t) const;
-  /// Whether the last switches have followed each other faster than those before, over laps of one to four; or a little
-  /// faster, until laps of four were half as long as when that began.
+  /// Returns whether the last switches have followed each other faster than those before, over cycles of one to four;
+  /// or a little faster, until cycles of four were half as long as when that began.
   [[nodiscard]] bool tightens() const;
 
  private:
@@ -46,12 +47,12 @@ class SwitchSeries {
     int before = 0;
   };
   std::optional<SurfaceChange> surface_change_;
-  /// Two laps of up to four switches, and one to start from.
+  /// Two cycles of up to four switches, and one to start from.
   static constexpr std::size_t remembered = 9;
   std::array<double, remembered> times_{};  ///< of the last switches, the last one first
   std::size_t switches_ = 0;
-  double first_lap_ = 0.0;  ///< of four switches, before laps began to shrink from switch to switch; 0 if they do not
-  long in_a_row_ = 0;       ///< without the time having advanced noticeably
+  double first_cycle_ = 0.0;  ///< of four switches, before cycles began to shrink; 0 if they do not
+  long in_a_row_ = 0;         ///< without the time having advanced noticeably
   double start_ = 0.0;
 };
 

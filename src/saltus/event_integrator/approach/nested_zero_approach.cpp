@@ -43,8 +43,8 @@ void NestedZeroApproach::limit(ode::Tolerances& parts) {
   if (!watches()) return;
   find_values();
   auto& [rtol, atol] = parts;
-  // Where g is a difference of states, its rounding moves the selection, which is of the size of |g'|^2 / g, by a part
-  // of u / g: less than this could not be reached any more before g is as small as it may get.
+  // Where g is a difference of states, its rounding moves the selection by a part of u / g. The selection is of the
+  // size of |g'|^2 / g. Less than this could not be reached any more before g is as small as it may get.
   const double smallest = 1e-12 / tolerances_.mode().rtol;
   for (const Approaching& approaching : functions_) {
     const Rate rate = rates_.here(approaching.function);

@@ -1,5 +1,5 @@
-// Sliding on a function that has a root of another one inside it (terminal sliding modes): the motion runs into the
-// zero of that one in finite time, like a power of the time that is left, and no field goes on beyond.
+// Sliding on a function that has a root of another one inside it (terminal sliding modes). The motion runs into the
+// zero of that one in finite time, like a power of the time that is left. No field goes on beyond.
 #pragma once
 
 #include <cmath>
@@ -20,17 +20,17 @@ class NestedZeroApproach {
                      const StepTolerances& tolerances, ZeroApproach& zeros)
       : kernel_(kernel), here_(here), search_(search), tolerances_(tolerances), zeros_(zeros), rates_(kernel, here) {}
 
-  /// The mode that begins here is watched for such functions; returns whether the one before had any.
+  /// Watches the mode that begins here for such functions; returns whether the one before had any.
   bool begin_mode();
   [[nodiscard]] bool watches() const { return !functions_.empty(); }
-  /// A step of length h was accepted; the position is still at its begin.
+  /// Notes that a step of length h was accepted; the position is still at its begin.
   void accepted(double h);
   /// Lowers what errors of a step may be, as parts of those of the mode.
   void limit(ode::Tolerances& parts);
-  /// Where functions that the motion runs into the zeros of get there before `until`, together with those that do
-  /// within their accuracy.
+  /// Returns where functions that the motion runs into the zeros of get there before `until`, together with those that
+  /// do within their accuracy.
   [[nodiscard]] std::optional<Located> ahead(double until);
-  /// When the mode began.
+  /// Returns when the mode began.
   [[nodiscard]] double since() const { return since_; }
 
  private:

@@ -19,35 +19,35 @@ class ZeroApproach {
  public:
   ZeroApproach(const SwitchingContext& switching_context, const Position& here, ModeField& field, EventSearch& search);
 
-  /// The values of all functions that are searched; valid until the next call of anything here.
+  /// Returns the values of all functions that are searched; valid until the next call of anything here.
   const std::vector<double>& functions(double t, const double* x);
-  /// Surfaces whose regions' fields have a root of them: those whose fields go on beyond them, and those that end
-  /// there.
+  /// Returns whether there are surfaces whose regions' fields have a root of them. The fields of some go on beyond
+  /// them, those of others end there.
   [[nodiscard]] bool any_continued() const { return !continued_.empty(); }
   [[nodiscard]] bool any_ending() const { return !ending_.empty(); }
   [[nodiscard]] bool ends_at(int surface) const;
-  /// What errors of a step of length h may be beside roots, as parts of those of the mode.
+  /// Returns what errors of a step of length h may be beside roots, as parts of those of the mode.
   /// @param cycle  the duration of the last cycle of switches while these contract
   [[nodiscard]] ode::Tolerances bearable(double h, std::optional<double> cycle, const ode::Tolerances& mode);
-  /// A surface that the state cannot come nearer to, as its next digit is on it or behind it.
+  /// Returns a surface that the state cannot come nearer to, as its next digit is on it or behind it.
   [[nodiscard]] std::optional<Located> within_rounding();
-  /// A surface before `until` that psi, of terms far larger than it is, has a few roundings left to: the root of what
-  /// rounding makes of these says nothing any more, and steps that stay on this side may change nothing.
+  /// Returns a surface before `until` that psi, of terms far larger than it is, has a few roundings left to: the root
+  /// of what rounding makes of these says nothing any more, and steps that stay on this side may change nothing.
   [[nodiscard]] std::optional<Located> ahead(double until);
-  /// What is reached where the right-hand side is undefined however short the step.
+  /// Returns what is reached where the right-hand side is undefined however short the step.
   [[nodiscard]] std::optional<Located> beside_undefined();
-  /// Whether a surface that no step gets to is one that its own field leads away from: beside a root of psi a dense
-  /// output dips below zero where the solution only comes near.
+  /// Returns whether a surface that no step gets to is one that its own field leads away from: beside a root of psi a
+  /// dense output dips below zero where the solution only comes near.
   [[nodiscard]] bool is_repelled(const Located& located);
-  /// A surface that is at zero here, beside which the field has an infinite derivative; -1 if there is none.
+  /// Returns a surface that is at zero here, beside which the field has an infinite derivative; -1 if there is none.
   [[nodiscard]] int root_here();
-  /// The same at most once at each time.
+  /// Does the same at most once at each time.
   [[nodiscard]] int root_here_once();
-  /// Whether no function but that of `surface` changes its sign between the position and (t, x).
+  /// Returns whether no function but that of `surface` changes its sign between the position and (t, x).
   [[nodiscard]] bool keep_their_signs(int surface, double t, const double* x);
-  /// Surfaces that are zero here, as far as the tolerances tell; with their signs before.
+  /// Returns the surfaces that are zero here, as far as the tolerances tell; with their signs before.
   [[nodiscard]] std::vector<const EventFunction*> unresolved();
-  /// Something has happened, or a search has found the roundings of functions anew.
+  /// Forgets what was asked: something has happened, or a search has found the roundings of functions anew.
   void forget() { none_at_.reset(); }
 
  private:

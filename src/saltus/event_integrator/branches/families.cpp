@@ -136,7 +136,7 @@ void Families::add_spirals(double t, std::size_t event, const Transition& transi
   family.from = family.until = t;
   family.mode = transition.state.mode;
   family.alpha = transition.state.alpha;
-  family.lap_ratio = transition.beyond_spiral->lap_ratio;
+  family.lap_ratio = transition.beyond_spiral->cycle_ratio;
   recorded_.push_back(std::move(family));
 }
 

@@ -21,12 +21,12 @@ namespace saltus::event_integrator {
 /// affinely) are not watched.
 class Families {
  public:
-  /// One that may be left now.
+  /// Holds a family that may be left now.
   struct Open {
     std::vector<GivenMode> given;  ///< modes of its surfaces
     std::size_t number = 0;        ///< in the run
   };
-  /// What is looked at: a point of the run.
+  /// Holds what is looked at: a point of the run.
   struct Point {
     double t = 0.0;
     const double* x = nullptr;
@@ -35,25 +35,25 @@ class Families {
 
   explicit Families(const SwitchingContext& switching_context);
 
-  /// A mode, or another root of it, that begins at the last event; `unique` says that no single surface of it can
-  /// repel.
+  /// Enters a mode, or another root of it, that begins at the last event; `unique` says that no single surface of it
+  /// can repel.
   void enter(const Point& point, const ModeState& state, std::size_t event, std::optional<bool> unique);
-  /// Whether the mode of the last enter() has to be looked at step by step.
+  /// Returns whether the mode of the last enter() has to be looked at step by step.
   [[nodiscard]] bool watches() const { return !groups_.empty(); }
-  /// Whether a change of mode is nothing to it.
+  /// Returns whether a change of mode is nothing to it.
   [[nodiscard]] bool idle() const { return open_.empty() && groups_.empty(); }
-  /// Behind a step from t_begin: what can be left now, and what no more. `state_at` gives the states in between.
+  /// Finds, behind a step from t_begin, what can be left now, and what no more. `state_at` gives the states in between.
   void look(const Point& point, double t_begin, FunctionRef<void(double t, double* x)> state_at);
-  /// Spirals from an event that is recorded next.
+  /// Adds the spirals from an event that is recorded next.
   void add_spirals(double t, std::size_t event, const Transition& transition);
-  /// All that are open, at the end of a run.
+  /// Closes all that are open, at the end of a run.
   void close(double t);
 
   [[nodiscard]] std::size_t count() const { return recorded_.size(); }
   [[nodiscard]] const std::vector<Open>& open() const { return open_; }
-  /// Whether this is the mode that is watched, with the root that is slid on.
+  /// Returns whether this is the mode that is watched, with the root that is slid on.
   [[nodiscard]] bool is_on(const ModeState& state) const;
-  /// In the order of their numbers.
+  /// Hands over the families in the order of their numbers.
   [[nodiscard]] std::vector<Recording::Family> take() { return std::move(recorded_); }
 
  private:

@@ -19,8 +19,8 @@
 namespace saltus::event_integrator {
 
 /// A JumpCascade begins at an event and lasts while jumps follow each other at that time. It knows which event
-/// functions are at zero whatever is left of their values, and gives the guards of jumps the signs of the motion
-/// behind. Its storage is used again by the next one.
+/// functions are at zero whatever is left of their values. It gives the guards of jumps the signs of the motion behind.
+/// Its storage is used again by the next one.
 class JumpCascade {
  public:
   JumpCascade(const SwitchingContext& switching_context, const Position& here, ModeField& field, EventSearch& search,
@@ -36,51 +36,52 @@ class JumpCascade {
         rates_(kernel_, here),
         slope_(here.x.size()) {}
 
-  /// A cascade begins where only the surfaces of the sliding mode are at zero.
+  /// Begins a cascade where only the surfaces of the sliding mode are at zero.
   void begin();
-  /// A cascade begins at an event: what was located is at zero, too.
+  /// Begins a cascade at an event: what was located is at zero, too.
   void begin(const Located& located);
 
   [[nodiscard]] ReusedList<ExecutedJump>& executed() { return executed_; }
   [[nodiscard]] const ReusedList<ExecutedJump>& executed() const { return executed_; }
   [[nodiscard]] const std::vector<HeldGuard>& held_before() const { return held_before_; }
-  /// Jumps whose guards stay at zero from here on.
+  /// Returns the jumps whose guards stay at zero from here on.
   [[nodiscard]] std::vector<int>& resting() { return resting_; }
   [[nodiscard]] const std::vector<int>& resting() const { return resting_; }
-  /// Into the mode behind.
+  /// Returns the transition into the mode behind.
   [[nodiscard]] Transition& transition() { return transition_; }
   [[nodiscard]] const std::vector<int>& zeros() const { return zeros_; }
   void add_zero(int function) {
     if (!contains(zeros_, function)) zeros_.push_back(function);
   }
-  /// What is left of a function that is at zero.
+  /// Returns what is left of a function that is at zero.
   [[nodiscard]] double zero_value(int function) const { return zero_values_[at(function)]; }
-  /// The largest |dg/dt| of a guard at this time.
+  /// Returns the largest |dg/dt| of a guard at this time.
   [[nodiscard]] double rate(int function) const { return largest_rates_[at(function)].value; }
 
   /// Notes how fast the guards of jumps move here.
   void note_guards();
-  /// Zeros that a jump has moved away are none any more.
+  /// Drops the zeros that a jump has moved away.
   void drop_zeros();
-  /// Signs of all user functions at the point as it is. One that was located here and is still at zero keeps the sign
-  /// just behind this time; one that a jump has put there has none yet (0).
+  /// Reads the signs of all user functions at the point as it is. One that was located here and is still at zero keeps
+  /// the sign just behind this time; one that a jump has put there has none yet (0).
   void read_user_signs();
-  /// The mode is decided anew: motions along the one before are no more.
+  /// Forgets motions along the mode before, as the mode is decided anew.
   void forget_motions() { motions_.assign(motions_.size(), std::nullopt); }
-  /// Functions that are at zero behind jumps get the signs to which the motion takes them.
+  /// Gives functions that are at zero behind jumps the signs to which the motion takes them.
   void give_directions();
-  /// Guards that were kept at zero by what slid, and are left in the mode that was entered here, get the sign to which
-  /// they go, at this time and not where it is seen first.
+  /// Gives guards that are left in the mode that was entered here the sign to which they go. Before, what slid kept
+  /// them at zero. They get it at this time and not where it is seen first.
   /// @param zero_order  of the mode's surfaces
   void leave_guards(const std::vector<int>& zero_order);
 
   struct RestingGuards {
     std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
   };
-  /// Guards of executed jumps, and those held before, that were left at zero without a velocity and are pressed on.
+  /// Returns the guards of executed jumps, and those held before, that were left at zero without a velocity and are
+  /// pressed on.
   [[nodiscard]] RestingGuards pressed_guards();
-  /// Guards at zero that what slides keeps at rest: they are held as well, so that nothing has to be asked where
-  /// sliding ends and the guard takes over. None where the guards alone do not keep all of that at zero.
+  /// Returns the guards at zero that what slides keeps at rest: they are held as well, so that nothing has to be asked
+  /// where sliding ends and the guard takes over. None where the guards alone do not keep all of that at zero.
   [[nodiscard]] std::vector<HeldGuard> guards_kept_by_sliding(const RestingGuards& others);
 
  private:

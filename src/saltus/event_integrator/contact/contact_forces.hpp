@@ -19,7 +19,7 @@ enum class ContactMode {
 };
 [[nodiscard]] constexpr bool slips(ContactMode mode) { return mode >= ContactMode::slip_up; }
 
-/// Modes of all contacts, and their forces.
+/// Holds modes of all contacts, and their forces.
 struct ContactForces {
   std::vector<ContactMode> modes;
   std::vector<Eigen::Vector2d> directions;  ///< by contact, of slip: unit vectors over its tangents; 0 without
@@ -30,13 +30,14 @@ struct ContactForces {
   double margin = 0.0;
 };
 
-/// The forces in given modes; contacts that are not in `resting` are open. False where the modes contradict each other.
+/// Finds the forces in given modes; contacts that are not in `resting` are open. False where the modes contradict each
+/// other.
 [[nodiscard]] bool forces_in(const ContactPoint& point, const std::vector<int>& resting,
                              const std::vector<ContactMode>& modes, ContactForces& result);
 
-/// Modes in which contacts at rest (gap and its rate 0) may go on: 0 <= normal force, complementary to 0 <= normal
-/// acceleration; |tangential force| <= friction normal force, with equality against the slip or, where there is none,
-/// against the tangential acceleration. Found by trying all combinations, those with most contact first.
+/// Returns the modes in which contacts at rest (gap and its rate 0) may go on: 0 <= normal force, complementary to 0 <=
+/// normal acceleration; |tangential force| <= friction normal force, with equality against the slip or, where there is
+/// none, against the tangential acceleration. Found by trying all combinations, those with most contact first.
 /// @param excluded  by contact: a mode that is known to end here; open contacts have no say
 [[nodiscard]] std::vector<ContactForces> admissible_forces(const ContactPoint& point, const std::vector<int>& resting,
                                                            const std::vector<std::vector<ContactMode>>& excluded);

@@ -9,8 +9,8 @@
 
 namespace saltus::event_integrator {
 
-/// m contacts: vectors over them have the normal parts first, then those along first tangents, then those along second
-/// ones if a contact has two (0 where there is none); r = 2 m or 3 m.
+/// Holds m contacts. Vectors over them have the normal parts first, then those along first tangents, then those along
+/// second ones if a contact has two (0 where there is none); r = 2 m or 3 m.
 struct ContactPoint {
   Eigen::MatrixXd influence;                  ///< r x r: d velocity / d impulse, (N, T)' M^-1 (N, T)
   Eigen::VectorXd velocity;                   ///< r
@@ -22,32 +22,32 @@ struct ContactPoint {
 
   [[nodiscard]] int contacts() const { return static_cast<int>(friction.size()); }
   [[nodiscard]] bool in_plane(int i) const { return tangents[static_cast<std::size_t>(i)] == 2; }
-  /// The row of a tangent of a contact.
+  /// Returns the row of a tangent of a contact.
   [[nodiscard]] int tangent_row(int i, int tangent) const { return (1 + tangent) * contacts() + i; }
   [[nodiscard]] double normal_velocity(int i) const { return velocity(i); }
-  /// The part of a vector along both tangents of a contact; of one tangent the second component is 0.
+  /// Returns the part of a vector along both tangents of a contact; of one tangent the second component is 0.
   [[nodiscard]] Eigen::Vector2d along(const Eigen::VectorXd& vector, int i) const {
     return {vector(tangent_row(i, 0)), in_plane(i) ? vector(tangent_row(i, 1)) : 0.0};
   }
 };
 
-/// Unknown forces or impulses y of contacts, in forces = given + columns y, that keep the rows `held` of
-/// start + influence forces at 0; the least ones where rows depend on each other.
+/// Holds unknown forces or impulses y of contacts, in forces = given + columns y, that keep the rows `held` of start +
+/// influence forces at 0; the least ones where rows depend on each other.
 struct HeldRows {
   Eigen::VectorXd given;
   Eigen::MatrixXd columns;
   std::vector<int> held;
 
   explicit HeldRows(Eigen::Index rows) : given(Eigen::VectorXd::Zero(rows)), columns(rows, 0) {}
-  /// One more unknown and its row; returns its number.
+  /// Adds one more unknown and its row; returns its number.
   int hold(int row);
-  /// The forces; nothing where the rows contradict each other.
+  /// Finds the forces; nothing where the rows contradict each other.
   [[nodiscard]] bool solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start,
                            Eigen::VectorXd& forces) const;
 };
 
-/// Directions in which contacts begin to slip from rest: along the rates of their tangential velocities, which follow
-/// from the directions.
+/// Finds the directions in which contacts begin to slip from rest: along the rates of their tangential velocities,
+/// which follow from the directions.
 /// @param free        contacts that begin to slip, in a plane each
 /// @param directions  by contact, unit vectors: those of `free` are found, from what they are
 /// @param solve       finds forces and rates (r each) for the directions; returns false where there are none

@@ -15,7 +15,7 @@
 
 namespace saltus::event_integrator {
 
-/// Where contacts are asked for a new mode.
+/// Says where contacts are asked for a new mode.
 struct ContactMoment {
   double t = 0.0;
   const std::vector<double>& alpha;
@@ -30,13 +30,13 @@ class Contacts {
   Contacts(const evaluation::ModelKernel& kernel, const model::System& system);
 
   [[nodiscard]] bool none() const { return contacts_.empty(); }
-  /// Whether a jump is that of a contact.
+  /// Returns whether a jump is that of a contact.
   [[nodiscard]] bool owns(int jump) const;
-  /// Whether an event function is a guard of such a jump.
+  /// Returns whether an event function is a guard of such a jump.
   [[nodiscard]] bool guards(int function) const {
     return !guards_.empty() && guards_[static_cast<std::size_t>(function)];
   }
-  /// Those whose jumps are in a list, or for which a condition on their jumps holds.
+  /// Returns those whose jumps are in a list, or for which a condition on their jumps holds.
   template <class Condition>
   [[nodiscard]] std::vector<int> with_jumps(Condition condition) const {
     std::vector<int> result;
@@ -45,23 +45,23 @@ class Contacts {
     }
     return result;
   }
-  /// The jump of the first contact with an impulse.
+  /// Returns the jump of the first contact with an impulse.
   [[nodiscard]] std::optional<int> jump_with_impulse(const std::vector<double>& x) const;
   /// Gives the modes of another state.
   void copy_modes(const std::vector<double>& from, std::vector<double>& x) const;
 
-  /// Velocities behind the impacts at a point, if any, and the modes there. `ended` lists the contacts whose mode ends
-  /// here; x is at the zero of what ended it. Returns what is wrong if nothing follows.
+  /// Sets the velocities behind the impacts at a point, if any, and the modes there. `ended` lists the contacts whose
+  /// mode ends here; x is at the zero of what ended it. Returns what is wrong if nothing follows.
   [[nodiscard]] std::optional<std::string> resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                                    std::vector<double>& x);
-  /// Bounces of these contacts (by their jumps) have come to an end: their gaps close without an impact.
+  /// Ends the bounces of these contacts (by their jumps): their gaps close without an impact.
   [[nodiscard]] std::optional<std::string> settle(const ContactMoment& moment, const std::vector<int>& jumps,
                                                   std::vector<double>& x);
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
-  /// Whether a jump of a contact has only bounded the speed of a slip in a plane anew.
+  /// Returns whether a jump of a contact has only bounded the speed of a slip in a plane anew.
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
-  /// Impulses belong to one instant.
+  /// Forgets impulses, which belong to one instant.
   void forget_impulses(std::vector<double>& x) const;
 
  private:

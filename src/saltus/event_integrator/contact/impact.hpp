@@ -10,8 +10,8 @@
 
 namespace saltus::event_integrator {
 
-/// Impulses of the contacts that touch, as the limit of stiff contacts (Darboux and Keller): in the place of time
-/// stands the normal impulse p,
+/// Returns the impulses of the contacts that touch, as the limit of stiff contacts (Darboux and Keller): in the place
+/// of time stands the normal impulse p,
 ///
 ///   dv/dp = M^-1 sum_i lambda_i (n_i - mu_i s_i t_i),   s_i in sign(t_i'v),
 ///

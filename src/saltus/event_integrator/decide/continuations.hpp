@@ -9,10 +9,10 @@
 
 namespace saltus::event_integrator {
 
-/// The mode behind a switching point with the modes of some surfaces at zero given and the rest decided for them.
+/// Decides the mode behind a switching point with the modes of some surfaces at zero given and the rest decided for
+/// them.
 /// @return nullopt if it does not continue the solution: the rest has no mode, or one of the given ones does not move
-/// to
-///         where it says.
+///         to where it says.
 [[nodiscard]] std::optional<Transition> decide_with(const SwitchingContext& switching_context, const ModeState& before,
                                                     const SwitchingPoint& switching_point,
                                                     const std::vector<GivenMode>& given);
@@ -22,7 +22,7 @@ namespace saltus::event_integrator {
 void other_continuations(const SwitchingContext& switching_context, const ModeState& before,
                          const SwitchingPoint& switching_point, Transition& transition);
 
-/// The transition to one of the alternatives; what was decided is the first among its alternatives then.
+/// Returns the transition to one of the alternatives; what was decided is the first among its alternatives then.
 /// @param alternative  below the number of decided.alternatives
 [[nodiscard]] Transition alternative_of(Transition decided, std::size_t alternative);
 

@@ -11,7 +11,8 @@
 
 namespace saltus::event_integrator {
 
-/// psi_j along a field of fixed selections: first derivative, and which derivative decides where it goes.
+/// Holds what psi_j does along a field of fixed selections: first derivative, and which derivative decides where it
+/// goes.
 struct Motion {
   switching::Side side;
   int order = 0;  ///< of the first derivative that does not vanish; 0 if none was found
@@ -28,39 +29,41 @@ class ProjectedFields {
  public:
   ProjectedFields(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point);
 
-  /// Selections of one corner: `base` with the bits of `corner` for the surfaces of `group`, and the functions nested
-  /// around those read anew in that region.
+  /// Returns the selections of one corner: `base` with the bits of `corner` for the surfaces of `group`, and the
+  /// functions nested around those read anew in that region.
   [[nodiscard]] std::vector<double> corner_alpha(const std::vector<double>& base, const std::vector<int>& group,
                                                  std::size_t corner) const;
-  /// Normal components of f(alpha) on the surfaces of `group`.
+  /// Returns the normal components of f(alpha) on the surfaces of `group`.
   [[nodiscard]] std::vector<double> velocities(const std::vector<double>& alpha, const std::vector<int>& group) const;
-  /// Where psi_surface goes along f(alpha). A velocity up to 1e-10 `scale` gives way to the first higher derivative
-  /// that moves psi further than it does, and further than rounding, over the switching point's time scale.
+  /// Returns where psi_surface goes along f(alpha). A velocity up to 1e-10 `scale` gives way to the first higher
+  /// derivative that moves psi further over the switching point's time scale. It has to move psi further than rounding,
+  /// too.
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
-  /// The same where the velocity alone says it; nullopt where it gives way. Cost: one comparison.
+  /// Does the same where the velocity alone says it; nullopt where it gives way. Cost: one comparison.
   [[nodiscard]] static std::optional<Motion> motion_by_velocity(double velocity, double scale);
 
-  /// Whether the fields on both sides of a surface are nearly tangent to it: their normal components are below 1e-6 of
-  /// |grad psi| |f|. Their quotient, the sliding selection, has lost its meaning there. Mixes the units of the states:
-  /// to choose between reasons to stop, not to decide a motion.
+  /// Returns whether the fields on both sides of a surface are nearly tangent to it: their normal components are below
+  /// 1e-6 of |grad psi| |f|. Their quotient, the sliding selection, has lost its meaning there. Mixes the units of the
+  /// states: to choose between reasons to stop, not to decide a motion.
   [[nodiscard]] bool nearly_two_fold(const std::vector<double>& alpha, int surface) const;
 
-  /// Whether the gradient of a surface vanishes here, but not close by (a power of another function), so that normal
-  /// components say nothing. To choose between reasons to stop.
+  /// Returns whether the gradient of a surface vanishes here, but not close by (a power of another function), so that
+  /// normal components say nothing. To choose between reasons to stop.
   [[nodiscard]] bool gradient_vanishes(const std::vector<double>& alpha, int surface) const;
-  /// Whether the gradients of several surfaces depend on each other, to 1e-6 of their lengths: the surfaces touch.
+  /// Returns whether the gradients of several surfaces depend on each other, to 1e-6 of their lengths: the surfaces
+  /// touch.
   [[nodiscard]] bool gradients_depend(const std::vector<double>& alpha, const std::vector<int>& surfaces) const;
 
-  /// The table of all 2^m corners of a group.
+  /// Returns the table of all 2^m corners of a group.
   [[nodiscard]] switching::CornerTable table(const ModeState& before, const std::vector<int>& group) const;
-  /// Whether the fields of all corners of the group are one and the same (relative 1e-12).
+  /// Returns whether the fields of all corners of the group are one and the same (relative 1e-12).
   [[nodiscard]] bool fields_agree(const ModeState& before, const std::vector<int>& group) const;
 
-  /// The point moved off the surfaces by a few roundings, to the sides that `alpha` says; onto those with a selection
-  /// strictly between.
+  /// Returns the point moved off the surfaces by a few roundings, to the sides that `alpha` says; onto those with a
+  /// selection strictly between.
   [[nodiscard]] std::vector<double> point_beside(const std::vector<double>& alpha) const;
 
-  /// Rounding level of psi at the point.
+  /// Returns the rounding level of psi at the point.
   [[nodiscard]] double noise(int surface) const { return noise_[at(surface)]; }
 
  private:

@@ -20,14 +20,15 @@ struct Start {
 [[nodiscard]] Start decide_start(const SwitchingContext& switching_context, double t, const double* x,
                                  double time_scale, const std::vector<std::pair<int, int>>& forced);
 
-/// The mode behind a jump of the model or of the state at (t, x): as at a start, but surfaces of `held` (located here,
-/// or sliding, and still at zero) are at zero whatever is left of their psi. Those of `resting` are not decided.
+/// Decides the mode behind a jump of the model or of the state at (t, x): as at a start, but surfaces of `held`
+/// (located here, or sliding, and still at zero) are at zero whatever is left of their psi. Those of `resting` are not
+/// decided.
 [[nodiscard]] Transition decide_behind_jump(const SwitchingContext& switching_context, const ModeState& before,
                                             double t, const double* x, double time_scale, const std::vector<int>& held,
                                             const RestingSurfaces& resting = {});
 
-/// Selections read pointwise at (t, x), inner functions first; those at zero keep what they have in `alpha`, functions
-/// of discrete states have what is written.
+/// Returns the selections read pointwise at (t, x), inner functions first; those at zero keep what they have in
+/// `alpha`, functions of discrete states have what is written.
 [[nodiscard]] std::vector<double> selections_at(const SwitchingContext& switching_context, double t, const double* x,
                                                 std::vector<double> alpha);
 

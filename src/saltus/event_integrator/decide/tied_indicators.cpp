@@ -78,12 +78,12 @@ void complete_ties(const ModelKernel& kernel, const ModeState& before, Switching
     const ProjectedFields fields(kernel, switching_point);
     std::vector<double> values(at(kernel.event_functions()));
     kernel.functions(switching_point.t, switching_point.x, before.alpha.data(), values.data());
-    // What two times next to each other differ by, as where events are located. Laps of a spiral get shorter by a
+    // What two times next to each other differ by, as where events are located. Cycles of a spiral get shorter by a
     // factor of up to ten: with one of its regions within rounding, the next ones are the same point.
     double reach = 8.0;
-    constexpr double lap = 8.0;
+    constexpr double cycle = 8.0;
     constexpr double farthest = 512.0;
-    for (bool more = true; more && reach <= farthest; reach *= lap) {
+    for (bool more = true; more && reach <= farthest; reach *= cycle) {
       more = false;
       for (int j = group.first; j < group.first + group.count; ++j) {
         if (before.mode[at(j)] == 0 || std::find(switching_point.at_zero.begin(), switching_point.at_zero.end(), j) !=

@@ -10,11 +10,12 @@
 
 namespace saltus::event_integrator {
 
-/// Regions of one group that are at its minimum where a switching point is: those at zero, and their references.
+/// Notes the regions of one group that are at its minimum where a switching point is: those at zero, and their
+/// references.
 void note_ties(const evaluation::ModelKernel& kernel, const ModeState& before, SwitchingPoint& switching_point);
 
-/// Two of the regions at the minimum (`tied`) whose indicators are one and the same function, near by and as time goes,
-/// too: nothing says which of them is active.
+/// Finds two of the regions at the minimum (`tied`) whose indicators are one and the same function, near by and as time
+/// goes, too: nothing says which of them is active.
 [[nodiscard]] std::optional<std::pair<int, int>> same_indicators(const evaluation::ModelKernel& kernel,
                                                                  const ModeState& state,
                                                                  const SwitchingPoint& switching_point);

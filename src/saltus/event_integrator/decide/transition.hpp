@@ -18,38 +18,38 @@
 
 namespace saltus::event_integrator {
 
-/// Why the mode is decided afresh.
+/// Says why the mode is decided afresh.
 struct SwitchingPoint {
   double t = 0.0;
   const double* x = nullptr;      ///< n_x, on all surfaces of `at_zero`
   std::vector<int> at_zero;       ///< surfaces with psi = 0 here, those of the mode's sliding set among them, ascending
   std::vector<int> touched;       ///< those of `at_zero` whose event this is
   std::vector<int> exit_below;    ///< sliding surfaces whose lower field was located as tangent (alpha = 0)
-  std::vector<int> exit_above;    ///< … upper field (alpha = 1)
+  std::vector<int> exit_above;    ///< sliding surfaces whose upper field was (alpha = 1)
   std::vector<int> coalesced;     ///< first surfaces of coupled groups whose sliding root ceases to exist here
-  std::vector<int> destabilised;  ///< … loses its stability under every scaling
+  std::vector<int> destabilised;  ///< those of groups whose root loses its stability under every scaling
   std::vector<int> tied;          ///< of groups by `indicator`: all regions with the smallest one here
   bool start = false;             ///< no mode before
   bool limit = false;             ///< infinitely many switches have ended here (with `start`)
   double time_scale = 1.0;        ///< a step of the integrator: derivatives that do not move psi over it vanish
 };
 
-/// A mode of one surface that is given, with its selection if that is known.
+/// Holds a mode of one surface that is given, with its selection if that is known.
 struct GivenMode {
   int surface = 0;
   int mode = 0;
   double alpha = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Where a solution that spirals out of an intersection of two surfaces has completed its first lap.
+/// Says where a solution that spirals out of an intersection of two surfaces has completed its first cycle.
 struct SpiralStart {
   double duration = 0.0;
   std::vector<double> x;
   int surface = 0;  ///< on which x is
-  double lap_ratio = 0.0;
+  double cycle_ratio = 0.0;
 };
 
-/// Two surfaces that influence each other, at zero together.
+/// Holds two surfaces that influence each other, at zero together.
 struct Meeting {
   std::array<int, 2> surfaces{};
   std::array<std::array<double, 4>, 2> velocities{};  ///< normal components of the corner fields, bit i: alpha_i
@@ -74,7 +74,7 @@ struct Transition {
   std::optional<Meeting> meeting;  ///< the first one decided here
 };
 
-/// What the switching needs to know of the system besides its functions.
+/// Says what the switching needs to know of the system besides its functions.
 struct SwitchingContext {
   evaluation::ModelKernel& kernel;
   const model::System& system;
@@ -87,9 +87,9 @@ struct SwitchingContext {
 void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
                    const ModeState& before, const SwitchingPoint& switching_point, std::string& reason);
 
-/// Behind the names of two surfaces: what a tree decided about them, and why.
+/// Appends, behind the names of two surfaces, what a tree decided about them, and why.
 void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason);
-/// The same with their names.
+/// Does the same with their names.
 void append_meeting(const model::System& system, const std::array<int, 2>& surfaces, switching::Leaf leaf,
                     std::string_view why, std::string& reason);
 
@@ -99,32 +99,33 @@ void append_meeting(const model::System& system, const std::array<int, 2>& surfa
 void begin_transition(const ModeState& before, const SwitchingPoint& switching_point, std::size_t states,
                       Transition& transition);
 
-/// The mode behind an event, or a start, at one point.
-/// Surfaces that do not influence each other are decided one by one, the others in groups; switching functions nested
-/// around a surface that changes are read anew. Two that influence each other are decided by the trees of
-/// switching/intersection.hpp; more, and what no tree decides, by the hidden dynamics. The new mode is checked along
-/// its own field: it must move to where it says. Terminations: outside_class (two-fold, psi stays 0, hidden dynamics
-/// without a limit), no_admissible_mode (the check failed), evaluation_failed (fields undefined at the point).
+/// Decides the mode behind an event, or a start, at one point. Surfaces that do not influence each other are decided
+/// one by one, the others in groups; switching functions nested around a surface that changes are read anew. Two that
+/// influence each other are decided by the trees of switching/intersection.hpp; more, and what no tree decides, by the
+/// hidden dynamics. The new mode is checked along its own field: it must move to where it says. Terminations:
+/// outside_class (two-fold, psi stays 0, hidden dynamics without a limit), no_admissible_mode (the check failed),
+/// evaluation_failed (fields undefined at the point).
 [[nodiscard]] Transition decide_mode(const SwitchingContext& switching_context, const ModeState& before,
                                      const SwitchingPoint& switching_point);
 
-/// A mode that the user forces at the start: only the check along its own field.
+/// Checks a mode that the user forces at the start along its own field, and nothing else.
 [[nodiscard]] Transition check_forced_mode(const SwitchingContext& switching_context, const ModeState& forced,
                                            const SwitchingPoint& switching_point);
 
-/// The side of an event function that is zero at `start` to which the motion of a mode goes from there, by Runge-Kutta
-/// steps over a hundredth of the time scale; 0 where they do not agree.
+/// Returns the side of an event function, zero at `start`, to which the motion of a mode goes from there. Runge-Kutta
+/// steps over a hundredth of the time scale tell; the side is 0 where they do not agree.
 [[nodiscard]] int side_ahead(const SwitchingContext& switching_context, const ModeState& state,
                              const SwitchingPoint& switching_point, const std::vector<double>& start, int function);
 
-/// What to say where sliding on several surfaces that influence each other has run into a point at which its equations
-/// are singular to half of the digits, so that its selections, and the motion, are roundings; nullopt if it has not.
+/// Returns what to say where the equations of sliding are singular to half of the digits; nullopt where they are not.
+/// Surfaces that influence each other may run into such a point. Its selections, and with them the motion, are
+/// roundings.
 [[nodiscard]] std::optional<std::string> lost_selections(const SwitchingContext& switching_context,
                                                          const ModeState& state, double t, const double* x);
 
-/// What to say where sliding has lost its selections, or has run into a point at which both fields are tangent to the
-/// surface (two-fold), so that its selection has no limit, or at which the gradient of the surface vanishes; nullopt if
-/// there is none near by.
+/// Returns what to say where sliding has lost its selections, or has run into a point without any; nullopt if there is
+/// none near by. At such a point both fields are tangent to the surface (two-fold), so that its selection has no limit.
+/// Or the gradient of the surface vanishes there.
 [[nodiscard]] std::optional<std::string> two_fold_message(const SwitchingContext& switching_context,
                                                           const ModeState& state, double t, const double* x);
 

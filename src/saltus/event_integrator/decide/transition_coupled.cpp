@@ -169,26 +169,26 @@ bool Decider::accept(const std::vector<int>& group, const PlaneDecision& decisio
   return true;
 }
 
-/// One of the spirals that leave the intersection, (6.5) of [guglielmi2022]: the first lap in closed form.
+/// One of the spirals that leave the intersection, (6.5) of [guglielmi2022]: the first cycle in closed form.
 bool Decider::spiral_out(const std::vector<int>& group, const PlaneTable& table, PlaneDecision decision) {
-  const auto lap = switching::spiral_lap(table, 0);
-  if (!lap || !(lap->lap_ratio > 1.0)) return false;
+  const auto cycle = switching::spiral_cycle(table, 0);
+  if (!cycle || !(cycle->cycle_ratio > 1.0)) return false;
   // Any size is as good as another; the fields are constant to a millionth of it over this one, and the surface on
-  // which the lap ends is far above its rounding.
-  double delta = 1e-6 * switching_point_.time_scale / lap->duration();
-  for (const int j : group) delta = std::max(delta, 1e5 * fields_.noise(j) / (lap->lap_ratio - 1.0));
-  const std::size_t crossed = (lap->corners[3] ^ lap->corners[0]) >> 1U;
-  transition_.beyond_spiral = SpiralStart{delta * lap->duration(),
+  // which the cycle ends is far above its rounding.
+  double delta = 1e-6 * switching_point_.time_scale / cycle->duration();
+  for (const int j : group) delta = std::max(delta, 1e5 * fields_.noise(j) / (cycle->cycle_ratio - 1.0));
+  const std::size_t crossed = (cycle->corners[3] ^ cycle->corners[0]) >> 1U;
+  transition_.beyond_spiral = SpiralStart{delta * cycle->duration(),
                                           {switching_point_.x, switching_point_.x + s_.kernel.states()},
                                           group[crossed],
-                                          lap->lap_ratio};
+                                          cycle->cycle_ratio};
   std::vector<double> f(at(s_.kernel.states()));
-  for (std::size_t k = 0; k < lap->corners.size(); ++k) {
+  for (std::size_t k = 0; k < cycle->corners.size(); ++k) {
     s_.kernel.field(switching_point_.t, switching_point_.x,
-                    fields_.corner_alpha(base_.alpha, group, lap->corners[k]).data(), f.data());
-    for (std::size_t i = 0; i < f.size(); ++i) transition_.beyond_spiral->x[i] += delta * lap->durations[k] * f[i];
+                    fields_.corner_alpha(base_.alpha, group, cycle->corners[k]).data(), f.data());
+    for (std::size_t i = 0; i < f.size(); ++i) transition_.beyond_spiral->x[i] += delta * cycle->durations[k] * f[i];
   }
-  const std::size_t first = lap->corners[0];
+  const std::size_t first = cycle->corners[0];
   for (std::size_t k = 0; k < 2; ++k) {
     decision.chosen.mode[k] = (first >> k & 1U) != 0 ? 1 : -1;
     decision.chosen.alpha[k] = (first >> k & 1U) != 0 ? 1.0 : 0.0;

@@ -26,91 +26,92 @@ namespace saltus::event_integrator {
 /// only has to be well above what an event is located to.
 inline constexpr double marginal_part = 1e-7;
 
-/// "a, b"
+/// Returns names like "a, b".
 std::string names(const model::System& system, const std::vector<int>& surfaces);
 
 std::string two_fold_at(const std::string& surface, double t);
 
-/// Why the motion on a surface is not determined.
+/// Says why the motion on a surface is not determined.
 std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
                             const std::vector<double>& alpha, int surface, double t);
 
-/// Where no rule decides: all surfaces at zero held there, together with their derivatives that no selection enters, if
+/// Holds all surfaces at zero there where no rule decides, together with their derivatives that no selection enters, if
 /// some selections do. `alternatives` are the regions that the solution can leave into.
 std::optional<Transition> hold_with_higher_order(const SwitchingContext& s, const ModeState& before,
                                                  const SwitchingPoint& switching_point);
 
-/// Where `failed` does not move to where it says: the modes of the surfaces at zero of which an inequality is an
-/// equality (fields tangent to several surfaces at once, selections at their bounds) by the check along their own
-/// fields. The first one that it passes, those with fewer surfaces in other modes than `failed` before the others;
-/// nullopt if there is none. Not for regions, functions nested around the surfaces, or more surfaces than are
-/// enumerated. Cost: milliseconds.
+/// Decides where `failed` does not move to where it says. It takes the modes of the surfaces at zero of which an
+/// inequality is an equality (fields tangent to several surfaces at once, selections at their bounds). They are checked
+/// along their own fields. The first one that it passes, those with fewer surfaces in other modes than `failed` before
+/// the others; nullopt if there is none. Not for regions, functions nested around the surfaces, or more surfaces than
+/// are enumerated. Cost: milliseconds.
 std::optional<Transition> borderline_mode(const SwitchingContext& s, const ModeState& before,
                                           const SwitchingPoint& switching_point, const ModeState& failed);
 
-/// Whether x moves from a common zero of these surfaces into the region of `state` along its own field: no derivative
-/// of psi decides alone where several vanish together. By Runge-Kutta steps over a hundredth of the time scale.
+/// Returns whether x moves from a common zero of these surfaces into the region of `state` along its own field: no
+/// derivative of psi decides alone where several vanish together. By Runge-Kutta steps over a hundredth of the time
+/// scale.
 bool leads_into_its_region(const SwitchingContext& s, const ModeState& state, const SwitchingPoint& switching_point,
                            const std::vector<double>& start, const std::vector<int>& surfaces);
 
-/// A transition to this state, whose selections hold on both sides of its surfaces.
+/// Returns a transition to this state, whose selections hold on both sides of its surfaces.
 Transition transition_to(ModeState state);
 
-/// The state with all its sliding surfaces, which depend on each other or are held with higher order; nullopt where
-/// they cannot be.
+/// Returns the state with all its sliding surfaces, which depend on each other or are held with higher order; nullopt
+/// where they cannot be.
 std::optional<Transition> hold(const SwitchingContext& s, ModeState state, const SwitchingPoint& switching_point,
                                std::vector<double>& x, std::string& problem);
 
-/// The same, or with selections that are determined: what is left of surfaces that depended on each other.
+/// Does the same, or with selections that are determined: what is left of surfaces that depended on each other.
 std::optional<Transition> hold_dependent(const SwitchingContext& s, ModeState state,
                                          const SwitchingPoint& switching_point, std::vector<double>& x,
                                          std::string& problem);
 
-/// Whether surfaces are listed ones, none of them nested around others or inside them.
+/// Returns whether surfaces are listed ones, none of them nested around others or inside them.
 bool are_plain_surfaces(const SwitchingContext& s, const std::vector<int>& surfaces);
 
-/// Whether the gradients of the surfaces that a state slides on depend on each other.
+/// Returns whether the gradients of the surfaces that a state slides on depend on each other.
 bool slides_on_dependent(const SwitchingContext& s, const ModeState& state, const SwitchingPoint& switching_point);
 
-/// A mode of surfaces that depend on each other, checked along its own field: those slid on can be held, the others at
+/// Checks a mode of surfaces that depend on each other along its own field: those slid on can be held, the others at
 /// zero are left to their sides. nullopt where that is not so, and why.
 std::optional<Transition> check_dependent(const SwitchingContext& s, ModeState state,
                                           const SwitchingPoint& switching_point, std::string& problem);
 
-/// The surfaces at zero on which f jumps: neither kinks nor functions of outputs.
+/// Returns the surfaces at zero on which f jumps: neither kinks nor functions of outputs.
 std::vector<int> acting_surfaces(const SwitchingContext& s, const ModeState& state,
                                  const SwitchingPoint& switching_point);
 
-/// The mode where surfaces are at zero whose gradients depend on each other, and whose selections enter additively: the
-/// solution of a complementarity problem, checked along its own field; nullopt where that fails, and why. `unique` is
-/// true where the problem is monotone up to scaling, else not decided.
+/// Decides the mode where surfaces are at zero whose gradients depend on each other, and whose selections enter
+/// additively: the solution of a complementarity problem, checked along its own field; nullopt where that fails, and
+/// why. `unique` is true where the problem is monotone up to scaling, else not decided.
 std::optional<Transition> decide_dependent(const SwitchingContext& s, const ModeState& before,
                                            const SwitchingPoint& switching_point, std::string& problem);
 
-/// The same where functions meet others inside them that rest: both are at zero, and stay so whatever the selections,
-/// or are held there (the origin of terminal sliding modes, and of time-optimal feedback). Derivatives on one side of
-/// such a point say nothing about what follows. nullopt elsewhere, and where nothing holds them.
+/// Does the same where functions meet others inside them that rest: both are at zero, and stay so whatever the
+/// selections, or are held there (the origin of terminal sliding modes, and of time-optimal feedback). Derivatives on
+/// one side of such a point say nothing about what follows. nullopt elsewhere, and where nothing holds them.
 std::optional<Transition> rest_where_nested_meet(const SwitchingContext& s, const ModeState& before,
                                                  const SwitchingPoint& switching_point);
 
-/// Where nothing holds them: the regions that the solution leaves such a point into, if no rule has found one.
+/// Finds the regions that the solution leaves such a point into, where nothing holds them and no rule has found one.
 std::optional<Transition> leave_where_nested_meet(const SwitchingContext& s, const ModeState& before,
                                                   const SwitchingPoint& switching_point);
 
-/// The mode behind an event of a state that is held so.
+/// Decides the mode behind an event of a state that is held so.
 Transition decide_from_higher_order(const SwitchingContext& s, const ModeState& before,
                                     const SwitchingPoint& switching_point);
 
-/// The mode where functions jump away from zero on surfaces inside them that are crossed; nullopt if none does.
+/// Decides the mode where functions jump away from zero on surfaces inside them that are crossed; nullopt if none does.
 std::optional<Transition> cross_with_jump(const SwitchingContext& s, const ModeState& before,
                                           const SwitchingPoint& switching_point);
 
-/// Sliding on functions that have a kink on the touched surfaces: goes on, or ends, with their new gradients behind the
-/// kinks. nullopt if other surfaces are touched, or if the new motion does not lead away from the kinks.
+/// Lets sliding on functions that have a kink on the touched surfaces go on, or end, with their new gradients behind
+/// the kinks. nullopt if other surfaces are touched, or if the new motion does not lead away from the kinks.
 std::optional<Transition> cross_kinks(const SwitchingContext& s, const ModeState& before,
                                       const SwitchingPoint& switching_point);
 
-/// What was decided where three or more regions of a group by `indicator` meet.
+/// Says what was decided where three or more regions of a group by `indicator` meet.
 struct RegionChoice {
   evaluation::RegionRange group;
   std::vector<std::vector<ActiveRegion>> sets;  ///< the chosen one first
@@ -118,25 +119,25 @@ struct RegionChoice {
   std::vector<GivenMode> surfaces = {};  ///< where they meet on one: its mode with each set
 };
 
-/// Regions of a group that meet, the reference first.
+/// Holds regions of a group that meet, the reference first.
 struct MeetingRegions {
   std::vector<int> candidates;
   /// Of the gradients of psi of the others, where they depend on each other and their explicit rates do so, too.
   std::optional<RegionBasis> basis;
 };
 
-/// Functions away from zero that are nested around others: through them surfaces influence each other, too.
+/// Returns the functions away from zero that are nested around others: through them surfaces influence each other, too.
 std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point);
 
-/// Whether the decision about surface i can depend on the selection of surface j, directly or through one of the
-/// functions nested around j. Cost: O(nested), usually none.
+/// Returns whether the decision about surface i can depend on the selection of surface j, directly or through one of
+/// the functions nested around j. Cost: O(nested), usually none.
 bool depends_on(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j);
 
-/// Connected groups of those `open` surfaces that influence each other, each ascending.
+/// Returns the connected groups of those `open` surfaces that influence each other, each ascending.
 std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point,
                                         std::vector<int> open);
 
-/// One pass over all groups with the selections of `state` for everything else.
+/// Makes one pass over all groups with the selections of `state` for everything else.
 class Decider {
  public:
   Decider(const SwitchingContext& switching_context, const ModeState& before, const SwitchingPoint& switching_point)

@@ -16,7 +16,7 @@ namespace {
 using switching::SurfaceDecision;
 using switching::Verdict;
 
-/// The point at which parts are decided: that of the event, or, where selections have reached their bounds, a little
+/// The point at which parts are decided is that of the event. Where selections have reached their bounds it is a little
 /// later along the sliding that ends, as no field moves away at the event itself.
 struct LaterPoint {
   SwitchingPoint switching_point;

@@ -15,7 +15,7 @@ class FieldMemory {
  public:
   explicit FieldMemory(const evaluation::ModelKernel& kernel) : kernel_(kernel) {}
 
-  /// Those of the selections `alpha` (n_psi). Valid until the next call.
+  /// Returns those of the selections `alpha` (n_psi). Valid until the next call.
   /// @param mark  of the region: different ones rarely have the same
   /// Cost: one comparison of selections; allocates for regions that are not among the last ones only.
   [[nodiscard]] const evaluation::FieldConstants& of(const std::vector<double>& alpha, std::size_t mark);

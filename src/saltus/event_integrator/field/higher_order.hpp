@@ -24,9 +24,9 @@ using switching::Balance;
 /// Velocities of held functions are good to about ten digits where their gradients are differences.
 inline constexpr double velocity_accuracy = 1e-9;
 
-/// Where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and the
-/// balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones. The
-/// motion is the field at any selections in the cube that fulfil the balances, which is one and the same for all of
+/// Says where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and
+/// the balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones.
+/// The motion is the field at any selections in the cube that fulfil the balances, which is one and the same for all of
 /// them.
 struct HigherOrderSet {
   std::vector<HeldFunction> functions;  ///< gradients independent; by order
@@ -34,8 +34,8 @@ struct HigherOrderSet {
   std::vector<int> undetermined;  ///< surfaces whose selections are not determined: several in one balance, or none
 };
 
-/// The range of a balance over the corners of its selections, in one direction where it has several functions; held
-/// while min <= 0 <= max.
+/// Holds the range of a balance over the corners of its selections, in one direction where it has several functions;
+/// held while min <= 0 <= max.
 struct BalanceRange {
   double min = 0.0, max = 0.0;
   std::size_t lowest = 0, highest = 0;  ///< corners, bit i: selection of rows[i]
@@ -46,23 +46,24 @@ struct BalanceRange {
   double exactness = 1.0;                      ///< how much larger its rounding is than that of its terms
 };
 
-/// The field on a higher-order set. Selections of a balance of one function lie on the line between the two corners
-/// where it falls and rises most, those of several functions next to 1/2; the field does not depend on which of the
-/// others are taken. Owns its work space. Cost: one evaluation of f per corner of every balance of one function, per
-/// selection of others.
+/// Evaluates the field on a higher-order set. Selections of a balance of one function lie on the line between the two
+/// corners where it falls and rises most. Those of several functions lie next to 1/2. The field does not depend on
+/// which of the others are taken. Owns its work space. Cost: one evaluation of f per corner of every balance of one
+/// function, per selection of others.
 class HigherOrderField {
  public:
   explicit HigherOrderField(const evaluation::ModelKernel& kernel);
 
   void enter(const HigherOrderSet& set, const std::vector<int>& sliding, const std::vector<double>& alpha);
-  /// Selections, ranges and f at a point.
+  /// Finds selections, ranges and f at a point.
   void evaluate(double t, const double* point);
-  /// Behind evaluate(): f along the set; not finite where the motion depends on selections that are not determined.
+  /// Returns, behind evaluate(), f along the set; not finite where the motion depends on selections that are not
+  /// determined.
   [[nodiscard]] const std::vector<double>& motion() const { return motion_; }
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
   [[nodiscard]] const std::vector<BalanceRange>& ranges() const { return ranges_; }
   [[nodiscard]] const HigherOrderSet& set() const { return set_; }
-  /// Whether a balance has more exits than are looked for: its motion is not finite then.
+  /// Returns whether a balance has more exits than are looked for: its motion is not finite then.
   [[nodiscard]] bool too_many() const { return too_many_; }
   bool project(double t, double* x) { return functions_.project(t, x); }
 
@@ -96,7 +97,7 @@ class HigherOrderField {
   HeldFunctions functions_;
   std::vector<BalanceRange> ranges_;
   std::vector<double> alpha_, trial_, motion_, x_, base_, f_;
-  std::vector<std::vector<double>> corners_;  ///< f of the balance at hand
+  std::vector<std::vector<double>> corners_;  ///< f of the current balance
   std::vector<double> velocities_;
   std::vector<Coupled> coupled_;  ///< by balance
   /// What a balance of a function around a root moves, from the corner where it falls most to that where it rises most.
@@ -109,18 +110,22 @@ class HigherOrderField {
   bool too_many_ = false;
 };
 
-/// The set on which all sliding surfaces of a state can be held at (t, x), which is put there; nullopt if there is
-/// none: the gradients are dependent, a derivative that no selection enters does not vanish, no selection in [0, 1]
-/// holds the others, several balances share a selection, or the motion is not determined. Then `problem` says what.
+/// Finds the set on which all sliding surfaces of a state can be held at (t, x), and puts (t, x) there. Returns nullopt
+/// if there is none, and `problem` says why:
+/// - the gradients are dependent;
+/// - a derivative that no selection enters does not vanish;
+/// - no selection in [0, 1] holds the others;
+/// - several balances share a selection;
+/// - the motion is not determined.
 /// @param resolved  derivatives up to what their function changes by in this time are zero
 [[nodiscard]] std::optional<HigherOrderSet> find_higher_order_set(const SwitchingContext& switching_context,
                                                                   const ModeState& state, double t,
                                                                   std::vector<double>& x, double resolved,
                                                                   std::string& problem);
 
-/// The same for surfaces whose gradients depend on each other all along the set where they vanish, such as x1 - x2,
-/// x2 - x3, x1 - x3: selections enter additively, and all that hold the set give the same motion. nullopt with an empty
-/// `problem` if the gradients are independent.
+/// Does the same for surfaces whose gradients depend on each other all along the set where they vanish. An example is
+/// x1 - x2, x2 - x3, x1 - x3: selections enter additively, and all that hold the set give the same motion. nullopt with
+/// an empty `problem` if the gradients are independent.
 [[nodiscard]] std::optional<HigherOrderSet> find_dependent_set(const SwitchingContext& switching_context,
                                                                const ModeState& state, double t, std::vector<double>& x,
                                                                std::string& problem);

@@ -14,8 +14,8 @@
 
 namespace saltus::event_integrator {
 
-/// Whether so many surfaces that are connected by influence are decided and slid on by their parts: those whose modes
-/// are not enumerated.
+/// Returns whether so many surfaces that are connected by influence are decided and slid on by their parts: those whose
+/// modes are not enumerated.
 [[nodiscard]] constexpr bool is_large(std::size_t surfaces) {
   return surfaces > static_cast<std::size_t>(switching::largest_enumerated);
 }
@@ -27,9 +27,9 @@ struct LargeGroup {
   std::unique_ptr<switching::SparseNewton> newton;
 };
 
-/// Of several surfaces that depend on each other, from the G of their group: a number that keeps its sign while their
-/// root exists (det G in the size of its rows, its root of the number of surfaces), and one that is positive while some
-/// scaling is known that makes it stable, that of the certificate first.
+/// Returns two numbers of several surfaces that depend on each other, from the G of their group. The first keeps its
+/// sign while their root exists (det G in the size of its rows, its root of the number of surfaces). The second is
+/// positive while some scaling is known that makes the root stable, that of the certificate first.
 [[nodiscard]] std::pair<double, double> loss_and_stability(const Eigen::SparseMatrix<double>& effects,
                                                            const std::vector<int>& part);
 

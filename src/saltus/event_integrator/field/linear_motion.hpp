@@ -9,10 +9,10 @@
 
 namespace saltus::event_integrator {
 
-/// Found once per mode, when it is first asked for.
+/// Finds the linear motion of a mode once, when it is first asked for.
 class LinearMotion {
  public:
-  /// The gradient of a surface, constant; `only`: its only component that is not 0, or -1.
+  /// Holds the gradient of a surface, constant; `only`: its only component that is not 0, or -1.
   struct Normal {
     const double* row = nullptr;
     int only = -1;
@@ -22,12 +22,12 @@ class LinearMotion {
   LinearMotion(const LinearMotion&) = delete;  // known_ points into it
   LinearMotion& operator=(const LinearMotion&) = delete;
 
-  /// Another mode begins.
+  /// Forgets it, as another mode begins.
   void forget() { known_.reset(); }
-  /// Null where the field is not affine. Valid until forget().
+  /// Returns null where the field is not affine. Valid until forget().
   [[nodiscard]] const ode::LinearField* of_region(const evaluation::ModelKernel& kernel,
                                                   const evaluation::FieldConstants& region);
-  /// The same for sliding between two regions. With f+ - f- = d, J d /= 0, f- = A x + b + c t,
+  /// Does the same for sliding between two regions. With f+ - f- = d, J d /= 0, f- = A x + b + c t,
   ///   xdot = f- + s d,  s = -(J f- + d psi/dt) / (J d),
   /// is affine where d is constant: A - d (J A) / (J d) and c - d (J c) / (J d); null otherwise.
   [[nodiscard]] const ode::LinearField* on_surface(const evaluation::ModelKernel& kernel,

@@ -19,7 +19,7 @@
 
 namespace saltus::event_integrator {
 
-/// How the selections of the sliding surfaces follow from grad psi_I . f(alpha) + d psi_I/dt = 0.
+/// Says how the selections of the sliding surfaces follow from grad psi_I . f(alpha) + d psi_I/dt = 0.
 enum class SlidingSolve {
   none,          ///< no sliding
   decoupled,     ///< each normal component depends on its own selection only: closed form
@@ -28,7 +28,7 @@ enum class SlidingSolve {
   higher_order,  ///< on derivatives of psi, too: HigherOrderField
 };
 
-/// Exit functions of one sliding surface; the mode ends where one changes its sign.
+/// Holds the exit functions of one sliding surface; the mode ends where one changes its sign.
 struct ExitValues {
   /// > 0 while sliding: the lower region's field still arrives (alpha > 0). Of regions by `indicator` that depend on
   /// each other `below` and -`above` are sums of weights, in no order: what the facets of their polytope leave.
@@ -43,7 +43,7 @@ struct ExitValues {
 
 enum class Region { below, above };
 
-/// Right-hand side of the index-2 DAE of a mode turned into an ODE ([guglielmi2022], section 6):
+/// Evaluates the right-hand side of the index-2 DAE of a mode turned into an ODE ([guglielmi2022], section 6):
 ///   xdot = f(t, x, alpha) - J^+ (J f + d psi_I/dt),  J = grad psi_I,
 /// with alpha_I from the m equations J f + d psi_I/dt = 0. The correction is of rounding size; for a surface that is a
 /// coordinate it makes the component exactly constant.
@@ -53,65 +53,66 @@ class ModeField {
   ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha);
 
   void enter(const ModeState& state);
-  /// The same where nothing is nested, there are no groups of regions and f is affine in the selections, without
-  /// looking at any selection but that of `surface`; constants are those of the other region. Allocates nothing but
-  /// where a surface is not the one that was slid on last.
-  /// From one region to the other one:
+  /// Does the same where nothing is nested, there are no groups of regions and f is affine in the selections. Looks at
+  /// no selection but that of `surface`; constants are those of the other region. Allocates nothing but where a surface
+  /// is not the one that was slid on last. From one region to the other one:
   void cross(std::size_t surface, const evaluation::FieldConstants& other);
-  /// From a region onto its border with the other one, which is `side` of the surface:
+  /// Goes from a region onto its border with the other one, which is `side` of the surface:
   void slide_from_region(std::size_t surface, double selection, Region side, const evaluation::FieldConstants& other);
-  /// From the only surface that is slid on to one of its sides:
+  /// Goes from the only surface that is slid on to one of its sides:
   void leave_to(Region side);
-  /// Along the only surface that is slid on, whose selection is `selection` behind, across another one, where that is
-  /// `alpha`; `constants_of` gives those of the region that belongs to selections, valid until it is called again.
+  /// Goes along the only surface that is slid on, whose selection is `selection` behind, across another one, where that
+  /// is `alpha`; `constants_of` gives those of the region that belongs to selections, valid until it is called again.
   void pass(std::size_t surface, double alpha, double selection,
             FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of);
-  /// Of the last evaluation, while one surface is slid on: normal components of the fields of both sides.
+  /// Returns, while one surface is slid on, from the last evaluation the normal components of the fields of both sides.
   [[nodiscard]] const ExitValues& sides() const { return exits_.front(); }
-  /// The fields themselves.
+  /// Returns the fields themselves.
   [[nodiscard]] const std::vector<double>& field_of(Region side) const { return f_[side == Region::below ? 0 : 1]; }
-  /// While one surface is slid on, f affine in its selection: the field of a side.
+  /// Evaluates the field of a side while one surface is slid on, with f affine in its selection.
   void of_side(Region side, double t, const double* x, double* xdot) const {
     kernel_.prepared_field(t, x, constants_[side == Region::below ? 0 : 1], xdot);
   }
   [[nodiscard]] SlidingSolve solve() const { return solve_; }
   [[nodiscard]] int codimension() const { return static_cast<int>(sliding_.size()); }
 
-  /// Behind an evaluation: the sliding surfaces whose gradients are taken to be independent: all, but for regions by
-  /// `indicator` whose weights are those of switching::RegionWeights.
+  /// Returns, behind an evaluation, the sliding surfaces whose gradients are taken to be independent: all, but for
+  /// regions by `indicator` whose weights are those of switching::RegionWeights.
   [[nodiscard]] std::vector<int> independent() const;
 
-  /// xdot (n_x); not finite where the model or the sliding selection is undefined.
+  /// Evaluates xdot (n_x); not finite where the model or the sliding selection is undefined.
   void operator()(double t, const double* x, double* xdot) {
     if (solve_ != SlidingSolve::none) return slide(t, x, xdot);
     kernel_.prepared_field(t, x, constants_[0], xdot);
   }
-  /// Stepper::attempt along this field, by native stages where there are some, or by its linear part. Behind an
+  /// Does Stepper::attempt along this field, by native stages where there are some, or by its linear part. Behind an
   /// evaluation in the mode.
   ode::Attempt attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
                        const ode::Tolerances& tolerances);
-  /// Attempts from its beginning follow this polynomial from now on, until the mode changes. Null: none.
+  /// Lets attempts from its beginning follow this polynomial from now on, until the mode changes. Null: none.
   void follow_known(const ode::DenseStep* known) { known_ = known; }
   [[nodiscard]] const ode::DenseStep* known() const { return known_; }
-  /// Selections of the last evaluation (those of attempts do not count), n_psi.
+  /// Returns the selections of the last evaluation (those of attempts do not count), n_psi.
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
-  /// Exit functions at a point, one per sliding surface.
+  /// Evaluates the exit functions at a point, one per sliding surface.
   void exits(double t, const double* x, ExitValues* values);
-  /// Behind exits(): one of the exit functions of a surface as a row, if it is affine in t and in all states but the
-  /// one that sliding keeps constant, nullptr otherwise; x is any point of the mode. Valid until the next call.
+  /// Returns, behind exits(), one of the exit functions of a surface as a row; x is any point of the mode. It has to be
+  /// affine in t and in all states but the one that sliding keeps constant; nullptr otherwise. The row is valid until
+  /// the next call.
   [[nodiscard]] const evaluation::AffineRow* exit_row(std::size_t row, Region region, const double* x);
-  /// Behind exits(): size of the terms whose sum an exit function of a sliding surface is, which bounds its rounding.
+  /// Returns, behind exits(), the size of the terms whose sum an exit function of a sliding surface is, which bounds
+  /// its rounding.
   [[nodiscard]] double normal_terms(std::size_t row) const;
-  /// Smallest |det G| of the groups of coupled surfaces, relative to the size of g: how far their roots are from
-  /// meeting others. 1 where there are no such groups.
+  /// Returns the smallest |det G| of the groups of coupled surfaces, relative to the size of g: how far their roots are
+  /// from meeting others. 1 where there are no such groups.
   [[nodiscard]] double root_distance(double t, const double* x);
-  /// Whether `loss` and `stability` of a sliding surface mean something.
+  /// Returns whether `loss` and `stability` of a sliding surface mean something.
   [[nodiscard]] bool has_loss(std::size_t row) const;
   [[nodiscard]] bool has_stability(std::size_t row) const;
-  /// Behind an accepted step to (t, x): where more than two coupled surfaces are slid on, the selections from which the
-  /// next ones are found.
+  /// Notes, behind an accepted step to (t, x), the selections from which the next ones are found where more than two
+  /// coupled surfaces are slid on.
   void follow(double t, const double* x);
-  /// Newton steps onto psi_I(t, x) = 0 along the normals; returns whether x changed.
+  /// Takes Newton steps onto psi_I(t, x) = 0 along the normals; returns whether x changed.
   bool project(double t, double* x);
 
  private:

@@ -1,4 +1,4 @@
-// Where modes begin: in general, and the short ways from one region to its neighbour.
+// Where modes begin: in general, and the fast paths from one region to its neighbour.
 #include <algorithm>
 #include <utility>
 

@@ -104,9 +104,9 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
   Eigen::MatrixXd jacobian(size, size);
   Eigen::VectorXd change(size);
   constexpr int most_iterations = 40;
-  // Differences of this part of 1 + |x| are good to eight digits. Of v, in which the equations are nearly linear and
-  // which may be little more than rounding of the terms of dpsi/dt, to four, and so is every iteration; to fewer where
-  // psi is not much more than its rounding.
+  // Differences of this part of 1 + |x| are good to eight digits. Those of v are good to four, and so is every
+  // iteration. In v the equations are nearly linear, and it may be little more than rounding of the terms of dpsi/dt.
+  // Where psi is not much more than its rounding they are good to fewer.
   constexpr double part = 0x1p-26, part_of_v = 0x1p-13;
   constexpr double converged = 1e-12;
   constexpr double settled = 1e-6;  // from here on corrections that no longer fall are roundings of f

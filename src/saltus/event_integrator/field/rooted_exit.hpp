@@ -13,8 +13,8 @@
 
 namespace saltus::event_integrator {
 
-/// Steps of implicit Euler, extrapolated, that begin on a surface and go into the region of a mode. The unknowns are
-/// the states, one of them replaced by v > 0 with psi = +-v^(1/q), in which |psi|^q is smooth (q is found): the
+/// Takes steps of implicit Euler, extrapolated, that begin on a surface and go into the region of a mode. The unknowns
+/// are the states, one of them replaced by v > 0 with psi = +-v^(1/q), in which |psi|^q is smooth (q is found): the
 /// equations
 ///   x = x_k + h f(t + h, x)
 /// have a regular solution where the solution leaves, and none where it does not.
@@ -23,14 +23,16 @@ class RootedExit {
  public:
   RootedExit(const evaluation::ModelKernel& kernel, bool affine_in_alpha, const ModeState& state, int surface);
 
-  /// Whether short steps from (t, x), on the surface, find a solution inside the region: over h and parts of it.
+  /// Returns whether short steps from (t, x), on the surface, find a solution inside the region: over h and parts of
+  /// it.
   [[nodiscard]] bool leads_away(double t, const std::vector<double>& x, double h);
-  /// The state at t + h, if its error, estimated from the last two extrapolations, is within the tolerances.
+  /// Returns the state at t + h, if its error, estimated from the last two extrapolations, is within the tolerances.
   [[nodiscard]] std::optional<std::vector<double>> step(double t, const std::vector<double>& x, double h,
                                                         const ode::Tolerances& tolerances);
-  /// Whether dpsi/dt falls with a root of psi from the surface on, so that its derivative there is infinite.
+  /// Returns whether dpsi/dt falls with a root of psi from the surface on, so that its derivative there is infinite.
   [[nodiscard]] bool has_root(double t, const std::vector<double>& x);
-  /// -d(dpsi/dt)/d psi beside the surface: what limits the steps of explicit methods; 0 where it is not positive.
+  /// Returns -d(dpsi/dt)/d psi beside the surface: what limits the steps of explicit methods; 0 where it is not
+  /// positive.
   [[nodiscard]] double stiffness(double t, const std::vector<double>& x);
 
  private:

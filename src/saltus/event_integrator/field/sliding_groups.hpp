@@ -15,7 +15,7 @@
 
 namespace saltus::event_integrator {
 
-/// Rows of the sliding surfaces in groups, how each group is solved, and work space for that.
+/// Holds rows of the sliding surfaces in groups, how each group is solved, and work space for that.
 struct SlidingGroups {
   explicit SlidingGroups(std::size_t surfaces) : row_of(surfaces, -1) {}
 
@@ -25,14 +25,14 @@ struct SlidingGroups {
   std::vector<std::optional<switching::RootKind>> kind;
   std::vector<std::optional<switching::SelectionNewton>> newton;  ///< by row, for the first of a larger group
   std::optional<LargeGroup> large;
-  std::vector<double> selections;  ///< of the group at hand
+  std::vector<double> selections;  ///< of the current group
   std::vector<double> speed;       ///< by row: in groups of more than two
   std::vector<double> scaled;      ///< G of such a group, rows over their speeds
   std::vector<double> condition;   ///< by row: of a coupled selection
   std::vector<int> row_of;         ///< by surface while groups are found, -1 = it is not slid on
 };
 
-/// Regions of a group by `indicator` that slide, as rows, and the reference they are measured against.
+/// Holds regions of a group by `indicator` that slide, as rows, and the reference they are measured against.
 struct SlidingRegions {
   int reference = 0;
   std::vector<std::size_t> rows;

@@ -14,7 +14,7 @@
 
 namespace saltus::event_integrator {
 
-/// A held guard and the sign it would get by itself: that of its second derivative while it is held.
+/// Holds a held guard and the sign it would get by itself: that of its second derivative while it is held.
 struct HeldGuard {
   evaluation::Hold hold;
   int inward = -1;
@@ -41,18 +41,18 @@ class Holding {
   [[nodiscard]] std::optional<std::string> hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, double t,
                                                 const std::vector<double>& alpha, std::vector<double>& x);
   void release_all();
-  /// Contacts are held at zero with the guards.
+  /// Holds contacts at zero with the guards.
   void keep(Contacts* contacts) { contacts_ = contacts; }
   /// Puts x on g = 0, dg/dt = 0; returns whether it changed.
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
-  /// Whether the jump of a guard at zero can keep it there: what it sets has an influence on dg/dt, and stops or turns
-  /// around a motion inward. One that lets it go on (the foot of a rocking block) does not push.
+  /// Returns whether the jump of a guard at zero can keep it there: what it sets has an influence on dg/dt, and stops
+  /// or turns around a motion inward. One that lets it go on (the foot of a rocking block) does not push.
   [[nodiscard]] bool can_rest(const HeldGuard& guard, double t, const std::vector<double>& alpha,
                               const std::vector<double>& x);
-  /// The largest |dg/dt| at a point, and there behind the jumps of the guards at rest: an impact at rest changes
-  /// nothing.
+  /// Returns the largest |dg/dt| at a point, and there behind the jumps of the guards at rest: an impact at rest
+  /// changes nothing.
   [[nodiscard]] double largest_rate(double t, const std::vector<double>& alpha, const std::vector<double>& x) const;
-  /// f as if nothing was held, n_x.
+  /// Returns f as if nothing was held, n_x.
   [[nodiscard]] std::vector<double> free_field(double t, const std::vector<double>& alpha,
                                                const std::vector<double>& x) const;
 

@@ -10,7 +10,7 @@
 
 namespace saltus::event_integrator {
 
-/// Where conditions and right-hand sides of jumps are evaluated.
+/// Says where conditions and right-hand sides of jumps are evaluated.
 struct JumpPoint {
   double t = 0.0;
   const std::vector<double>& x;      ///< n_x
@@ -18,7 +18,8 @@ struct JumpPoint {
   const std::vector<int>& signs;     ///< of the user functions (those behind psi), just behind this time; 0 = at zero
 };
 
-/// A switching function or a jump that a discrete state decides, so that it is read at jumps only; nothing without.
+/// Returns a switching function or a jump that a discrete state decides, so that it is read at jumps only; nothing
+/// without.
 [[nodiscard]] std::optional<std::string> compared_at_jumps_only(const model::System& system, int state);
 
 /// Follows the truth of all conditions and the queue of executions (rules 1 to 5 of the model file's [[jumps]]). Knows
@@ -28,7 +29,7 @@ class Jumps {
   Jumps(const evaluation::ModelKernel& kernel, const model::System& system, double from);
 
   [[nodiscard]] bool none() const { return system_.jumps.empty(); }
-  /// The start: every condition counts as true before it, with at_start as false.
+  /// Begins at the start: every condition counts as true before it, with at_start as false.
   void begin(const JumpPoint& point);
   /// Reads all conditions and times anew: what became true, and times that have come, are triggered; waiting executions
   /// of jumps with persistent = false whose condition is false are dropped.
@@ -37,22 +38,22 @@ class Jumps {
   /// Reads the conditions without triggering: those that came true at a limit where their jumps change nothing.
   void accept(const std::vector<int>& jumps, const JumpPoint& point);
 
-  /// When the next given or delayed time comes; infinity without. Exact: the very double of `at`, from + k every, or
-  /// t + delay.
+  /// Returns when the next given or delayed time comes; infinity without. Exact: the very double of `at`, from + k
+  /// every, or t + delay.
   [[nodiscard]] double next_time() const { return next_time_; }
   [[nodiscard]] bool due(double t) const;
   /// Applies the `set` of the due execution with the largest priority (ties: order in the file, then of triggering) to
   /// x, all at once. Returns the jump; only where something is due and nothing has failed.
   int execute(const JumpPoint& point, std::vector<double>& x);
-  /// What is wrong with a delay, priority or value that was evaluated; empty if nothing is.
+  /// Returns what is wrong with a delay, priority or value that was evaluated; empty if nothing is.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
-  /// Whether the condition of a jump held when it was read last.
+  /// Returns whether the condition of a jump held when it was read last.
   [[nodiscard]] bool holds(int jump) const { return truth_[static_cast<std::size_t>(jump)] != 0U; }
-  /// Whether a guard depends on discrete states and constants only: compared exactly, changed by jumps only.
+  /// Returns whether a guard depends on discrete states and constants only: compared exactly, changed by jumps only.
   [[nodiscard]] bool is_discrete_guard(int function) const;
-  /// The sign of a guard (event function) that triggers its jump, with all others as they are: -1 or 1; 0 if it has no
-  /// say. `inward`: the sign that counts for a guard of direction both.
+  /// Returns the sign of a guard (event function) that triggers its jump, with all others as they are: -1 or 1; 0 if it
+  /// has no say. `inward`: the sign that counts for a guard of direction both.
   [[nodiscard]] int trigger_sign(int jump, int guard, const JumpPoint& point, int inward) const;
 
  private:

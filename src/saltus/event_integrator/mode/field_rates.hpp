@@ -22,13 +22,13 @@ class FieldRates {
  public:
   FieldRates(const evaluation::ModelKernel& kernel, const Position& here) : kernel_(kernel), here_(here) {}
 
-  /// The rate at the position along its slope.
+  /// Returns the rate at the position along its slope.
   [[nodiscard]] Rate here(int function) { return along(function, here_.slope); }
-  /// The rate at the position along another field.
+  /// Returns the rate at the position along another field.
   [[nodiscard]] Rate along(int function, const std::vector<double>& field) {
     return at(function, here_.t, here_.x, field);
   }
-  /// d_t g + grad g . field at (t, x); 0 times infinity is 0.
+  /// Returns d_t g + grad g . field at (t, x); 0 times infinity is 0.
   [[nodiscard]] Rate at(int function, double t, const std::vector<double>& x, const std::vector<double>& field) {
     row_.resize(x.size());
     Rate rate;

@@ -7,8 +7,8 @@
 
 namespace saltus::event_integrator {
 
-/// Modes with their selections in the order of time. Two that follow each other differ in a surface or two, however
-/// many there are: kept is the first one and the differences.
+/// Holds modes with their selections in the order of time. Two that follow each other differ in a surface or two,
+/// however many there are: kept is the first one and the differences.
 class ModeLog {
  public:
   /// Appends a mode (n_psi) with its selections (n_psi), unless it is the last one, bit for bit.
@@ -18,22 +18,22 @@ class ModeLog {
   /// Appends the last mode with one function changed, unless that is no change, bit for bit. Cost: O(1).
   /// @return its number
   std::size_t append_change(std::size_t function, int mode, double alpha);
-  /// What one function is in a mode.
+  /// Says what one function is in a mode.
   struct Selected {
     std::size_t function = 0;
     int mode = 0;
     double alpha = 0.0;
   };
-  /// The same with two functions changed, at least one of them in its bits.
+  /// Appends the last mode with two functions changed, at least one of them in its bits.
   std::size_t append_changes(const std::array<Selected, 2>& selected);
-  /// Room for so many modes that each differ in one function from the one before.
+  /// Makes room for so many modes that each differ in one function from the one before.
   void reserve(std::size_t modes) {
     changes_.reserve(modes);
     ends_.reserve(modes);
   }
   /// Forgets all but the last mode, whose number is then 0.
   void restart();
-  /// Of one function in the last mode.
+  /// Returns what one function has in the last mode.
   [[nodiscard]] int last_mode(std::size_t function) const { return last_mode_[function]; }
   [[nodiscard]] std::size_t size() const { return ends_.size(); }
   /// Appends to `functions` those whose mode differs between the last two, ascending.
@@ -43,7 +43,7 @@ class ModeLog {
   class Reader {
    public:
     explicit Reader(const ModeLog& log) : log_(&log) {}
-    /// Cost: the differences on the way from the last one; from the beginning if it lies before that.
+    /// Goes to a mode. Cost: the differences on the way from the last one; from the beginning if it lies before that.
     void seek(std::size_t number);
     [[nodiscard]] const std::vector<int>& mode() const { return mode_; }
     [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }

@@ -10,7 +10,8 @@ namespace saltus::event_integrator {
 
 struct HigherOrderSet;
 
-/// k in {-1, 0, 1}^n_psi with its selections. "On the surface" is part of the mode, never a floating-point accident.
+/// Holds k in {-1, 0, 1}^n_psi with its selections. "On the surface" is part of the mode, never a floating-point
+/// accident.
 struct ModeState {
   std::vector<int> mode;      ///< k_j
   std::vector<double> alpha;  ///< 1, 0 for k_j = 1, -1; the last sliding value for k_j = 0
@@ -32,7 +33,8 @@ struct ModeState {
 void set_surface(ModeState& state, int surface, int mode, double alpha);
 /// Leaves surfaces to the sides of a corner: above the i-th of them where bit i is set.
 void set_to_corner(ModeState& state, const std::vector<int>& surfaces, std::size_t corner);
-/// corner_alpha from alpha, on both sides of the first sliding surface and below the others; as it is without nesting.
+/// Sets corner_alpha from alpha, on both sides of the first sliding surface and below the others; as it is without
+/// nesting.
 void set_corner_alpha(ModeState& state);
 
 }  // namespace saltus::event_integrator

@@ -31,7 +31,7 @@ struct Position {
   }
   void change_mode(const ModeState& next) { state = next; }
 
-  /// A step below this is no longer seen in t.
+  /// Returns the smallest step that is still seen in t.
   [[nodiscard]] double smallest_step() const {
     return std::max(4.0 * rounding_unit * std::abs(t), std::numeric_limits<double>::min());
   }

@@ -11,7 +11,7 @@
 
 namespace saltus::event_integrator {
 
-/// Some rows, into a matrix that is used again. NOTE: an indexed view copies its indices, which allocates.
+/// Takes some rows into a matrix that is used again. NOTE: an indexed view copies its indices, which allocates.
 template <class Indices>
 void take_rows(const Eigen::MatrixXd& from, const Indices& rows, Eigen::MatrixXd& result) {
   result.resize(static_cast<Eigen::Index>(rows.size()), from.cols());
@@ -19,28 +19,29 @@ void take_rows(const Eigen::MatrixXd& from, const Indices& rows, Eigen::MatrixXd
   for (const auto row : rows) result.row(k++) = from.row(static_cast<Eigen::Index>(row));
 }
 
-/// Of n - 1 rows grad psi_i, psi_i = g_r - g_i, those that are independent, and the others by these.
+/// Holds, of n - 1 rows grad psi_i, psi_i = g_r - g_i, those that are independent, and the others by these.
 struct RegionBasis {
   std::vector<Eigen::Index> base;  ///< rows, ascending
   [[nodiscard]] bool spans_all(Eigen::Index rows) const { return static_cast<Eigen::Index>(base.size()) == rows; }
 };
 
-/// Rows that depend on others to switching::dependent_part, as for surfaces that touch, are not in the basis.
+/// Finds a basis of rows. Rows that depend on others to switching::dependent_part, as for surfaces that touch, are not
+/// in the basis.
 [[nodiscard]] RegionBasis basis_of(const Eigen::MatrixXd& rows);
 
 /// Of up to 12 regions, which is what meets.
 using RegionCoordinates = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 12, 12>;
 
-/// Coordinates of the reference (0) and of all rows in the basis: n x m, grad psi_i = sum_k y_ik grad psi_base(k).
-/// Allocates nothing.
+/// Returns the coordinates of the reference (0) and of all rows in the basis: n x m, grad psi_i = sum_k y_ik grad
+/// psi_base(k). Allocates nothing.
 [[nodiscard]] RegionCoordinates coordinates_in(const RegionBasis& basis, const Eigen::MatrixXd& rows);
 
-/// The largest part of a row that the basis does not span, relative to the row.
+/// Returns the largest part of a row that the basis does not span, relative to the row.
 [[nodiscard]] double remainder(const RegionBasis& basis, const Eigen::MatrixXd& rows);
 
-/// Regions of groups that are not active, but whose psi is a combination of those that are held, of the same functions
-/// of (t, x): psi_i = sum_k c_k psi_k + const. While these are held it is constant, and its sign, where that constant
-/// is 0, a rounding: nothing to watch.
+/// Finds the regions of groups that are not active, but whose psi is a combination of those that are held, of the same
+/// functions of (t, x): psi_i = sum_k c_k psi_k + const. While these are held it is constant, and its sign, where that
+/// constant is 0, a rounding: nothing to watch.
 /// @param rows  psi of all functions, NaN where one is not affine
 /// @return by switching function; empty if there is none
 /// Cost: that of the rows as a dense matrix, in modes that hold regions only.

@@ -26,15 +26,15 @@ inline bool contains(const std::vector<int>& values, int value) {
   return std::find(values.begin(), values.end(), value) != values.end();
 }
 
-/// What state k is moved by to look near by, `step` of its size or so: neighbours by different weights, of signs by
-/// pattern, so that no symmetry of the model cancels them.
+/// Returns what state k is moved by to look near by, `step` of its size or so: neighbours by different weights, of
+/// signs by pattern, so that no symmetry of the model cancels them.
 inline double displacement(std::size_t k, double x, double step, unsigned pattern) {
   const double weight = (pattern >> (k % 2) & 1U) != 0 ? -1.0 : 1.0;
   return weight * step * (1.0 + std::abs(x)) * (1.0 + 0.37 * static_cast<double>(k % 5));
 }
 
-/// A list whose items keep their own storage when it is cleared: append() returns one that holds what an earlier one
-/// has left there.
+/// Holds a list whose items keep their own storage when it is cleared: append() returns one that holds what an earlier
+/// one has left there.
 template <class Item>
 class ReusedList {
  public:

@@ -8,8 +8,8 @@
 
 namespace saltus::event_integrator {
 
-/// The entries of a vector over the states that are not finite, by name: "'v' (nan), 'w' (inf)", the first three of
-/// more; empty if all are finite.
+/// Returns the entries of a vector over the states that are not finite, by name: "'v' (nan), 'w' (inf)", the first
+/// three of more; empty if all are finite.
 [[nodiscard]] std::string undefined_states(const model::System& system, const std::vector<double>& values);
 
 }  // namespace saltus::event_integrator

@@ -27,7 +27,7 @@ struct Passage {
   const ModeState& after;
 };
 
-/// The surface that is slid on before and behind a switch of another one; the two influence each other.
+/// Holds the surface that is slid on before and behind a switch of another one; the two influence each other.
 struct SlidAcross {
   int surface = 0;
   double alpha_before = 0.0, alpha_after = 0.0;
@@ -35,7 +35,7 @@ struct SlidAcross {
   Meeting meeting;
 };
 
-/// A switch of one surface that changes nothing else, but for the selection of what is slid on across it.
+/// Holds a switch of one surface that changes nothing else, but for the selection of what is slid on across it.
 struct SurfaceSwitch {
   int surface = 0;
   int before = 0, after = 0;  ///< modes
@@ -44,7 +44,7 @@ struct SurfaceSwitch {
   const SlidAcross* slid = nullptr;
 };
 
-/// One execution of a jump.
+/// Holds one execution of a jump.
 struct ExecutedJump {
   int jump = 0;
   std::vector<double> x, x_after;
@@ -60,52 +60,55 @@ class Recorder {
     ranges_ = &ranges;
     cut_outputs_ = selections;
   }
-  /// One row in a mode; `alpha` over switching functions (the sliding values at this point).
-  /// Selections that nothing determines are recorded as NaN; outputs have the ones that they are handed.
+  /// Adds one row in a mode; `alpha` over switching functions (the sliding values at this point). Selections that
+  /// nothing determines are recorded as NaN; outputs have the ones that they are handed.
   void row(double t, const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha);
-  /// A row with the mode before the events at t, of which this is the first one (or would be, if there are none).
+  /// Adds a row with the mode before the events at t, of which this is the first one (or would be, if there are none).
   void row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event);
-  /// A switch, if a listed switching function changes its mode; returns whether it did.
+  /// Records a switch, if a listed switching function changes its mode; returns whether it did.
   bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
-  /// The same for the one surface that changes; it is listed, and the last mode recorded is the one before but for its
-  /// own selection, or that of what is slid on across it. Cost: O(1).
+  /// Does the same for the one surface that changes, which is listed. The last mode recorded is the one before. Only
+  /// its own selection may differ, or that of what is slid on across it. Cost: O(1).
   void switched(double t, const std::vector<double>& x, const SurfaceSwitch& change);
-  /// Whether a surface is listed.
+  /// Returns whether a surface is listed.
   [[nodiscard]] bool lists(int surface) const { return !listed_columns_[at(surface)].empty(); }
-  /// A row in the mode before or behind the last event, with its selections.
+  /// Adds a row in the mode before or behind the last event, with its selections.
   void row_before_last_event(const std::vector<double>& x, const std::vector<double>& alpha) {
     const auto& event = recording_.event_list.back();
     append_row(event.t, x, alpha, event.mode);
   }
-  /// Where only the selection of `surface` may differ from that of the mode behind it.
+  /// Does the same where only the selection of `surface` may differ from that of the mode behind it.
   void row_behind_last_event(const std::vector<double>& x, const std::vector<double>& alpha, std::size_t surface) {
     const auto& event = recording_.event_list.back();
     const int mode = recording_.modes.last_mode(surface);
     append_row(event.t, x, alpha, recording_.modes.append_change(surface, mode, alpha[surface]));
   }
-  /// A start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
+  /// Records a start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
   bool started(double t, const std::vector<double>& x, const Transition& transition, const std::vector<int>& surfaces);
-  /// An event of [[events]].
+  /// Records an event of [[events]].
   void user(double t, const Passage& passage, int event);
-  /// Jumps executed at t one after the other; `transition` is the mode behind the last one, `before` null at a start.
+  /// Records jumps executed at t one after the other; `transition` is the mode behind the last one, `before` null at a
+  /// start.
   void jumped(double t, std::span<const ExecutedJump> jumps, const ModeState* before, const Transition& transition);
-  /// The limit of a sequence of jumps, from the last computed state.
+  /// Records the limit of a sequence of jumps, from the last computed state.
   void accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string_view reason);
-  /// The limit of a sequence of switches of these surfaces, from the last computed state; `transition` leads on.
+  /// Records the limit of a sequence of switches of these surfaces, from the last computed state; `transition` leads
+  /// on.
   void spiralled(double t, const std::vector<int>& surfaces, const Passage& passage, const Transition& transition,
                  std::string_view why);
 
   [[nodiscard]] Recording take() { return std::move(recording_); }
-  /// Whether there are so many rows or events that a run whose output is written on the way should hand them over.
+  /// Returns whether there are so many rows or events that a run whose output is written on the way should hand them
+  /// over.
   [[nodiscard]] bool has_many() const {
     return recording_.row_times.size() >= 1024 || recording_.event_list.size() >= 256;
   }
-  /// What has been recorded so far, between two steps; the recording goes on behind it.
+  /// Returns what has been recorded so far, between two steps; the recording goes on behind it.
   [[nodiscard]] Recording hand_over();
   [[nodiscard]] bool ends_at(double t) const {
     return recording_.row_times.empty() ? past_.rows > 0 && past_.last_row == t : recording_.row_times.back() == t;
   }
-  /// Of the last event; there must be one.
+  /// Returns `unique` of the last event; there must be one.
   [[nodiscard]] std::optional<bool> last_unique() const {
     return recording_.event_list.empty() ? past_.unique : recording_.event_list.back().unique;
   }
@@ -116,7 +119,7 @@ class Recorder {
     const std::size_t past = past_.event_times.size();
     return at(event) < past ? past_.event_times[at(event)] : recording_.event_list[at(event) - past].t;
   }
-  /// Whether one of the last events is about a listed switching function.
+  /// Returns whether one of the last events is about a listed switching function.
   [[nodiscard]] bool switched_lately(int function, long events) const;
   [[nodiscard]] std::size_t rows() const { return past_.rows + recording_.row_times.size(); }
 

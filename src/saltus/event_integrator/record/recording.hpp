@@ -17,11 +17,11 @@
 
 namespace saltus::event_integrator {
 
-/// Rows and events in the order of time. What one event takes does not grow with the number of switching functions;
-/// events() and trajectory() turn it into the columns of the result, by their names.
+/// Holds rows and events in the order of time. What one event takes does not grow with the number of switching
+/// functions; events() and trajectory() turn it into the columns of the result, by their names.
 struct Recording {
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
-  /// Part of a list.
+  /// Holds the place of a part of a list.
   struct Range {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -31,7 +31,7 @@ struct Recording {
     result::EventKind kind = result::EventKind::crossing;
     std::size_t entry = none;  ///< of [[jumps]] (kind jump) or [[events]] (kind user)
     std::size_t x = 0;         ///< places of n_x numbers in `states`
-    std::size_t x_after = 0;   ///< … the same one where the state does not jump
+    std::size_t x_after = 0;   ///< behind the event; the same as `x` where the state does not jump
     std::size_t mode = none;   ///< number in `modes`
     std::size_t mode_after = none;
     std::optional<bool> unique = true;
@@ -47,7 +47,7 @@ struct Recording {
     std::vector<double> alpha;
   };
 
-  /// See result::Family.
+  /// Holds what result::Family has.
   struct Family {
     result::FamilyKind kind = result::FamilyKind::later_departure;
     std::size_t event = 0;
@@ -76,13 +76,13 @@ struct Recording {
 
   /// Takes away the first events and rows; families that are left belong to the first event that is.
   void drop(std::size_t events, std::size_t rows);
-  /// Events and rows as the result has them. Cost: O(n_psi) for each.
+  /// Returns events and rows as the result has them. Cost: O(n_psi) for each.
   [[nodiscard]] result::Events events(const model::System& system) const;
   /// Takes the numbers of the rows away.
   [[nodiscard]] result::Trajectory trajectory(const model::System& system) &&;
   [[nodiscard]] std::vector<long> family_numbers() const;
   [[nodiscard]] std::vector<result::Family> listed_families(const model::System& system) const;
-  /// The last row; there must be one.
+  /// Returns the last row; there must be one.
   [[nodiscard]] result::Final last(const model::System& system) const;
 };
 

@@ -9,7 +9,7 @@
 
 namespace saltus::event_integrator {
 
-/// The same before events and rows are expanded into columns.
+/// Holds an Integration before events and rows are expanded into columns.
 struct CompactIntegration {
   result::Status status;
   Recording recording;
@@ -17,8 +17,8 @@ struct CompactIntegration {
   bool chosen = true;
 };
 
-/// What integrate() does before it expands events and rows, which costs O(n_psi) for each of them: an event here costs
-/// what it changes.
+/// Does what integrate() does before it expands events and rows, which costs O(n_psi) for each of them: an event here
+/// costs what it changes.
 [[nodiscard]] CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const model::System& system,
                                                    const IntegrationOptions& options,
                                                    const StepObserver& observer = {});

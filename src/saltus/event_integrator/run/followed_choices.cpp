@@ -27,14 +27,14 @@ void FollowedChoices::choose(Transition& transition, const Progress& progress) {
   if (transition.beyond_spiral) choose_phase(transition, progress);
 }
 
-/// The first cycle of a spiral has a size, 1 to lap_ratio times that of any one: its phase.
+/// The first cycle of a spiral has a size, 1 to cycle_ratio times that of any one: its phase.
 void FollowedChoices::choose_phase(Transition& transition, const Progress& progress) {
   const auto number = static_cast<long>(families_.count());
   families_.add_spirals(here_.t, static_cast<std::size_t>(recorder_.events()), transition);
   const Choice choice = next();
   if (!choice.phase || choice.decision != number) return;
   SpiralStart& start = *transition.beyond_spiral;
-  const double size = std::pow(start.lap_ratio, *choice.phase);
+  const double size = std::pow(start.cycle_ratio, *choice.phase);
   start.duration *= size;
   for (std::size_t i = 0; i < here_.x.size(); ++i) start.x[i] = here_.x[i] + size * (start.x[i] - here_.x[i]);
   transition.unique = false;

@@ -17,7 +17,7 @@ namespace saltus::event_integrator {
 /// FollowedChoices numbers the decisions of a run and makes the choices in their order.
 class FollowedChoices {
  public:
-  /// What the run has done so far: a result that begins at a choice leaves it out.
+  /// Says what the run has done so far: a result that begins at a choice leaves it out.
   struct Progress {
     std::size_t row = 0;  ///< before the current event
     result::Statistics statistics;
@@ -29,26 +29,26 @@ class FollowedChoices {
 
   [[nodiscard]] Families& families() { return families_; }
   [[nodiscard]] const Families& families() const { return families_; }
-  /// The next choice; one that never comes if there is none.
+  /// Returns the next choice; one that never comes if there is none.
   [[nodiscard]] Choice next() const { return next_ < options_.choices.size() ? options_.choices[next_] : Choice{-1}; }
-  /// When the run is to leave its mode as a member of a family; infinity if it is not.
+  /// Returns when the run is to leave its mode as a member of a family; infinity if it is not.
   [[nodiscard]] double next_departure() const {
     const double time = next().departure();
     return time > here_.t ? time : std::numeric_limits<double>::infinity();
   }
-  /// Whether this is the alternative that the run was asked to go on with last.
+  /// Returns whether this is the alternative that the run was asked to go on with last.
   [[nodiscard]] bool chooses(const Transition& transition) const {
     return next_ > 0 && transition.decision == chosen_ && !transition.alternatives.empty();
   }
   /// Gives a decision its number, and makes it the alternative that the run was asked to go on with.
   void choose(Transition& transition, const Progress& progress);
-  /// The departure that was asked for is now: an open family, or nullptr where it is closed.
+  /// Returns the family that the run is asked to leave into now; nullptr where it is closed.
   [[nodiscard]] const Families::Open* departing() const;
-  /// That choice is made by the next decision.
+  /// Makes that choice with the next decision.
   void depart(const Progress& progress) { note(decisions_, progress); }
-  /// Behind an event: what its mode may be left into, now or later.
+  /// Watches, behind an event, what its mode may be left into, now or later.
   void watch(const ModeField& field);
-  /// The same behind a step from t_begin.
+  /// Does the same behind a step from t_begin.
   void look(double t_begin, StepAttempt& steps);
   /// Takes away what lies before the last choice; returns whether all choices were made.
   bool begin_at_choice(Recording& recording, result::Statistics& statistics);

@@ -24,26 +24,26 @@ class OutputRows {
              ModeField& field, Holding& holding, Recorder& recorder);
 
   [[nodiscard]] bool at_steps() const { return options_.output.rows == OutputTimes::Rows::at_steps; }
-  /// A row in the mode of the position.
+  /// Writes a row in the mode of the position.
   void write(double t, const std::vector<double>& x);
   void write_here() { write(here_.t, here_.x); }
-  /// The row at the end of a step, if one is asked for.
+  /// Writes the row at the end of a step, if one is asked for.
   void write_end_of_step();
-  /// Whether a row is asked for before a time.
+  /// Returns whether a row is asked for before a time.
   [[nodiscard]] bool any_before(double t) const { return next_ < times().size() && times()[next_] < t; }
-  /// Requested times in (from, end), which are passed with that: calls write(t).
+  /// Calls write(t) for the requested times in (from, end), which are passed with that.
   template <class Write>
   void each_before(double from, double end, Write write) {
     for (; any_before(end); ++next_) {
       if (times()[next_] > from) write(times()[next_]);
     }
   }
-  /// The same in (from, end].
+  /// Does the same in (from, end].
   template <class Write>
   void each_until(double from, double end, Write write) {
     each_before(from, std::nextafter(end, std::numeric_limits<double>::infinity()), write);
   }
-  /// Rows from the position to `end` (not included) on a curve, which are put on the surfaces of the mode.
+  /// Writes rows from the position to `end` (not included) on a curve, which are put on the surfaces of the mode.
   void write_before(double end, FunctionRef<void(double t, double* x)> curve);
   /// Passes requested times up to the position.
   void skip_here() {
@@ -53,13 +53,13 @@ class OutputRows {
   /// An event is about to be recorded here.
   enum class Arrival { written, missing };
   void arrive(Arrival row) { arrival_ = recorder_.rows() - (row == Arrival::written ? 1 : 0); }
-  /// The number of the row before the event.
+  /// Returns the number of the row before the event.
   [[nodiscard]] std::size_t arrival() const { return arrival_; }
 
   [[nodiscard]] bool asks_for_lines() const { return lines_.has_value(); }
-  /// Whether straight lines may be too far from the last attempt, without looking at it closely.
+  /// Returns whether straight lines may be too far from the last attempt, without looking at it closely.
   [[nodiscard]] bool may_bend(const ode::Stepper& stepper);
-  /// Rows before t_end that keep straight lines close to the dense output of the step from the position.
+  /// Writes rows before t_end that keep straight lines close to the dense output of the step from the position.
   void write_lines(double t_end, const ode::DenseStep& dense);
 
  private:

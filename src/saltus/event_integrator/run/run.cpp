@@ -48,7 +48,7 @@ Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const Int
       choices_(switching_context_, options, here_, recorder_),
       outcome_{.evaluations_before = kernel.field_evaluations()} {
   holding_.keep(&contacts_);
-  fast_.applies = way == Way::short_where_ordinary && has_ordinary_switches();
+  fast_.applies = way == Way::fast_where_ordinary && has_ordinary_switches();
 }
 
 std::string Run::where() const {
@@ -101,7 +101,7 @@ bool Run::enter(const Transition& transition) {
   return true;
 }
 
-/// Over the first lap of a spiral that leaves an intersection, which is too small to be seen.
+/// Over the first cycle of a spiral that leaves an intersection, which is too small to be seen.
 void Run::begin_spiral() {
   const SpiralStart start = *std::exchange(event_.spiral, std::nullopt);
   const double t_new = std::min(here_.t + start.duration, options_.until);

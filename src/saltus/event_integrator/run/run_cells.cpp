@@ -59,8 +59,8 @@ bool Run::jump_with_cells() {
   return go_on();
 }
 
-/// Arguments that are defined on this side of a surface only are looked up behind it, a few roundings ahead if the
-/// surface itself is beside their domain.
+/// Some arguments are defined on this side of a surface only. They are looked up behind it, a few roundings ahead if
+/// the surface itself is beside their domain.
 bool Run::find_undefined_cells() {
   if (!cells_.any_undefined()) return true;
   std::vector<double> ahead = here_.x;

@@ -1,7 +1,7 @@
-// The ordinary switch: one surface is reached from beside it, in a region or while the solution slides on another one,
-// or left where one of its fields is tangent, and nothing else happens there. What other switches need is left out:
-// most copies of modes, switching points and transitions. The answers are those of the general way, bit for bit; where
-// one is not clear that way is taken.
+// The ordinary switch: one surface is reached from beside it, or left where one of its fields is tangent. It is reached
+// in a region or while the solution slides on another one. Nothing else happens there. What other switches need is left
+// out: most copies of modes, switching points and transitions. The answers are those of the full decision, bit for bit,
+// which is taken where one is not clear.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -22,8 +22,8 @@ bool Run::has_ordinary_switches() const {
          options_.layers.empty();
 }
 
-/// Whether one listed surface is reached in a region or while sliding on one, or left by the solution that slides on it
-/// alone, behind the last switch.
+/// Returns whether the switch behind the last one is ordinary. One listed surface is reached in a region or while
+/// sliding on one, or left by the solution that slides on it alone.
 bool Run::is_ordinary(const Located& located) const {
   if (!fast_.applies || located.functions.size() != 1 || here_.state.higher || !choices_.families().idle())
     return false;
@@ -131,7 +131,7 @@ bool Run::pass(const Located& located, int surface) {
 }
 
 /// The same where the two surfaces influence each other and the solution goes on sliding across the one that it
-/// reaches, with these selections, in the order of the switching point.
+/// reaches. The selections have the order of the switching point.
 bool Run::pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha) {
   const auto j = at(surface);
   const int slid = here_.state.sliding.front();

@@ -40,7 +40,7 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
 
 bool Run::too_many_events() {
   if (recorder_.events() >= options_.max_events) {
-    const std::string laps = ContractingCycles(switching_context_, here_, recorder_).describe();
+    const std::string cycles = ContractingCycles(switching_context_, here_, recorder_).describe();
     constexpr long last_events = 64;
     constexpr std::size_t most_names = 3;
     std::vector<std::string> names;
@@ -53,12 +53,12 @@ bool Run::too_many_events() {
                                                            names.size() == 1 ? "es" : "");
     fail(Termination::iteration_limit,
          fmt::format("max_events = {} reached at {}; raise simulate.max_events if they are meant, or {}",
-                     options_.max_events, where(), laps.empty() ? advice : "change the model: " + laps));
+                     options_.max_events, where(), cycles.empty() ? advice : "change the model: " + cycles));
     return true;
   }
   // Jumps have their own limits.
   if (event_.jumped || !switches_.series().too_dense(here_.t)) return false;
-  if (!follow_dense_laps()) accumulates();
+  if (!follow_dense_cycles()) accumulates();
   return true;
 }
 

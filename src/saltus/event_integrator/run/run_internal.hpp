@@ -56,12 +56,12 @@ inline constexpr const char* resting_reason =
 /// A Run owns its parts and its position, which only it moves. There is one object per call of integrate().
 class Run {
  public:
-  /// How switches are decided and entered: the ordinary ones by the short way, or all by the one that covers
+  /// Says how switches are decided and entered: the ordinary ones by the fast path, or all by the one that covers
   /// everything.
-  enum class Way { short_where_ordinary, general };
+  enum class Way { fast_where_ordinary, full };
 
   Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-      Way way = Way::short_where_ordinary);
+      Way way = Way::fast_where_ordinary);
 
   /// Runs to the end, or until the observer, which is called behind every step, asks to stop.
   /// @param take  gets rows and events when there are many; the result has the last ones. May be empty.
@@ -71,7 +71,7 @@ class Run {
   enum class Step { taken, shortened, failed };
   enum class Behind { any, higher_order };  ///< a limit of switches
 
-  /// Of an event in hand, beside before_ and x_before_.
+  /// Of the current event, beside before_ and x_before_.
   struct Arrival {
     long events = 0;  ///< recorded before it
     OutputRows::Arrival row = OutputRows::Arrival::missing;
@@ -149,7 +149,7 @@ class Run {
   [[nodiscard]] std::optional<SeriesLimit> unresolved_here() const;
   void go_on_from_unresolved();
   bool hold_unresolved();
-  bool follow_dense_laps();
+  bool follow_dense_cycles();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
   void pass_to(double t, const std::vector<double>& x);
   void go_on_from_limit();

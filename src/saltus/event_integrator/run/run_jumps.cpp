@@ -173,11 +173,11 @@ bool Run::settle_at_start() {
   return true;
 }
 
-/// A step as at a start: from the field of the continuous states alone, not beyond the last lap of a shrinking sequence
-/// of jumps.
+/// A step as at a start: from the field of the continuous states alone, not beyond the last cycle of a shrinking
+/// sequence of jumps.
 void Run::start_step() {
   here_.h = steps_.initial_step();
-  if (const auto lap = jump_accumulation_.last_cycle()) here_.h = std::min(here_.h, *lap);
+  if (const auto cycle = jump_accumulation_.last_cycle()) here_.h = std::min(here_.h, *cycle);
   std::vector<double> free_slope(here_.x.size());
   field_(here_.t, here_.x.data(), free_slope.data());  // selections back to those of this point
 }

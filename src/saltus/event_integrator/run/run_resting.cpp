@@ -86,8 +86,8 @@ bool Run::change_resting_with_cells() {
   return resting.surfaces != here_.state.resting;
 }
 
-/// Surfaces that a released guard has kept at zero: the motion leaves them where it would if it had slid on them, to
-/// the side with whose selection nothing presses on the guard any more.
+/// Surfaces that a released guard has kept at zero. The motion leaves them where it would if it had slid on them. It
+/// goes to the side with whose selection nothing presses on the guard any more.
 const ModeState& Run::slid_on_freed(SwitchingPoint& switching_point) {
   event_.slid = event_.before;
   for (const int j : event_.freed) {

@@ -43,7 +43,7 @@ void Run::project_onto_roots(const Located& located) {
 
 /// The time scale of what is decided behind a step. Steps that end where a field is undefined say nothing of it: they
 /// go down to the resolution of t. Without surfaces that are slid on beside roots (super-twisting) they are those of
-/// laps that shrink, and say it.
+/// cycles that shrink, and say it.
 void Run::note_time_scale(double h) {
   const bool is_cut = steps_.was_undefined() && zeros_.any_continued();
   here_.time_scale = is_cut ? std::max(h, std::min(here_.time_scale, here_.t - event_.last_time)) : h;

@@ -14,9 +14,9 @@
 namespace saltus::event_integrator {
 namespace {
 
-/// All surfaces of the laps at zero, and all of their regions active; but for functions that jump over zero on surfaces
-/// inside them.
-/// @param limit  of the laps
+/// All surfaces of the cycles at zero, and all of their regions active; but for functions that jump over zero on
+/// surfaces inside them.
+/// @param limit  of the cycles
 /// @param time_scale  a step of the integrator
 void hold_at_zero(const evaluation::ModelKernel& kernel, const SeriesLimit& limit, double time_scale,
                   ModeState& state) {
@@ -48,19 +48,19 @@ void hold_at_zero(const evaluation::ModelKernel& kernel, const SeriesLimit& limi
   set_corner_alpha(state);
 }
 
-/// Functions inside those that are put on, which the laps shrink with them: they vanish there, too. Returns whether
+/// Functions inside those that are put on, which the cycles shrink with them: they vanish there, too. Returns whether
 /// there are any.
-/// @param lap_change  of each function: what a lap changes it by
+/// @param cycle_change  of each function: what a cycle changes it by
 bool hold_inner_at_zero(const evaluation::ModelKernel& kernel, const SeriesLimit& limit,
-                        const std::vector<double>& lap_change, ModeState& state) {
+                        const std::vector<double>& cycle_change, ModeState& state) {
   std::vector<double> values(at(kernel.event_functions()));
   kernel.functions(limit.t, limit.x.data(), state.alpha.data(), values.data());
   const std::vector<int> around = state.sliding;
   bool any = false;
   for (const int j : around) {
     for (const int i : kernel.inner(j)) {
-      constexpr double part = 0.1;  // the limit is far nearer than the last lap
-      if (state.mode[at(i)] == 0 || !(std::abs(values[at(i)]) <= part * lap_change[at(i)])) continue;
+      constexpr double part = 0.1;  // the limit is far nearer than the last cycle
+      if (state.mode[at(i)] == 0 || !(std::abs(values[at(i)]) <= part * cycle_change[at(i)])) continue;
       set_surface(state, i, 0, 0.5);
       any = true;
     }
@@ -124,17 +124,17 @@ void Run::go_on_from_unresolved() {
 }
 
 /// Events cannot be told apart here: surfaces that are zero together, as far as the tolerances tell, may be held so,
-/// with their derivatives (controllers with roots of several states, which reach their origin faster than laps shrink).
-/// Returns whether the run has gone on.
+/// with their derivatives (controllers with roots of several states, which reach their origin faster than cycles
+/// shrink). Returns whether the run has gone on.
 bool Run::hold_unresolved() {
   SeriesLimit limit{here_.t, here_.x, {}, here_.smallest_step(), SeriesKind::unresolved};
   for (const auto* function : zeros_.unresolved()) limit.events.push_back(label_of(function->index, function->sign));
   return limit.events.size() > 1 && follow_spiral(limit, Behind::higher_order);
 }
 
-/// Laps that hardly shrink are too many for their time before as little of it remains as a limit is asked for usually.
-/// Returns whether they have one all the same, and the run has gone on from there.
-bool Run::follow_dense_laps() {
+/// Cycles that hardly shrink are too many for their time before as little of it remains as a limit is asked for
+/// usually. Returns whether they have one all the same, and the run has gone on from there.
+bool Run::follow_dense_cycles() {
   const auto limit = switches_.dense_limit();
   if (!limit || limit->kind == SeriesKind::chattering || limit->t > std::min(options_.until, jumps_.next_time()))
     return false;
@@ -150,13 +150,13 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   hold_at_zero(kernel_, limit, here_.time_scale, on);
   std::vector<double> x = limit.x;
   SwitchingPoint switching_point;
-  std::vector<double> lap_change(at(kernel_.event_functions()));
+  std::vector<double> cycle_change(at(kernel_.event_functions()));
   for (const int j : on.sliding) {
     for (const int i : kernel_.inner(j)) {
-      lap_change[at(i)] = limit.lap * std::abs(rates.here(i).value);
+      cycle_change[at(i)] = limit.cycle * std::abs(rates.here(i).value);
     }
   }
-  if (hold_inner_at_zero(kernel_, limit, lap_change, on)) {
+  if (hold_inner_at_zero(kernel_, limit, cycle_change, on)) {
     put_onto_nested(kernel_, on, limit.t, x);
   } else {
     const ReferenceScope references(kernel_, on);
@@ -168,8 +168,8 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   switching_point.x = x.data();
   switching_point.at_zero = switching_point.touched = on.sliding;
   switching_point.start = switching_point.limit = true;  // no side is the one it comes from
-  // What the last lap changes is at rest behind it, and what t does not resolve.
-  switching_point.time_scale = std::max({here_.time_scale, limit.lap, 1e3 * rounding_unit * std::abs(limit.t)});
+  // What the last cycle changes is at rest behind it, and what t does not resolve.
+  switching_point.time_scale = std::max({here_.time_scale, limit.cycle, 1e3 * rounding_unit * std::abs(limit.t)});
   note_ties(kernel_, on, switching_point);
   Transition transition = decide_mode(switching_context_, on, switching_point);
   if (transition.termination != result::Termination::completed) return false;
@@ -185,7 +185,7 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
   const auto why = limit.kind == SeriesKind::unresolved
                        ? "these are zero together, as far as they can be told apart"
                        : "the intervals of these switches shrink geometrically: the state is their limit";
-  // What has been slid on through all laps may be left at their limit, too.
+  // What has been slid on through all cycles may be left at their limit, too.
   std::vector<int> surfaces = on.sliding;
   for (const int label : limit.events) surfaces.push_back(surface_of(label));
   recorder_.spiralled(here_.t, surfaces, {x_last, here_.x, before, here_.state}, transition, why);

@@ -349,7 +349,7 @@ void AffineForms::append_suspects(const StepBounds& bounds, std::vector<std::siz
     const double high = bounds.high[state];
     if (!reaches(low, high, lower_[state], upper_[state])) continue;
     // What the state reaches behind its nearest threshold by more than this is not reached before it, whatever the
-    // roundings of both, nor at the same time, as far as that can be resolved.
+    // roundings of both. Nor is it reached at the same time, as far as that can be resolved.
     const double beside =
         std::max(resolution * (high - low), 0x1p10 * margin * std::max(std::abs(low), std::abs(high)));
     const auto append = [&](const Threshold& threshold) {

@@ -12,7 +12,7 @@
 
 namespace saltus::event_integrator {
 
-/// Bounds of a step: its times, and the states over it, n_x each.
+/// Holds bounds of a step: its times, and the states over it, n_x each.
 struct StepBounds {
   double begin = 0.0;
   double end = 0.0;
@@ -20,51 +20,52 @@ struct StepBounds {
   const double* high = nullptr;
 };
 
-/// Forms phi_i(t, x) = offset_i + rate_i t + sum_k a_k x_k, one for every event function of a mode that is affine.
+/// Holds the forms phi_i(t, x) = offset_i + rate_i t + sum_k a_k x_k, one for every event function of a mode that is
+/// affine.
 ///
 /// A loaded row of one state is a threshold of that state. Of the thresholds of a state on the same side only the
-/// nearest can be the first to be reached, so a step is compared with two numbers per state, and at most these two and
-/// what lies beside them are looked at, however many thresholds there are.
-/// Owns its memory; allocates while forms are set only.
+/// nearest can be the first to be reached. So a step is compared with two numbers per state, however many thresholds
+/// there are. At most these two and what lies beside them are looked at. Owns its memory; allocates while forms are set
+/// only.
 class AffineForms {
  public:
   explicit AffineForms(std::size_t states);
   void swap(AffineForms& other) noexcept;
-  /// Rows for use_row, which stay the same from mode to mode.
+  /// Loads the rows for use_row, which stay the same from mode to mode.
   void load(const evaluation::AffineRows& rows);
-  /// No forms, for `functions` functions; then use_row and set, then group.
+  /// Begins without forms, for `functions` functions; then use_row and set, then group.
   void reset(std::size_t functions);
-  /// The form of function i is loaded row j; nothing if that row is not affine.
+  /// Makes the form of function i loaded row j; nothing if that row is not affine.
   void use_row(std::size_t i, std::size_t j) { forms_[i] = table_[j]; }
-  /// The form of function i is row j; nothing if that row is not affine.
+  /// Makes the form of function i row j; nothing if that row is not affine.
   void set(std::size_t i, const evaluation::AffineRows& rows, std::size_t j);
   void set(std::size_t i, const evaluation::AffineRow& row);
-  /// Behind group(): puts another row in the place of the form of function i, which is not watched. Returns false, with
-  /// nothing done, where that is no place for it (a threshold before or now, more terms, not finite).
+  /// Puts, behind group(), another row in the place of the form of function i, which is not watched. Returns false,
+  /// with nothing done, where that is no place for it (a threshold before or now, more terms, not finite).
   [[nodiscard]] bool replace(std::size_t i, const evaluation::AffineRow& row);
 
-  /// All forms are set: puts the thresholds of each state together. None is watched.
+  /// Puts the thresholds of each state together when all forms are set. None is watched.
   void group();
 
   [[nodiscard]] bool has(std::size_t i) const { return forms_[i].known; }
-  /// Whether the form is a threshold: its value has the roundings of the function itself, up to its factor's.
+  /// Returns whether the form is a threshold: its value has the roundings of the function itself, up to its factor's.
   [[nodiscard]] bool is_threshold(std::size_t i) const { return forms_[i].threshold; }
-  /// Of a threshold: the state, and its factor.
+  /// Returns the state of a threshold, and its factor.
   [[nodiscard]] std::size_t state(std::size_t i) const { return terms_[forms_[i].first].column; }
   [[nodiscard]] double factor(std::size_t i) const { return terms_[forms_[i].first].coefficient; }
   [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
-  /// The same of a threshold, which no time is in.
+  /// Returns the same of a threshold, which no time is in.
   [[nodiscard]] double threshold_value(std::size_t i, const double* x) const {
     const auto [column, coefficient] = terms_[forms_[i].first];
     return 0.0 + coefficient * x[column] + forms_[i].offset;
   }
-  /// d phi_i / dt along f (n_x); nullopt where that is no more than the rounding of its terms.
+  /// Returns d phi_i / dt along f (n_x); nullopt where that is no more than the rounding of its terms.
   [[nodiscard]] std::optional<double> rate_along(std::size_t i, const double* f) const;
-  /// Bernstein coefficients of the form along a step.
+  /// Returns the Bernstein coefficients of the form along a step.
   [[nodiscard]] ode::BernsteinCoefficients along(std::size_t i, const ode::DenseStep& step) const;
-  /// The same in the form that the step is kept in.
+  /// Returns the same in the form that the step is kept in.
   [[nodiscard]] ode::NestedPolynomial nested_along(std::size_t i, const ode::DenseStep& step) const;
-  /// Bernstein coefficients where the step is a series, with its terms, and what roundings may have changed the
+  /// Holds Bernstein coefficients where the step is a series, with its terms, and what roundings may have changed the
   /// polynomial by.
   struct AlongSeries {
     ode::SeriesCoefficients terms;  ///< of theta^k
@@ -74,24 +75,24 @@ class AffineForms {
     [[nodiscard]] double derivative(double theta) const;
   };
   [[nodiscard]] AlongSeries along_series(std::size_t i, const ode::DenseStep& step) const;
-  /// Sum of the sizes of the terms that a value is the sum of, at most this over the step: what its rounding follows
-  /// from.
+  /// Returns the sum of the sizes of the terms that a value is the sum of, at most this over the step: what its
+  /// rounding follows from.
   [[nodiscard]] double terms(std::size_t i, const StepBounds& bounds) const;
 
-  /// No function is watched.
+  /// Watches no function.
   void watch_none();
-  /// From now on function i, whose sign is `sign` (+1, -1), is among those that may_vanish and append_suspects look at.
+  /// Watches function i, whose sign is `sign` (+1, -1): may_vanish and append_suspects look at it from now on.
   void watch(std::size_t i, int sign);
-  /// No longer. Cost: of the nearest threshold of a state, the way to the next one that is watched.
+  /// Watches it no longer. Cost: of the nearest threshold of a state, the way to the next one that is watched.
   void ignore(std::size_t i);
-  /// Whether any watched function may vanish within the bounds; true where a bound is not finite. Cost: O(n_x), and the
-  /// terms of the forms of several states.
+  /// Returns whether any watched function may vanish within the bounds; true where a bound is not finite. Cost: O(n_x),
+  /// and the terms of the forms of several states.
   [[nodiscard]] bool may_vanish(const StepBounds& bounds) const;
-  /// Whether function i, which is zero or has the sign `sign` where the step starts, gets away from there into that
-  /// sign at once and stays: by bounds of the mean slopes of the states (in place of their values).
+  /// Returns whether function i goes from where the step starts into the sign `sign` at once and stays there. At the
+  /// start it is zero or has that sign. Bounds of the mean slopes of the states (in place of their values) tell.
   [[nodiscard]] bool leaves(std::size_t i, int sign, const StepBounds& mean_slopes) const;
-  /// The watched functions that may, but for thresholds that are reached behind another one of their state, and later
-  /// than that; in no particular order.
+  /// Appends the watched functions that may, but for thresholds that are reached behind another one of their state, and
+  /// later than that; in no particular order.
   void append_suspects(const StepBounds& bounds, std::vector<std::size_t>& suspects) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace saltus::event_integrator {
 
-/// What a move of cells does to the model at that point.
+/// Says what a move of cells does to the model at that point.
 enum class CellChange {
   none,
   kink,  ///< fields and switching functions are continuous, their derivatives are not
@@ -30,18 +30,18 @@ class Cells {
   CellChange leave(const std::vector<EventFunction>& functions, const std::vector<std::size_t>& reached, double t,
                    const double* x, const std::vector<double>& alpha);
 
-  /// Whether an end of a cell is reached to rounding, and values jump there.
+  /// Returns whether an end of a cell is reached to rounding, and values jump there.
   [[nodiscard]] bool jumps_at(const EventFunction& end, double t, const double* x, const std::vector<double>& alpha);
 
-  /// Whether some argument was undefined when it was looked at; locate_undefined() looks at those again.
+  /// Returns whether some argument was undefined when it was looked at; locate_undefined() looks at those again.
   [[nodiscard]] bool any_undefined() const;
   CellChange locate_undefined(double t, const double* x, const std::vector<double>& alpha);
 
-  /// The cells of all arguments, to be put back for a look at the time before.
+  /// Returns the cells of all arguments, to be put back for a look at the time before.
   [[nodiscard]] const std::vector<long>& indices() const { return index_; }
   void put(const std::vector<long>& indices);
 
-  /// Whether a function holds constants of a cell that moved last.
+  /// Returns whether a function holds constants of a cell that moved last.
   [[nodiscard]] bool moved_in(int function) const;
   /// Names of the cells that moved last and jump, joined by commas.
   [[nodiscard]] std::string moved_names(const model::System& system) const;
@@ -57,13 +57,13 @@ class Cells {
   std::vector<double> magnitude_, slope_;
 };
 
-/// Whether an event function is an end of a cell.
+/// Returns whether an event function is an end of a cell.
 [[nodiscard]] inline bool is_cell_end(FunctionKind kind) {
   return kind == FunctionKind::cell_upper || kind == FunctionKind::cell_lower;
 }
 
-/// For n_psi switching functions, 1 where one that is not in the mode vanishes at (t, x) to rounding, else 0: zeros
-/// that are history for what starts here.
+/// Returns, for n_psi switching functions, 1 where one that is not in the mode vanishes at (t, x) to rounding, else 0:
+/// zeros that are history for what starts here.
 [[nodiscard]] std::vector<int> zeros_at(const evaluation::ModelKernel& kernel, const ModeState& state, double t,
                                         const double* x);
 

@@ -18,7 +18,7 @@
 
 namespace saltus::event_integrator {
 
-/// A sign change along a step of length h: function, place and slope to start the correction with.
+/// Holds a sign change along a step of length h: function, place and slope to start the correction with.
 struct Hit {
   std::size_t function = 0;
   double theta = 0.0;
@@ -43,56 +43,56 @@ class EventSearch {
 
   /// Sets up the functions of a mode at (t, x). `zero_order` (n_psi): zeros that surfaces have at this point.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
-  /// The same, in a model without nesting, cells, regions, user functions and jumps: modes that slide on what one of
-  /// the last modes has slid on need their signs only.
+  /// Does the same, in a model without nesting, cells, regions, user functions and jumps: modes that slide on what one
+  /// of the last modes has slid on need their signs only.
   void enter_again(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
-  /// The same where one surface was crossed since, with no sliding before and behind; only while crosses(). Cost: O(1),
-  /// and the thresholds of the same state.
+  /// Does the same where one surface was crossed since, with no sliding before and behind; only while crosses(). Cost:
+  /// O(1), and the thresholds of the same state.
   void cross(std::size_t surface, const ModeState& state, double t, const double* x);
-  /// The same where one surface was crossed since while the solution slides on one other, behind an evaluation of the
-  /// field here. Returns false where the mode has to be entered afresh.
+  /// Does the same where one surface was crossed since while the solution slides on one other, behind an evaluation of
+  /// the field here. Returns false where the mode has to be entered afresh.
   [[nodiscard]] bool pass(std::size_t surface, const ModeState& state, double t, const double* x);
-  /// Whether crossings change signs of surfaces only.
+  /// Returns whether crossings change signs of surfaces only.
   [[nodiscard]] bool crosses() const { return mode_.flips && mode_.state.sliding.empty() && held_.guards.empty(); }
-  /// Whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
+  /// Returns whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
   [[nodiscard]] bool may_vanish(const ode::Stepper& stepper);
-  /// The first sign change in (0, 1] of any function.
+  /// Finds the first sign change in (0, 1] of any function.
   SearchOutcome search(const ode::DenseStep& step, Hit& hit);
-  /// Behind a hit: the functions that may vanish within the step, or close by; ascending.
+  /// Returns, behind a hit, the functions that may vanish within the step, or close by; ascending.
   [[nodiscard]] const std::vector<std::size_t>& candidates() const { return candidates_; }
-  /// Values of some functions at one point, less their offsets.
+  /// Evaluates some functions at one point, less their offsets.
   void evaluate(double t, const double* x, const std::vector<std::size_t>& which, std::vector<double>& values);
 
   [[nodiscard]] const std::vector<EventFunction>& functions() const { return mode_.functions; }
-  /// Rounding of a candidate: at the start of the step, or where rescale() was called last.
+  /// Finds the rounding of a candidate: at the start of the step, or where rescale() was called last.
   void rescale(double t, const double* x) { rescale(t, x, candidates_); }
   [[nodiscard]] double noise(std::size_t function) const { return levels_.noise[function]; }
-  /// d phi / dt of an exit along f (n_x), the field of its side; nullopt where it has no affine form, or is no more
-  /// than its rounding. Cost: the terms of the form.
+  /// Returns d phi / dt of an exit along f (n_x), the field of its side; nullopt where it has no affine form, or is no
+  /// more than its rounding. Cost: the terms of the form.
   [[nodiscard]] std::optional<double> exit_rate(std::size_t function, const std::vector<double>& f) const {
     return mode_.forms.has(function) ? mode_.forms.rate_along(function, f.data()) : std::nullopt;
   }
-  /// What the tolerances leave of it, at least its rounding.
+  /// Returns what the tolerances leave of it, at least its rounding.
   [[nodiscard]] double accuracy(std::size_t function) const { return levels_.accuracy[function]; }
-  /// Signs of the user functions in force, 0 where not known yet.
+  /// Returns the signs of the user functions in force, 0 where not known yet.
   [[nodiscard]] const std::vector<int>& user_signs() const { return user_.sign; }
-  /// Which of them vanish at the start of the next step.
+  /// Returns which of them vanish at the start of the next step.
   [[nodiscard]] const std::vector<bool>& user_zeros() const { return user_.vanishes; }
-  /// Behind an accepted step that ends at (t, x): zeros at its start are history, unknown signs are read. Returns
+  /// Settles an accepted step that ends at (t, x): zeros at its start are history, unknown signs are read. Returns
   /// whether there were such signs.
   bool settle(double t, const double* x);
-  /// Behind a jump: the signs of all user functions, 0 = not known, whether they vanish here, and with which orders (in
-  /// t; 1 without). Takes effect with the next enter().
+  /// Sets, behind a jump, the signs of all user functions, 0 = not known, whether they vanish here, and with which
+  /// orders (in t; 1 without). Takes effect with the next enter().
   void set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish,
                       const std::vector<int>& orders = {});
-  /// Time has passed since the user functions were at zero, or they have jumped.
+  /// Forgets user zeros: time has passed since the user functions were at zero, or they have jumped.
   void forget_user_zeros() { user_.forget_zeros(); }
-  /// Held guards of jumps are not searched, their releases are. Takes effect with the next enter().
+  /// Holds guards of jumps: they are not searched, their releases are. Takes effect with the next enter().
   void set_held(std::vector<HeldGuard> held, std::vector<HeldGuard> followers) {
     held_.guards = std::move(held);
     held_.followers = std::move(followers);
   }
-  /// The next enter() is at the end of a cell that was just entered there.
+  /// Tells that the next enter() is at the end of a cell that was just entered there.
   void entered_cell(const EventFunction& reached);
   /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.
   void set_user_sign(std::size_t function, int sign, double t, const double* x);

@@ -9,8 +9,8 @@ namespace saltus::event_integrator {
 
 inline int sign_of(double value) { return value > 0.0 ? 1 : value < 0.0 ? -1 : 0; }
 
-/// The sign to which a function that is zero at the start moves; 0 if it stays. By its values or, where these were not
-/// sampled, coefficients: of a multiple zero the first ones are roundings of the largest.
+/// Returns the sign to which a function that is zero at the start moves; 0 if it stays. By its values or, where these
+/// were not sampled, coefficients: of a multiple zero the first ones are roundings of the largest.
 template <class Values>
 int sign_behind_zero(const Values& values, double noise) {
   for (const double value : values) {
@@ -19,7 +19,7 @@ int sign_behind_zero(const Values& values, double noise) {
   return 0;
 }
 
-/// Whether the function is one of the kernel, not an exit of the mode.
+/// Returns whether the function is one of the kernel, not an exit of the mode.
 inline bool uses_phi(const EventFunction& function) {
   return function.kind == FunctionKind::surface || function.kind == FunctionKind::user ||
          function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower ||

@@ -51,8 +51,8 @@ void EventSearch::cross(std::size_t surface, const ModeState& state, double t, c
   special_ = inspected_;
 }
 
-/// Whether the mode has the same functions as the one that was entered last, but for their signs and what exits hold,
-/// if surfaces were crossed only.
+/// Returns whether the mode has the same functions as the one that was entered last, if surfaces were crossed only.
+/// Their signs and what exits hold may differ.
 bool EventSearch::may_flip(const ModeState& state) const {
   return mode_.flips && state.sliding == mode_.state.sliding && !state.higher && held_.nothing();
 }
@@ -146,8 +146,8 @@ void EventSearch::read_start(double t, const double* x) {
   }
 }
 
-/// The exit to a field that goes along the surface is 0 throughout the mode, but for its rounding and the errors of the
-/// dense output, which is not on the surface: it counts from where it is more than these.
+/// The exit to a field that goes along the surface is 0 throughout the mode. Only its rounding is left of it, and the
+/// errors of the dense output, which is not on the surface. It counts from where it is more than these.
 void EventSearch::limit_by_tangency(std::size_t i, double t, const double* x) {
   auto& function = mode_.functions[i];
   const bool is_below = function.kind == FunctionKind::exit_below;

@@ -141,8 +141,8 @@ void Locator::set_hit(const Hit& hit) {
   const auto& candidates = search_.candidates();
   place_ = static_cast<std::size_t>(std::lower_bound(candidates.begin(), candidates.end(), hit.function) -
                                     candidates.begin());
-  // What rounding has left of the function where the step starts is no part of a zero far behind: a row of laps of one
-  // step each would hand it on, and add what is left of every event.
+  // What rounding has left of the function where the step starts is no part of a zero far behind: a row of cycles of
+  // one step each would hand it on, and add what is left of every event.
   left_ = 0.0;
   const EventFunction& function = search_.functions()[hit.function];
   if (function.offset == 0.0) return;

@@ -11,14 +11,15 @@
 
 namespace saltus::event_integrator {
 
-/// A step start: everything a step from it needs.
+/// Holds everything a step from it needs.
 struct StepStart {
   double t = 0.0;
   const double* x = nullptr;
   const double* slope = nullptr;  ///< f(t, x)
 };
 
-/// An event reached from a step start: x on the sliding surfaces of the mode, and all functions that vanish there.
+/// Holds an event reached from a step start: x on the sliding surfaces of the mode, and all functions that vanish
+/// there.
 struct Located {
   double t = 0.0;
   std::vector<double> x;
@@ -34,14 +35,13 @@ class Locator {
   Locator(ode::Method method, int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
           const ode::Tolerances& tolerances);
 
-  /// The event of a hit on the dense output of the step (start, dense.h).
-  /// The step is retaken to the zero of the interpolant, so the order of the method is kept. What is then left is moved
-  /// along the field where it is so little that two stages are as good as the method; otherwise Newton in t with the
-  /// slope of the interpolant, safeguarded by the bracket of signs seen, retakes the step. Of several functions the
-  /// earliest zero is located; those that vanish with it to rounding are one event.
+  /// Locates the event of a hit on the dense output of the step (start, dense.h). The step is retaken to the zero of
+  /// the interpolant, so the order of the method is kept. What is then left is moved along the field where it is so
+  /// little that two stages are as good as the method; otherwise Newton in t with the slope of the interpolant,
+  /// safeguarded by the bracket of signs seen, retakes the step. Of several functions the earliest zero is located;
+  /// those that vanish with it to rounding are one event.
   /// @return nullptr if the right-hand side is undefined up to the event, or the function does not get to zero but
-  /// touches
-  ///         it (shorten the step); valid until the next call.
+  ///         touches it (shorten the step); valid until the next call.
   /// Cost: usually one step and one evaluation of f.
   [[nodiscard]] const Located* locate(const StepStart& start, const ode::DenseStep& dense, Hit hit);
 

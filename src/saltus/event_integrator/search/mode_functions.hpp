@@ -15,13 +15,13 @@ enum class FunctionKind {
   surface,      ///< psi_j of a surface that is not in the mode
   nested,       ///< psi_j nested around sliding surfaces, in one of the regions that meet there
   exit_below,   ///< the lower field of a sliding surface stops arriving: alpha = 0
-  exit_above,   ///< … the upper one: alpha = 1
+  exit_above,   ///< the upper field of a sliding surface stops arriving: alpha = 1
   loss,         ///< the sliding selection ceases to exist: its root and another one coalesce
   instability,  ///< the sliding selections of coupled surfaces lose their stability, (4.12) of [guglielmi2022]
   user,         ///< expression or guard of [[events]], guard of [[jumps]]
   release,      ///< what presses a held guard of [[jumps]]
   cell_upper,   ///< argument of floor, a table or a sampled input less the upper end of its cell
-  cell_lower,   ///< … less the lower end
+  cell_lower,   ///< such an argument less the lower end of its cell
 };
 
 struct EventFunction {
@@ -33,11 +33,11 @@ struct EventFunction {
   int zero_order = 0;   ///< of the zero at the start of the next step (left behind by an event), 0 = none
   double offset = 0.0;  ///< value left at that zero by rounding; subtracted until the function has moved away
 
-  /// Whether a value, less the offset, is far enough from that zero not to be mistaken for it.
+  /// Returns whether a value, less the offset, is far enough from that zero not to be mistaken for it.
   [[nodiscard]] bool has_left(double value) const { return sign * value > 2.0 * std::abs(offset); }
 };
 
-/// What values of some functions are made of: event functions of the kernel, in the regions of nested ones, exits,
+/// Says what values of some functions are made of: event functions of the kernel, in the regions of nested ones, exits,
 /// and what presses held guards. The others are thresholds.
 struct FunctionParts {
   bool phi = false;
@@ -46,7 +46,7 @@ struct FunctionParts {
   bool pressure = false;
 };
 
-/// The functions of one mode; a later one with the same sliding set can use them.
+/// Holds the functions of one mode; a later one with the same sliding set can use them.
 struct ModeFunctions {
   explicit ModeFunctions(std::size_t states) : forms(states) {}
 
@@ -63,7 +63,7 @@ struct ModeFunctions {
   bool flips = false;           ///< surfaces and plain exits only: crossings change little
   std::vector<bool> prefilter;  ///< five samples may show that the function stays away from zero
 
-  /// Whether a form of one state stands for function i wherever it is evaluated.
+  /// Returns whether a form of one state stands for function i wherever it is evaluated.
   [[nodiscard]] bool is_threshold(std::size_t i) const {
     const auto kind = functions[i].kind;
     return (kind == FunctionKind::surface || kind == FunctionKind::user) && forms.is_threshold(i);
@@ -74,12 +74,12 @@ struct ModeFunctions {
   void turn(std::size_t surface, const ModeState& next, int zero_order);
 };
 
-/// The last modes, with different sliding sets.
+/// Holds the last modes, with different sliding sets.
 class KeptModes {
  public:
-  /// The one with this sliding set; nullptr where it is not kept.
+  /// Returns the one with this sliding set; nullptr where it is not kept.
   [[nodiscard]] ModeFunctions* find(const std::vector<int>& sliding);
-  /// A copy of a mode, in place of the oldest where there are many.
+  /// Keeps a copy of a mode, in place of the oldest where there are many.
   void keep(const ModeFunctions& mode);
 
  private:

@@ -13,7 +13,7 @@
 
 namespace saltus::event_integrator {
 
-/// Signs of user functions, kept over changes of mode.
+/// Holds signs of user functions, kept over changes of mode.
 struct UserSigns {
   std::vector<int> sign;           ///< 0 where not known yet
   std::vector<bool> vanishes;      ///< at the start of the next step
@@ -25,7 +25,7 @@ struct UserSigns {
   int read(std::size_t user, double value, double noise);
 };
 
-/// Guards of jumps that are held, and what presses them.
+/// Holds guards of jumps that are held, and what presses them.
 struct HeldGuards {
   std::vector<HeldGuard> guards, followers;
   std::vector<double> pressure;
@@ -34,29 +34,29 @@ struct HeldGuards {
   [[nodiscard]] bool holds(int function) const;
 };
 
-/// One of the regions that meet at the sliding surfaces inside nested functions.
+/// Holds one of the regions that meet at the sliding surfaces inside nested functions.
 struct NestedCorner {
   std::vector<double> alpha;  ///< its selections
   std::vector<double> phi;
   evaluation::AffineRows rows;
 };
 
-/// Values and scales of all functions of the kernel, and their values in the regions of nested ones.
+/// Holds values and scales of all functions of the kernel, and their values in the regions of nested ones.
 struct KernelValues {
   std::vector<double> phi, magnitude, slope;
   std::vector<NestedCorner> corners;  ///< of the mode
 };
 
-/// By function: its rounding, and what the tolerances leave of it, which is at least that.
+/// Holds, for each function, its rounding, and what the tolerances leave of it, which is at least that.
 struct FunctionLevels {
   std::vector<double> noise, accuracy;
 
   void reset(std::size_t functions);
-  /// Levels that are not finite are 0.
+  /// Sets the levels; those that are not finite are 0.
   void set(std::size_t function, double rounding, double wanted);
 };
 
-/// Bounds of the states over a step.
+/// Holds bounds of the states over a step.
 struct StepRange {
   std::vector<double> low, high;
   std::vector<double> wide_low, wide_high;  ///< around it
@@ -64,10 +64,10 @@ struct StepRange {
   bool known = false;  ///< `bounds` are those of the dense output, before that is made
 
   void resize(std::size_t states);
-  /// Of the last attempt; false where there are none.
+  /// Reads the bounds of the last attempt; false where there are none.
   [[nodiscard]] bool read(const ode::Stepper& stepper);
   void read(const ode::DenseStep& step);
-  /// As wide again as the step moves, or a thousand tolerances; valid until the next call.
+  /// Returns the bounds, wider by as much as the step moves, or by a thousand tolerances; valid until the next call.
   [[nodiscard]] StepBounds widened(const ode::Tolerances& tolerances);
 };
 

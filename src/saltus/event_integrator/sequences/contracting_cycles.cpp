@@ -13,8 +13,8 @@ namespace {
 /// Of fewer events no power can be told.
 constexpr long fewest_shrinking = 64;
 
-/// What to smooth such laps with: a layer that is far wider than they are now has far fewer of them outside. Below a
-/// hundred thousandth of the function's size a run takes as many steps as there would be laps.
+/// What to smooth such cycles with: a layer that is far wider than they are now has far fewer of them outside. Below a
+/// hundred thousandth of the function's size a run takes as many steps as there would be cycles.
 std::string resolving_layer(double farthest, double size, bool smoothed) {
   constexpr double wider = 100.0, least = 1e-5;
   const double wanted = std::max(wider * farthest, least * size);
@@ -36,10 +36,10 @@ double ContractingCycles::last_interval(long count) const {
   return mean_interval(count - 1 - (count - 1) / 8, (count - 1) / 8);
 }
 
-/// How many of the events of the run so far are in laps of which more is resolved than what changes from one to the
-/// next. Between two zeros psi gets about as far as its rate times a quarter of their distance T, and a rounding less
-/// or more of it makes the next lap longer or shorter by as large a part; of laps like k^-p only p/k of one is missing
-/// in the next. The rate, and with it how far psi gets, goes with T: T^2.
+/// Returns how many of the events of the run so far are in resolved cycles. Of these more is resolved than what changes
+/// from one to the next. Between two zeros psi gets about as far as its rate times a quarter of their distance T. A
+/// rounding less or more of it makes the next cycle longer or shorter by as large a part. Of cycles like k^-p only p/k
+/// of one is missing in the next. The rate, and with it how far psi gets, goes with T: T^2.
 long ContractingCycles::resolved_events(double farthest, double rounding) const {
   long count = recorder_.events();
   const double last = last_interval(count);
@@ -52,8 +52,8 @@ long ContractingCycles::resolved_events(double farthest, double rounding) const 
 /// or are too few to tell.
 std::optional<double> ContractingCycles::exponent_of(long n) const {
   if (n < fewest_shrinking) return std::nullopt;
-  // Means over eighths, each twice as far from the start as the one before: whole laps and others alike. Their middles
-  // are (first + half an eighth), so that p follows from two of them.
+  // Means over eighths, each twice as far from the start as the one before: whole cycles and others alike. Their
+  // middles are (first + half an eighth), so that p follows from two of them.
   const long eighth = (n - 1) / 8;
   const auto middle = [&](long first) { return static_cast<double>(first) + 0.5 * static_cast<double>(eighth); };
   const long firsts[] = {eighth, 3 * eighth, 7 * eighth};
@@ -89,14 +89,14 @@ bool ContractingCycles::has_one_rate(int surface) {
 std::string ContractingCycles::describe() {
   long events = recorder_.events();
   if (events < fewest_shrinking) return {};
-  constexpr long longest_lap = 8;
+  constexpr long longest_cycle = 8;
   std::string names;
   double farthest = 0.0, rounding = 0.0;
   bool smoothed = false;  // the surfaces are edges of layers
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     const auto& function = switching_context_.system.switching[at(j)];
     if (function.role != model::SwitchingRole::listed || here_.state.mode[at(j)] == 0) continue;
-    if (!recorder_.switched_lately(j, longest_lap) || !has_one_rate(j)) continue;
+    if (!recorder_.switched_lately(j, longest_cycle) || !has_one_rate(j)) continue;
     smoothed = smoothed || function.continuous;
     names += (names.empty() ? "'" : "', '") + function.name;
     const Rate rate = rates_.here(j);
@@ -115,8 +115,8 @@ std::string ContractingCycles::describe() {
                                         last_interval(events) * static_cast<double>(events) / (*exponent - 1.0))
                       : std::string("they have no limit, and their number grows without bound");
   return fmt::format(
-      "laps of {} shrink like the power -{:.2g} of their number (relative degree 2: the derivative of the function is "
-      "the same on both sides, so that nothing slides): {}; give the switch a hysteresis, use {}, or start "
+      "cycles of {} shrink like the power -{:.2g} of their number (relative degree 2: the derivative of the function "
+      "is the same on both sides, so that nothing slides): {}; give the switch a hysteresis, use {}, or start "
       "at rest where function and derivative are 0, which is held",
       names, *exponent, limit, resolving_layer(farthest, rounding / rounding_unit, smoothed));
 }

@@ -20,7 +20,8 @@ class ContractingCycles {
         recorder_(recorder),
         rates_(kernel_, here) {}
 
-  /// What has ended the run, where that is a sequence that contracts like a power of its number; empty elsewhere.
+  /// Returns what has ended the run, where that is a sequence that contracts like a power of its number; empty
+  /// elsewhere.
   [[nodiscard]] std::string describe();
 
  private:

@@ -31,14 +31,14 @@ void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps, cons
     }
   }
   series_.add(here_.t, executed_, here_.x);
-  if (!cascade.resting().empty()) series_.clear_laps();
+  if (!cascade.resting().empty()) series_.clear_cycles();
 }
 
 void JumpAccumulation::end(const SeriesLimit& limit) {
   if (limit.kind == SeriesKind::chattering) {
     series_.clear();
   } else {
-    series_.clear_laps();
+    series_.clear_cycles();
   }
 }
 

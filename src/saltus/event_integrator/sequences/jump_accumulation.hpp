@@ -17,14 +17,14 @@ class JumpAccumulation {
   /// Notes the jumps of a cascade: when, where to, and which guards were at zero.
   void note(const JumpCascade& cascade, const Jumps& jumps, const std::vector<int>& user_signs);
   [[nodiscard]] std::optional<SeriesLimit> limit() const { return series_.limit(shortest_cycle_); }
-  /// Behind a limit the sequence is over, but for what chatters.
+  /// Ends the sequence behind a limit, but for what chatters.
   void end(const SeriesLimit& limit);
   void clear() { series_.clear(); }
-  /// How long the last cycle of a contracting sequence was.
-  [[nodiscard]] std::optional<double> last_cycle() const { return series_.last_lap(); }
-  /// The guard that was at zero when a jump was executed last; nullopt if there was none.
+  /// Returns how long the last cycle of a contracting sequence was.
+  [[nodiscard]] std::optional<double> last_cycle() const { return series_.last_cycle(); }
+  /// Returns the guard that was at zero when a jump was executed last; nullopt if there was none.
   [[nodiscard]] std::optional<HeldGuard> last_guard(int jump) const { return last_guard_[at(jump)]; }
-  /// Its |dg/dt| then.
+  /// Returns the |dg/dt| of that guard then.
   [[nodiscard]] double last_rate(int jump) const { return last_rate_[at(jump)]; }
 
  private:

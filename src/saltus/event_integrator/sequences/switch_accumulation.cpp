@@ -56,9 +56,9 @@ void SwitchAccumulation::note_rates(const std::vector<double>& alpha_before) {
     const Rate leaving = rates_.here(surface_of(label));
     const double rate = std::max(std::abs(arriving.value), std::abs(leaving.value));
     // As for guards of jumps: between two zeros psi gets about as far as its rate times a quarter of the cycle.
-    // Shallower cycles are lost in the rounding of psi, or in ten times the atol that follows the cycles. Not in rtol
-    // times the terms of psi: every switch puts psi back to 0, and over cycles far shorter than the steps that rtol
-    // allows the error of a step is far smaller than that.
+    // Shallower cycles are lost in the rounding of psi, or in ten times the atol that follows the cycles. They are not
+    // lost in rtol times the terms of psi, as every switch puts psi back to 0. Cycles are far shorter than the steps
+    // that rtol allows, and over them the error of a step is far smaller than that.
     const double unresolved =
         std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude, 10.0 * tolerances_.step().atol * leaving.slope);
     double& shortest = shortest_[at(label)];
@@ -81,7 +81,7 @@ void SwitchAccumulation::limit_tolerances(Roots roots) {
     }
     return;
   }
-  const auto cycle = cycles_.closed_lap();
+  const auto cycle = cycles_.closed_cycle();
   if (!cycle) return;
   if (first_ == 0.0) first_ = *cycle;
   closed_ = *cycle;
@@ -97,7 +97,7 @@ void SwitchAccumulation::end_if_over(Roots roots) {
 }
 
 std::optional<SeriesLimit> SwitchAccumulation::dense_limit() const {
-  const auto cycle = cycles_.last_lap();
+  const auto cycle = cycles_.last_cycle();
   if (!cycle) return std::nullopt;
   // Cycles that are not longer than this are extrapolated whatever remains.
   return cycles_.limit(std::vector<double>(shortest_.size(), 2.0 * *cycle));

@@ -13,7 +13,7 @@
 
 namespace saltus::event_integrator {
 
-/// A surface with the mode that it changes to, as one number: what has to repeat from cycle to cycle.
+/// Returns a surface with the mode that it changes to, as one number: what has to repeat from cycle to cycle.
 inline int label_of(int surface, int mode) { return 3 * surface + mode + 1; }
 inline int surface_of(int label) { return label / 3; }
 
@@ -30,29 +30,31 @@ class SwitchAccumulation {
   void clear() { cycles_.clear(); }
   /// Notes a switch from `before` to the mode of the position.
   void note(const ModeState& before);
-  /// The same for one listed surface.
+  /// Does the same for one listed surface.
   void note(const SurfaceSwitch& change);
-  /// Behind a switch: cycles that contract by q have psi contract by q or, where psi is tangent to its surface at the
-  /// limit, q^2: an absolute tolerance that did not follow would end them in noise long before their limit.
+  /// Limits the tolerances behind a switch. Cycles that contract by q have psi contract by q or, where psi is tangent
+  /// to its surface at the limit, q^2: an absolute tolerance that did not follow would end them in noise long before
+  /// their limit.
   /// @param roots  whether fields have roots of surfaces that they end at: their tolerances go with these cycles
   enum class Roots { none, ending };
   void limit_tolerances(Roots roots);
-  /// Behind a step: without a switch for many cycles their sequence has ended before it had a limit, as spirals do in
-  /// the layers of a regularisation. What comes has the tolerances of the run.
+  /// Ends it behind a step if it is over. Without a switch for many cycles their sequence has ended before it had a
+  /// limit, as spirals do in the layers of a regularisation. What comes has the tolerances of the run.
   void end_if_over(Roots roots);
-  /// The duration of the last cycle that was closed, in a sequence.
+  /// Returns the duration of the last cycle that was closed, in a sequence.
   [[nodiscard]] std::optional<double> cycle() const { return empty() ? std::nullopt : std::optional(closed_); }
 
-  /// The limit of the switches up to here, if there is one.
+  /// Returns the limit of the switches up to here, if there is one.
   [[nodiscard]] std::optional<SeriesLimit> limit() const { return cycles_.limit(shortest_); }
   [[nodiscard]] std::optional<SeriesLimit> nearly() const { return cycles_.nearly(); }
-  /// The same whatever remains: cycles that hardly contract are too many for their time before a limit is asked for.
+  /// Does the same whatever remains: cycles that hardly contract are too many for their time before a limit is asked
+  /// for.
   [[nodiscard]] std::optional<SeriesLimit> dense_limit() const;
-  /// A switch of this surface cannot be decided, in a cycle of this duration: cycles that are not longer than the
-  /// rounding of psi resolves have their limit where they are.
+  /// Returns the limit where a switch of this surface cannot be decided, in a cycle of this duration. Cycles that are
+  /// not longer than the rounding of psi resolves have their limit where they are.
   [[nodiscard]] std::optional<SeriesLimit> unresolved(int surface, int mode, double duration) const;
-  /// Whether limits follow each other at once, cycles of rounding between them: the solution stays where the switches
-  /// have come together (sliding of second order on some surfaces), and no mode found there is that.
+  /// Returns whether limits follow each other at once, cycles of rounding between them: the solution stays where the
+  /// switches have come together (sliding of second order on some surfaces), and no mode found there is that.
   [[nodiscard]] bool limits_repeat(double t);
 
  private:

@@ -16,8 +16,8 @@ class ExitForms {
 
   ExitRows several;  ///< where several independent surfaces are slid on
 
-  /// L psi_surface as a row for these selections, null where it is none; valid until the next call. What cells and
-  /// references change is not known again, and neither is what is asked for with `motion` null.
+  /// Returns L psi_surface as a row for these selections, null where it is none; valid until the next call. What cells
+  /// and references change is not known again, and neither is what is asked for with `motion` null.
   [[nodiscard]] const evaluation::AffineRow* of(int surface, const evaluation::FixedState& fixed,
                                                 const std::vector<double>& alpha, const void* motion);
 

@@ -7,14 +7,14 @@
 
 namespace saltus::event_integrator {
 
-/// L psi_j along f with alpha_j = 0 or 1, as a row: it depends on few other selections, and is made anew where one of
-/// these has changed.
+/// Makes L psi_j along f with alpha_j = 0 or 1, as a row. It depends on few other selections, and is made anew where
+/// one of these has changed.
 class ExitRows {
  public:
   explicit ExitRows(const evaluation::ModelKernel& kernel) : kernel_(kernel) {}
 
-  /// `alpha`: selections of the mode, of which that of the surface is replaced by `side`. Null where it is no row.
-  /// Valid until the next call for the same surface and side.
+  /// Returns the row; null where it is none. `alpha` are the selections of the mode, of which that of the surface is
+  /// replaced by `side`. Valid until the next call for the same surface and side.
   [[nodiscard]] const evaluation::AffineRow* of(int surface, double side, evaluation::FixedState fixed,
                                                 const std::vector<double>& alpha);
 

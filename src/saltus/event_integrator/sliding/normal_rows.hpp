@@ -9,12 +9,12 @@
 
 namespace saltus::event_integrator {
 
-/// The entries of a gradient that are not 0, by ascending column.
+/// Holds the entries of a gradient that are not 0, by ascending column.
 struct SparseRow {
   std::vector<std::size_t> column;
   std::vector<double> value;
 
-  /// The only column, or -1.
+  /// Returns the only column, or -1.
   [[nodiscard]] int only() const { return column.size() == 1 ? static_cast<int>(column.front()) : -1; }
   [[nodiscard]] double dot(const std::vector<double>& f, double sum) const {
     for (std::size_t k = 0; k < column.size(); ++k) sum += value[k] * f[column[k]];
@@ -22,8 +22,8 @@ struct SparseRow {
   }
 };
 
-/// Rows that share a column, directly or through others, are solved together; all others by themselves. Cost of a
-/// solution: the entries of all rows, and for each component of c > 1 rows c^3.
+/// Solves the normal equations of rows. Rows that share a column, directly or through others, are solved together; all
+/// others by themselves. Cost of a solution: the entries of all rows, and for each component of c > 1 rows c^3.
 class NormalRows {
  public:
   void resize(std::size_t rows, std::size_t columns);
@@ -31,9 +31,9 @@ class NormalRows {
   void set(std::size_t row, const std::vector<double>& dense);
   [[nodiscard]] const SparseRow& operator[](std::size_t row) const { return rows_[row]; }
 
-  /// z from J J^T z = r, in place; false where the rows of a component depend on each other.
+  /// Solves J J^T z = r for z, in place; false where the rows of a component depend on each other.
   [[nodiscard]] bool solve(Eigen::VectorXd& residual);
-  /// J^T z into `sum` (columns), row after row.
+  /// Puts J^T z into `sum` (columns), row after row.
   void transposed_times(const Eigen::VectorXd& z, std::vector<double>& sum) const;
 
  private:

@@ -12,12 +12,12 @@
 
 namespace saltus::event_integrator {
 
-/// Rows of which some depend on others: the normal equations of those that do not.
+/// Solves the normal equations of rows of which some depend on others, for those that do not.
 class IndependentRows {
  public:
   std::vector<Eigen::Index> rows;  ///< ascending; empty = all
 
-  /// residual = (J J^T)^-1 residual of these rows of J, 0 of the others; false where they depend on each other.
+  /// Sets residual = (J J^T)^-1 residual of these rows of J, 0 of the others; false where they depend on each other.
   [[nodiscard]] bool solve(const Eigen::MatrixXd& gradients, Eigen::VectorXd& residual);
 
  private:
@@ -26,7 +26,7 @@ class IndependentRows {
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 
-/// J by rows, d psi_I/dt beside it; gradients that no mode changes are kept.
+/// Holds J by rows, d psi_I/dt beside it; gradients that no mode changes are kept.
 class SurfaceRows {
  public:
   explicit SurfaceRows(std::size_t surfaces) : known_(surfaces) {}
@@ -42,17 +42,17 @@ class SurfaceRows {
   IndependentRows independent;
 
   void resize(std::size_t m, std::size_t states, bool with_dense);
-  /// A gradient that was the same in all modes so far.
+  /// Takes a gradient that was the same in all modes so far.
   [[nodiscard]] bool take_known(std::size_t row, std::size_t surface);
-  /// `keep`: from now on it is known.
+  /// Takes a gradient; with `keep` it is known from now on.
   void take(std::size_t row, std::size_t surface, const std::vector<double>& gradient, bool constant, bool keep);
-  /// grad psi . f + d psi/dt
+  /// Returns grad psi . f + d psi/dt.
   [[nodiscard]] double velocity(std::size_t row, const std::vector<double>& f) const {
     const auto r = static_cast<Eigen::Index>(row);
     if (const int only = coordinate[row]; only >= 0) return normal[row].value.front() * f[at(only)] + rates[r];
     return normal[row].dot(f, rates[r]);
   }
-  /// residual = (J J^T)^-1 residual; false where rows depend on each other.
+  /// Sets residual = (J J^T)^-1 residual; false where rows depend on each other.
   [[nodiscard]] bool solve_normal_equations();
 
  private:

@@ -13,26 +13,26 @@
 
 namespace saltus::event_integrator {
 
-/// LocalSteps keeps the step in which a surface is crossed: the states that the selection moves, and as many around
-/// them as feel that within the tolerance, are integrated from the switch to its end, along the dense output of the
-/// others; these stay on it. Where a selection moves nothing beside its own rows that is exact, but for the error of
-/// the dense output. Source: docs/adr/0025-local-steps.md.
+/// LocalSteps keeps the step in which a surface is crossed. It integrates the states that the selection moves, and as
+/// many around them as feel that within the tolerance. It does so from the switch to the end of the step, along the
+/// dense output of the others, which stay on it. Where a selection moves nothing beside its own rows that is exact, but
+/// for the error of the dense output. Source: docs/adr/0025-local-steps.md.
 class LocalSteps {
  public:
   LocalSteps(const IntegrationOptions& options, const evaluation::ModelKernel& kernel,
              const StepTolerances& tolerances);
 
-  /// The slope behind the surface from that before it; false where it is not known to be in few rows.
+  /// Finds the slope behind the surface from that before it; false where it is not known to be in few rows.
   [[nodiscard]] bool slope_behind(int surface, double t, const double* x, const evaluation::FieldConstants& behind,
                                   const std::vector<double>& before, std::vector<double>& slope);
-  /// The solution behind the surface, which is crossed in the region of `behind` at (t, x), a point of the step: to
-  /// the end of that, or to where the error of the part allows. `error` is that of the step of all states. Null where
-  /// most of the states would have to be integrated. Stays as it is until the next call. Cost: that of the part, and
-  /// some operations for each state.
+  /// Returns the solution behind the surface, which is crossed in the region of `behind` at (t, x), a point of the
+  /// step: to the end of that, or to where the error of the part allows. `error` is that of the step of all states.
+  /// Null where most of the states would have to be integrated. Stays as it is until the next call. Cost: that of the
+  /// part, and some operations for each state.
   [[nodiscard]] const ode::DenseStep* behind(int surface, double t, const std::vector<double>& x,
                                              const ode::DenseStep& step, double error,
                                              const evaluation::FieldConstants& behind);
-  /// The length of the next step of all states, by the error of this one.
+  /// Returns the length of the next step of all states, by the error of this one.
   [[nodiscard]] double next_length() const { return next_length_; }
 
  private:

@@ -24,51 +24,51 @@ class StepAttempt {
 
   [[nodiscard]] ode::Stepper& stepper() { return stepper_; }
   [[nodiscard]] const ode::Stepper& stepper() const { return stepper_; }
-  /// The length that is tried next.
+  /// Returns the length that is tried next.
   [[nodiscard]] double length() const { return length_; }
   void set_length(double h) { length_ = h; }
-  /// The next step begins, of this length at most.
+  /// Begins the next step, of this length at most.
   void begin(double h) {
     length_ = h;
     was_undefined_ = false;
   }
   void note_undefined() { was_undefined_ = true; }
-  /// Whether the right-hand side was undefined in an attempt at this step.
+  /// Returns whether the right-hand side was undefined in an attempt at this step.
   [[nodiscard]] bool was_undefined() const { return was_undefined_; }
-  /// One attempt that ends at t_new; no dense output is made yet.
+  /// Takes one attempt that ends at t_new; no dense output is made yet.
   ode::Attempt take(double t_new);
-  /// The dense output of the last attempt, made at most once; returns whether it is finite.
+  /// Makes the dense output of the last attempt, at most once; returns whether it is finite.
   bool make_dense() { return dense_is_last_ = dense_is_last_ || remake_dense(); }
-  /// The same for an attempt that somebody else has taken with the stepper.
+  /// Does the same for an attempt that somebody else has taken with the stepper.
   bool remake_dense();
   [[nodiscard]] const ode::DenseStep& dense() const { return dense_; }
-  /// The error norm of the last attempt over the continuous states.
+  /// Returns the error norm of the last attempt over the continuous states.
   [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }
-  /// The same, looked at twice where the length of the step was right for another field.
+  /// Does the same, looked at twice where the length of the step was right for another field.
   [[nodiscard]] double confirmed_error();
-  /// What that was of the last attempt that was no part of one before.
+  /// Returns what that was of the last attempt that was no part of one before.
   [[nodiscard]] double last_error() const { return last_error_; }
-  /// The factor of the next length behind an attempt whose error was too large.
+  /// Returns the factor of the next length behind an attempt whose error was too large.
   [[nodiscard]] double rejected(double error) { return control_.rejected(error); }
   void follow_method() { control_.follow(stepper_.method()); }
 
-  /// The last attempt, of length h, was accepted, and the position is at its end.
+  /// Notes that the last attempt, of length h, was accepted, and the position is at its end.
   void accepted(double h);
-  /// What the control proposes behind it.
+  /// Returns what the control proposes behind it.
   [[nodiscard]] double proposed(double h) { return h * control_.accepted(error_norm()); }
-  /// Where the explicit method first looked out of place.
+  /// Watches where the explicit method first looked out of place.
   void watch_stiffness();
   [[nodiscard]] std::optional<double> stiff_at() const { return stiff_at_; }
 
-  /// The field has become another one.
+  /// Begins a mode: the field has become another one.
   void begin_mode();
-  /// The control begins anew behind an event; `repeats`: steps may be like ones before.
+  /// Begins the control anew behind an event; `repeats`: steps may be like ones before.
   enum class Steps { may_repeat, are_new };
   void restart_control(Steps steps);
-  /// A first step from the position, by the field of the continuous states alone.
+  /// Returns a first step from the position, by the field of the continuous states alone.
   [[nodiscard]] double initial_step();
   [[nodiscard]] StepMemory& memory() { return memory_; }
-  /// The longest step since the control began.
+  /// Returns the longest step since the control began.
   [[nodiscard]] double longest() const { return longest_; }
 
  private:

@@ -12,16 +12,18 @@ namespace saltus::event_integrator {
 /// without this a switch costs several rejected steps. Cost: O(n_psi) per switch.
 class StepMemory {
  public:
-  /// The solution goes on in `mode` from t; any mode before ends here.
+  /// Goes on in `mode` from t; any mode before ends here.
   /// @return the step to start with: the remembered one, or `proposed`
   [[nodiscard]] double change(const std::vector<int>& mode, double t, double proposed);
-  /// The same where the mode differs from the one before in this surface only. Cost: one comparison of modes.
+  /// Does the same where the mode differs from the one before in this surface only. Cost: one comparison of modes.
   [[nodiscard]] double change(const std::vector<int>& mode, std::size_t surface, double t, double proposed);
-  /// Mark of the mode that differs from the one that lasts in this surface: different modes rarely have the same.
+  /// Returns a mark of the mode that differs from the one that lasts in this surface: different modes rarely have the
+  /// same.
   [[nodiscard]] std::size_t mark_with(std::size_t surface, int mode) const;
-  /// Behind each accepted step: what the step control proposes for the next one.
+  /// Notes, behind each accepted step, what the step control proposes for the next one.
   void accepted(double proposed);
-  /// Whether the next step is the first one of its mode as far as is remembered: its length comes from another field.
+  /// Returns whether the next step is the first one of its mode as far as is remembered: its length comes from another
+  /// field.
   [[nodiscard]] bool is_guess() const { return is_new_ && !first_accepted_; }
 
  private:

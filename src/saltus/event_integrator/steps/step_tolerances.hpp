@@ -25,13 +25,13 @@ class StepTolerances {
 
   [[nodiscard]] const ode::Tolerances& step() const { return step_; }
   [[nodiscard]] const ode::Tolerances& mode() const { return mode_; }
-  /// A mode begins here, maybe inside of layers. Roots of the mode before are none of it.
+  /// Begins a mode here, maybe inside of layers. Roots of the mode before are none of it.
   void begin_mode(const evaluation::ModelKernel& kernel, const ThinLayers& layers, const Position& here);
-  /// From now on a reason leaves these parts, in (0, 1].
+  /// Limits what a reason leaves from now on to these parts, in (0, 1].
   void limit(Reason reason, const ode::Tolerances& parts);
   void lift(Reason reason) { limit(reason, unlimited); }
   [[nodiscard]] const ode::Tolerances& part(Reason reason) const { return parts_[static_cast<std::size_t>(reason)]; }
-  /// The part of rtol that doubles carry of a state, several hundred times.
+  /// Returns the part of rtol that doubles carry of a state, several hundred times.
   [[nodiscard]] double smallest_part() const { return 1e-13 / mode_.rtol; }
 
  private:

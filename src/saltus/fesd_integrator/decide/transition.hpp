@@ -16,7 +16,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// A set that continues the solution, with the selections of its projected field.
+/// Holds a set that continues the solution, with the selections of its projected field.
 struct Continuation {
   ActiveSet set;
   std::vector<double> selections;
@@ -24,7 +24,7 @@ struct Continuation {
   bool decided = true;     ///< whether there are no others that were not looked for
 };
 
-/// What is known of a point where a set ended.
+/// Holds what is known of a point where a set ended.
 struct Decision {
   double t = 0.0;
   std::span<const double> x;
@@ -37,14 +37,14 @@ struct Decision {
   int ended = -1;
 };
 
-/// All sets that continue a solution from a point. Of the functions that are zero there, every pattern of signs and
-/// sliding (every set of active regions) is asked: with the selections of its projected field, do its signs hold just
-/// behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a short
-/// element does, or a longer one where psi is within its rounding behind that. A side that the solution does not get
-/// to, as psi stays at zero, is no other continuation than sliding with the selections of that side. Functions that do
-/// not influence each other are enumerated one by one. Surfaces whose gradients depend on each other, with selections
-/// that enter additively, are not enumerated: a complementarity problem says which are slid on and which are left [ADR
-/// 20]; where it leaves that open, the one just behind the point does. In a system of some size
+/// Finds all sets that continue a solution from a point. Of the functions that are zero there, every pattern of signs
+/// and sliding (every set of active regions) is asked: with the selections of its projected field, do its signs hold
+/// just behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a
+/// short element does, or a longer one where psi is within its rounding behind that. The solution may not get to a
+/// side, as psi stays at zero. That is no other continuation than sliding with the selections of that side. Functions
+/// that do not influence each other are enumerated one by one. Surfaces whose gradients depend on each other, with
+/// selections that enter additively, are not enumerated: a complementarity problem says which are slid on and which are
+/// left [ADR 20]; where it leaves that open, the one just behind the point does. In a system of some size
 /// (discretization::StagePattern) only functions that influence the one whose sign ended are asked, and those whose
 /// conditions do not clearly hold; the others slide on. Where nothing continues so, all are asked. Of more functions
 /// than are enumerated those slide on that slid before and did not end; whether others continue the solution, too, is
@@ -56,12 +56,12 @@ class Transition {
  public:
   Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver);
 
-  /// Empty if nothing continues. Cost: 3^m evaluations for m functions that influence each other, at most
+  /// Returns them; empty if nothing continues. Cost: 3^m evaluations for m functions that influence each other, at most
   /// `most_patterns`.
   [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision);
-  /// Of the last decision: the modes where everything that is zero there slides, or is active.
+  /// Returns, of the last decision, the modes where everything that is zero there slides, or is active.
   [[nodiscard]] const std::vector<int>& modes_at_zero() const { return modes_at_zero_; }
-  /// Whether the indicators of regions were finite there; nothing continues where they are not.
+  /// Returns whether the indicators of regions were finite there; nothing continues where they are not.
   [[nodiscard]] bool finite() const { return finite_; }
 
  private:
@@ -136,7 +136,7 @@ class Transition {
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
   std::vector<int> kept_;  ///< functions that slide on unasked
-  bool depends_ = false;   ///< whether a group of the decision in hand is dependent
+  bool depends_ = false;   ///< whether a group of the current decision is dependent
   SelectionMargins margins_;
   bool finite_ = true;
   std::vector<double> rate_, size_, noise_;

@@ -11,20 +11,20 @@
 
 namespace saltus::fesd_integrator {
 
-/// Selections first ... first + count - 1 belong together (reformulation::DcsPart, without its CasADi).
+/// Names selections first to first + count - 1, which belong together (reformulation::DcsPart, without its CasADi).
 struct Part {
   bool simplex = false;  ///< Stewart's form: they sum up to 1; else each is a step selection by itself
   int first = 0;
   int count = 0;
 };
 
-/// A selection that the state keeps between its bounds: an unknown of the element.
+/// Holds a selection that the state keeps between its bounds: an unknown of the element.
 struct Sliding {
   int selection = 0;
   int reference = -1;  ///< of a simplex: the active region whose weight is 1 less the others; -1 for a step selection
 };
 
-/// A sign that holds as long as the active set does: value >= 0.
+/// Holds a sign that holds as long as the active set does: value >= 0.
 struct Condition {
   enum class Kind {
     side,   ///< the indicator of a selection that is fixed, on its side
@@ -35,43 +35,45 @@ struct Condition {
   int selection = 0;
 };
 
-/// The active set of an element, eq. (25) and (30) of [nurkanovic2024]: of a step selection the sign of its switching
-/// function, or 0 while it slides; of a region 0 while it is active, and -1.
+/// Holds the active set of an element, eq. (25) and (30) of [nurkanovic2024]: of a step selection the sign of its
+/// switching function, or 0 while it slides; of a region 0 while it is active, and -1.
 class ActiveSet {
  public:
   ActiveSet() = default;
-  /// modes: one per selection; every simplex has an active region.
+  /// Makes the set of these modes: one per selection; every simplex has an active region.
   ActiveSet(std::span<const Part> parts, std::vector<int> modes);
 
   [[nodiscard]] const std::vector<int>& modes() const { return modes_; }
   [[nodiscard]] const std::vector<Sliding>& sliding() const { return sliding_; }
   [[nodiscard]] const std::vector<Condition>& conditions() const { return conditions_; }
-  /// Where surfaces that slide have gradients that depend on each other: those whose selections share their conditions,
-  /// fewer than these are (numbers in sliding()). Such a selection is not determined; its conditions `lower` and
-  /// `upper` are SelectionMargins::value. They belong to a place, not to the modes.
+  /// Returns the balances of surfaces that slide and have gradients that depend on each other. Those of one balance
+  /// have selections that share their conditions, fewer than these are (numbers in sliding()). Such a selection is not
+  /// determined; its conditions `lower` and `upper` are SelectionMargins::value. They belong to a place, not to the
+  /// modes.
   [[nodiscard]] const std::vector<switching::Balance>& balances() const { return balances_; }
   void set_balances(std::vector<switching::Balance> balances);
   [[nodiscard]] bool is_determined(int selection) const { return balances_.empty() || !undetermined_[at(selection)]; }
   [[nodiscard]] bool operator==(const ActiveSet& other) const { return modes_ == other.modes_; }
 
-  /// All selections from the unknown ones (one per entry of sliding()).
+  /// Finds all selections from the unknown ones (one per entry of sliding()).
   void selections(const double* unknown, double* all) const;
-  /// The unknown ones out of all.
+  /// Takes the unknown ones out of all.
   void unknowns(const double* all, double* unknown) const;
-  /// Unknown ones in the middle of their range; of a simplex equal parts.
+  /// Returns unknown selections in the middle of their range; of a simplex equal parts.
   [[nodiscard]] std::vector<double> middle() const;
-  /// What is zero while entry k of sliding() slides: psi_j, or g_r - g_i; also for rows of derivatives (`stride`
-  /// apart).
+  /// Returns what is zero while entry k of sliding() slides: psi_j, or g_r - g_i; also for rows of derivatives
+  /// (`stride` apart).
   [[nodiscard]] double surface(std::size_t k, const double* indicator, std::size_t stride = 1) const {
     const Sliding& entry = sliding_[k];
     const double own = indicator[static_cast<std::size_t>(entry.selection) * stride];
     return entry.reference < 0 ? own : indicator[static_cast<std::size_t>(entry.reference) * stride] - own;
   }
-  /// Value of a condition of kind `side`: positive on the side of this set; also for rates of the indicators.
+  /// Returns the value of a condition of kind `side`: positive on the side of this set; also for rates of the
+  /// indicators.
   [[nodiscard]] double side(int selection, const double* indicator) const;
-  /// The active region that a region is compared with; -1 for a step selection.
+  /// Returns the active region that a region is compared with; -1 for a step selection.
   [[nodiscard]] int reference(int selection) const { return references_[at(selection)]; }
-  /// Value of any condition, of a selection that is determined.
+  /// Returns the value of any condition, of a selection that is determined.
   [[nodiscard]] double value(const Condition& condition, const double* indicator, const double* selections) const {
     const auto j = static_cast<std::size_t>(condition.selection);
     switch (condition.kind) {

@@ -9,8 +9,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// A y = b by Gaussian elimination with row pivoting; by a complete orthogonal decomposition, that is the solution of
-/// least norm, where A is singular to rounding (weights that are not unique).
+/// Solves A y = b by Gaussian elimination with row pivoting; by a complete orthogonal decomposition, that is the
+/// solution of least norm, where A is singular to rounding (weights that are not unique).
 class DenseSystem {
  public:
   void reserve(Eigen::Index n) {
@@ -35,10 +35,11 @@ class DenseSystem {
   /// Cost: n^3 / 3.
   enum class Unit { right_side, row };
   [[nodiscard]] bool solve(double negligible, Unit unit = Unit::right_side);
-  /// The same for another right() and the matrix that was solved for last, if that was regular. Cost: n^2.
+  /// Does the same for another right() and the matrix that was solved for last, if that was regular. Cost: n^2.
   [[nodiscard]] bool is_factorised() const { return factorised_; }
   [[nodiscard]] bool solve_again();
-  /// What the matrix of the last solve() maps to 0: an orthonormal basis, one column each; none if it was regular.
+  /// Returns what the matrix of the last solve() maps to 0: an orthonormal basis, one column each; none if it was
+  /// regular.
   [[nodiscard]] Eigen::MatrixXd null_space() const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// Where an element begins: time, state, and the selections there in its own active set.
+/// Says where an element begins: time, state, and the selections there in its own active set.
 struct Point {
   double t = 0.0;
   std::vector<double> x;           ///< n_x
@@ -20,7 +20,7 @@ struct Point {
   double size = 0.0;               ///< of the states around: what roundings are relative to
 };
 
-/// A solved element. Columns of matrices are stages.
+/// Holds a solved element. Columns of matrices are stages.
 struct Element {
   double t = 0.0;  ///< left end
   double h = 0.0;
@@ -53,29 +53,30 @@ class ElementSolver {
   ~ElementSolver();
 
   enum class Outcome { solved, not_converged, not_finite };
-  /// `sets`: one, or one per stage. `held`: values of Dcs::held. The stage values in `element` are the first guess
-  /// with `stages`, else those of Euler's method (with roots, whose derivatives are infinite where they are 0), or the
-  /// left end. Cost: n_Newton (n_s evaluations + (n_s (n_x + n_sliding))^3 / 3).
+  /// Solves the element. `sets`: one, or one per stage. `held`: values of Dcs::held. The stage values in `element` are
+  /// the first guess with `stages`, else those of Euler's method (with roots, whose derivatives are infinite where they
+  /// are 0), or the left end. Cost: n_Newton (n_s evaluations + (n_s (n_x + n_sliding))^3 / 3).
   enum class Guess { left_end, stages };
   [[nodiscard]] Outcome solve(const Point& left, double h, std::span<const ActiveSet> sets, const double* held,
                               Guess guess, Element& element);
-  /// Whether the states of the last solve() are the only ones in their set: false where selections move them that no
-  /// equation holds (four regions that meet have four weights and three equations in Stewart's form). Selections that
-  /// are determined by a higher derivative of their surface are. Cost: n^3 where the matrix was singular.
+  /// Returns whether the states of the last solve() are the only ones in their set: false where selections move them
+  /// that no equation holds (four regions that meet have four weights and three equations in Stewart's form).
+  /// Selections that are determined by a higher derivative of their surface are. Cost: n^3 where the matrix was
+  /// singular.
   [[nodiscard]] bool determined() const;
-  /// x(t + theta h), theta a part of the time: for collocation and Lobatto methods the polynomial of degree n_s with
-  /// the slopes of the stages, eq. (46) of [nurkanovic2024]; for explicit ones the cubic through both ends with the
-  /// slopes there.
+  /// Evaluates x(t + theta h), theta a part of the time: for collocation and Lobatto methods the polynomial of degree
+  /// n_s with the slopes of the stages, eq. (46) of [nurkanovic2024]; for explicit ones the cubic through both ends
+  /// with the slopes there.
   void interpolate(const Element& element, double theta, double* x) const;
-  /// d x / d (tau h) of the same.
+  /// Evaluates d x / d (tau h) of the same.
   void slope(const Element& element, double tau, double* slope) const;
-  /// Stage values of the element behind `element`, neither warped, continued along its polynomial.
+  /// Finds the stage values of the element behind `element`, neither warped, continued along its polynomial.
   void extrapolate(const Element& element, double h, Element& next) const;
 
-  /// Ascending tau in [0, 1], both ends among them, where signs are looked at, and the states there.
+  /// Returns the ascending tau in [0, 1], both ends among them, where signs are looked at, and the states there.
   [[nodiscard]] const std::vector<double>& watch_points() const;
   void watch_state(const Element& element, std::size_t point, double* x) const;
-  /// The stage at such a point, -1 if there is none.
+  /// Returns the stage at such a point, -1 if there is none.
   [[nodiscard]] int watch_stage(std::size_t point) const;
 
   [[nodiscard]] const discretization::ButcherTableau& tableau() const;

@@ -268,8 +268,8 @@ bool ElementEquations::project(double t, const double* held, Element& element) {
   return false;
 }
 
-/// The selections of a stage: the left end's where they are known or nothing better is, off their bounds where they are
-/// sought, for there derivatives of guarded branches are missing.
+/// Guesses the selections of a stage. They are the left end's where these are known or nothing better is. Where they
+/// are sought they are put off their bounds, for there derivatives of guarded branches are missing.
 void ElementEquations::set_guess(std::size_t stage, const Point& left, ElementSolver::Guess guess, Element& element) {
   const bool is_known = known(static_cast<Index>(stage));
   const auto count = static_cast<Index>(set(static_cast<Index>(stage)).sliding().size());

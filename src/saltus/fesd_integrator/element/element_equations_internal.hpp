@@ -15,7 +15,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// What ElementSolver solves, written down for one element after the other. The unknowns are the states of the stages
+/// Writes down what ElementSolver solves, for one element after the other. The unknowns are the states of the stages
 /// and, times h, the selections that slide there. Owns the work space.
 class ElementEquations {
  public:
@@ -24,28 +24,28 @@ class ElementEquations {
   /// Sizes the element and fills in the guess; its t, h, x and size are set.
   void begin(const Point& left, double h, std::span<const ActiveSet> sets, const double* held,
              ElementSolver::Guess guess, Element& element);
-  /// Which matrix a Newton step takes.
+  /// Says which matrix a Newton step takes.
   enum class Matrix { its_own, of_the_step_before };
-  /// One Newton step; nullopt if the system has no finite solution, else the largest change of a state, relative to the
-  /// largest state (of a root to that).
+  /// Takes one Newton step; nullopt if the system has no finite solution, else the largest change of a state, relative
+  /// to the largest state (of a root to that).
   [[nodiscard]] std::optional<double> step(const double* held, Matrix matrix, Element& element);
-  /// Whether the matrix of the last step may serve once more.
+  /// Returns whether the matrix of the last step may serve once more.
   [[nodiscard]] bool keeps_matrix() const { return system_.is_factorised() && roots_.empty() && !at_end_; }
-  /// Of large systems factors cost more than steps: they serve as long as steps shrink, also for the next element in
-  /// the same sets if its length is near.
+  /// Returns whether factors are kept. Of large systems they cost more than steps: they serve as long as steps shrink,
+  /// also for the next element in the same sets if its length is near.
   [[nodiscard]] bool saves_factors() const { return system_.is_sparse(); }
   [[nodiscard]] Matrix first_matrix(double h) const;
   void forget_matrix() { sparse_.sets.clear(); }
-  /// Relative change of states that may be no more than the rounding of a step.
+  /// Returns the relative change of states that may be no more than the rounding of a step.
   [[nodiscard]] double rounding() const { return roots_.empty() ? 1e-12 : 1e-9; }
-  /// Slopes of the stages and the right end; false if that cannot be put on the surfaces.
+  /// Finds the slopes of the stages and the right end; false if that cannot be put on the surfaces.
   [[nodiscard]] bool finish(const double* held, Element& element);
 
-  /// Directions in which the unknowns of the last step may move without changing any equation.
+  /// Returns the directions in which the unknowns of the last step may move without changing any equation.
   [[nodiscard]] Eigen::MatrixXd free_directions() const { return system_.null_space(); }
-  /// Where the unknowns of a stage begin; the states come first.
+  /// Returns where the unknowns of a stage begin; the states come first.
   [[nodiscard]] Eigen::Index place(Eigen::Index stage) const { return offset_[at(stage)]; }
-  /// Whether the selections of a stage are known: taken from the left end.
+  /// Returns whether the selections of a stage are known: taken from the left end.
   [[nodiscard]] bool known(Eigen::Index stage) const { return left_limit_ && stage == 0; }
   [[nodiscard]] bool explicit_method() const { return explicit_method_; }
 

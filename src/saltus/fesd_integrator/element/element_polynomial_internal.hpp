@@ -12,15 +12,15 @@ namespace saltus::fesd_integrator {
 
 struct Element;
 
-/// x(t + theta h) = x_0 + h sum_m B_m(theta) f_m, where B_m is the integral of the m-th Lagrange polynomial of the
-/// nodes c: the collocation polynomial, eq. (46) of [nurkanovic2024]. Of explicit methods, whose nodes coincide, the
-/// cubic through both ends with the slope at the first, and the one at the second that the first and last stage
-/// continue to.
+/// Evaluates the collocation polynomial x(t + theta h) = x_0 + h sum_m B_m(theta) f_m, eq. (46) of [nurkanovic2024].
+/// B_m is the integral of the m-th Lagrange polynomial of the nodes c. The nodes of explicit methods coincide: of these
+/// it is the cubic through both ends. It has the slope at the first end, and at the second the one that the first and
+/// last stage continue to.
 class ElementPolynomial {
  public:
   explicit ElementPolynomial(const discretization::ButcherTableau& tableau);
   void evaluate(const Element& element, double theta, double* x) const;
-  /// d x / dt there.
+  /// Evaluates d x / dt there.
   void slope(const Element& element, double theta, double* slope) const;
   [[nodiscard]] const std::vector<double>& watch_points() const { return watch_points_; }
   void watch_state(const Element& element, std::size_t point, double* x) const;

@@ -19,7 +19,7 @@ struct Dcs;
 
 namespace saltus::fesd_integrator {
 
-/// A column of the result.
+/// Holds a column of the result.
 struct ColumnFact {
   std::string name;
   int function = 0;  ///< into System::alpha
@@ -27,7 +27,7 @@ struct ColumnFact {
   bool listed = false;  ///< changes of its mode are events
 };
 
-/// A group of modes by `indicator`: functions first, first + 1, … of System::alpha are its weights.
+/// Holds a group of modes by `indicator`: functions first, first + 1, … of System::alpha are its weights.
 struct RegionFact {
   int first = 0;
   std::vector<std::string> names;

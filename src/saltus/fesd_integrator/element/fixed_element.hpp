@@ -10,24 +10,27 @@
 
 namespace saltus::fesd_integrator {
 
-/// The Runge-Kutta equations of the complementarity system with the complementarities of every stage for itself and no
-/// others: time-stepping, of order 1 through switches whatever the method ([nurkanovic2024], section 3).
+/// Solves the Runge-Kutta equations of the complementarity system with the complementarities of every stage for itself
+/// and no others: time-stepping, of order 1 through switches whatever the method ([nurkanovic2024], section 3).
 ///
-/// The sets are found by pivoting from those of the element before: a function on the wrong side changes to the other
-/// one, one that has done so before slides, one whose selection leaves [0, 1] goes to that side; regions likewise.
-/// Where that goes round in circles, all combinations of modes that what it has touched can have at the stages are
-/// tried, those of the element before first. Explicit methods have no unknown selections: the sign at a stage is that
-/// of its state.
+/// The sets are found by pivoting from those of the element before, and regions likewise:
+/// - a function on the wrong side changes to the other one;
+/// - one that has done so before slides;
+/// - one whose selection leaves [0, 1] goes to that side.
+///
+/// That may go round in circles. Then all combinations of modes are tried that what it has touched can have at the
+/// stages. Those of the element before come first. Explicit methods have no unknown selections: the sign at a stage is
+/// that of its state.
 class FixedElement {
  public:
   /// All must outlive it.
   FixedElement(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver);
 
-  /// `before`: the set of the last stage of the element before. False if no sets are found.
+  /// Solves the element; false if no sets are found. `before` is the set of the last stage of the element before.
   [[nodiscard]] bool solve(const Point& left, double h, const ActiveSet& before, const double* held, Element& element);
-  /// Of the stages.
+  /// Returns the sets of the stages.
   [[nodiscard]] std::span<const ActiveSet> sets() const { return sets_; }
-  /// Of the last stage.
+  /// Returns the set of the last stage.
   [[nodiscard]] const ActiveSet& end_set() const { return sets_.back(); }
   [[nodiscard]] const std::vector<double>& end_selections() const { return end_selections_; }
 

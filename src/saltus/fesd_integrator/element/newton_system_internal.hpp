@@ -6,11 +6,12 @@
 
 namespace saltus::fesd_integrator {
 
-/// One of both, as discretization::StagePattern::is_sparse says; the matrix is filled by matrix() or by add().
+/// Is a dense or a sparse system, as discretization::StagePattern::is_sparse says; the matrix is filled by matrix() or
+/// by add().
 class NewtonSystem {
  public:
   enum class Storage { dense, sparse };
-  /// `most`: of unknowns.
+  /// Makes a system of `most` unknowns at most.
   NewtonSystem(Storage storage, Eigen::Index most) : is_sparse_(storage == Storage::sparse) {
     if (!is_sparse_) dense_.reserve(most);
   }

@@ -21,21 +21,24 @@ class ProjectedField {
   ProjectedField(ProjectedField&&) noexcept;
   ~ProjectedField();
 
+  /// Solves for the selections that slide.
   /// @param selections  all of them; the sliding ones are found
   /// @param rounding    of the state per time: rates that no selection changes are zero within it
   /// @return false where Newton's method finds none. values() are those at the solution.
   [[nodiscard]] bool solve(double t, const double* x, const ActiveSet& set, const double* held, double* selections,
                            double rounding = 0.0);
-  /// Of states of this size behind elements of length h, whose equations hold psi = 0, and so d psi / dt to that.
+  /// Returns the rounding of rates for states of this size behind elements of length h. Their equations hold psi = 0,
+  /// and so d psi / dt, to that.
   [[nodiscard]] static double rounding_of_rates(double size, double h) { return 1e-12 * size / h; }
-  /// Whether the equations of the last solve() have one solution.
+  /// Returns whether the equations of the last solve() have one solution.
   [[nodiscard]] bool regular() const { return regular_; }
-  /// Whether the k-th selection that slides is in none of them: it follows from a higher derivative of its surface.
+  /// Returns whether the k-th selection that slides is in none of them: it follows from a higher derivative of its
+  /// surface.
   [[nodiscard]] bool in_no_equation(std::size_t k) const { return in_no_equation_[k]; }
   /// Gives those of `selections` that are in no equation the values they have in `known` (n_selections each).
   void take_undetermined(const ActiveSet& set, const double* known, double* selections) const;
   [[nodiscard]] const discretization::StageValues& values() const { return values_; }
-  /// Rates d psi / dt (or d g / dt) of all indicators along values().f.
+  /// Evaluates the rates d psi / dt (or d g / dt) of all indicators along values().f.
   void rates(std::vector<double>& rate) const;
 
  private:

@@ -8,9 +8,9 @@
 
 namespace saltus::fesd_integrator {
 
-/// Values r of Dcs::roots at every stage, with the equations |r|^(1/c) sign(r) = base(x). As a function of x a root has
-/// an infinite derivative at 0, and Newton's method jumps between both sides; as equations in (x, r) everything has
-/// finite ones. The step of r is eliminated:
+/// Holds the values r of Dcs::roots at every stage, with the equations |r|^(1/c) sign(r) = base(x). As a function of x
+/// a root has an infinite derivative at 0, and Newton's method jumps between both sides; as equations in (x, r)
+/// everything has finite ones. The step of r is eliminated:
 ///   dr = (base_x dx + rho) / d,   rho = base - |r|^(1/c) sign(r),   d = |r|^(1/c - 1) / c,
 /// so f gets f_root rho / d, and f_x gets f_root base_x / d.
 class RootUnknowns {
@@ -18,16 +18,16 @@ class RootUnknowns {
   RootUnknowns(const discretization::StageKernel& kernel, std::size_t stages);
   [[nodiscard]] bool empty() const { return exponents_.empty(); }
 
-  /// From the base at a guess of the state.
+  /// Starts from the base at a guess of the state.
   void start(std::size_t stage, double t, const double* x, const double* selections, const double* held);
-  /// Values and derivatives of a stage with the step of its roots eliminated.
+  /// Evaluates the values and derivatives of a stage with the step of its roots eliminated.
   void evaluate(std::size_t stage, double t, const double* x, const double* selections, const double* held,
                 discretization::StageValues& values);
   /// Takes the step of the roots that belongs to this one of the state of the last evaluate().
   /// @return the largest change of a root, relative to its largest value at the stages; 0 if nobody depends on the
   /// stage
   double update(std::size_t stage, const double* step, bool felt);
-  /// f of a stage at its roots.
+  /// Evaluates f of a stage at its roots.
   void field(std::size_t stage, double t, const double* x, const double* selections, const double* held, double* f);
 
  private:

@@ -11,12 +11,12 @@ namespace saltus::fesd_integrator {
 using SparseColumns = Eigen::SparseMatrix<double>;
 using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// f_alpha of the selections that slide in a set: n_x by n_sliding. Entries that can be other than 0 only, as in the
-/// others.
+/// Returns f_alpha of the selections that slide in a set: n_x by n_sliding. Entries that can be other than 0 only, as
+/// in the others.
 [[nodiscard]] SparseColumns sliding_directions(const ActiveSet& set, const discretization::StageValues& at);
-/// Gradients of what is zero while they slide: n_sliding by n_x.
+/// Returns the gradients of what is zero while they slide: n_sliding by n_x.
 [[nodiscard]] SparseRows sliding_surfaces(const ActiveSet& set, const discretization::StageValues& at);
-/// f_x as it is.
+/// Returns f_x as it is.
 [[nodiscard]] Eigen::Map<const SparseColumns> field_by_state(const discretization::StageValues& at);
 
 }  // namespace saltus::fesd_integrator

@@ -12,8 +12,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// A y = b as DenseSystem solves it, with A given entry by entry. Systems whose entries come at the same places in the
-/// same order are analysed once. Singular ones are solved as dense ones.
+/// Solves A y = b as DenseSystem does, with A given entry by entry. Systems whose entries come at the same places in
+/// the same order are analysed once. Singular ones are solved as dense ones.
 class SparseSystem {
  public:
   /// Sets the size, and everything to 0.
@@ -21,7 +21,7 @@ class SparseSystem {
   /// Adds to an entry of the matrix.
   void add(Eigen::Index row, Eigen::Index column, double value);
   [[nodiscard]] Eigen::Map<Eigen::VectorXd> right() { return {right_.data(), right_.size()}; }
-  /// As those of DenseSystem. Cost: that of the factors of a sparse matrix; n^3 where it is singular.
+  /// Does what DenseSystem::solve does. Cost: that of the factors of a sparse matrix; n^3 where it is singular.
   [[nodiscard]] bool solve(double negligible, DenseSystem::Unit unit);
   [[nodiscard]] bool is_factorised() const { return factorised_ || dense_.is_factorised(); }
   [[nodiscard]] bool solve_again();

@@ -18,9 +18,8 @@ class ElementRecorder {
   ElementRecorder(const discretization::StageKernel& kernel, const Facts& facts,
                   const discretization::ButcherTableau& tableau);
 
-  /// `left`, `right`: selections at its ends, limits from its inside; `end`: its right end. Selections that
-  /// are not determined are not finite.
-  /// Cost: an evaluation of the indicators per point.
+  /// Adds an element. `left`, `right`: selections at its ends, limits from its inside; `end`: its right end. Selections
+  /// that are not determined are not finite. Cost: an evaluation of the indicators per point.
   void add(const Element& element, const std::vector<double>& left, const std::vector<double>& right, double end,
            const ActiveSet& set, const double* held);
   [[nodiscard]] result::Elements take() { return std::move(elements_); }
@@ -32,7 +31,7 @@ class ElementRecorder {
   const Facts& facts_;
   std::vector<double> nodes_;
   std::vector<double> indicators_;
-  std::vector<int> undetermined_;  ///< selections of the element in hand
+  std::vector<int> undetermined_;  ///< selections of the current element
   result::Elements elements_;
 };
 

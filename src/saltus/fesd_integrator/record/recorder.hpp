@@ -14,7 +14,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// Modes of System::switching at an active set, and the selections at a point.
+/// Holds the modes of System::switching at an active set, and the selections at a point.
 struct ModeView {
   std::vector<int> mode;      ///< -1, 0, 1 by function; of a region 0 while it is active
   std::vector<double> alpha;  ///< by function
@@ -27,27 +27,30 @@ class Recorder {
 
   void row(double t, const std::vector<double>& x, const ActiveSet& set, const std::vector<double>& selections,
            const double* held);
-  /// What is held changed at the last row: the same with what is held now, if its inputs or outputs differ.
+  /// Records that what is held changed at the last row. Adds the same row with what is held now, if its inputs or
+  /// outputs differ.
   enum class RowBefore { kept, replaced };
   void row_behind(RowBefore before, const ActiveSet& set, const std::vector<double>& selections, const double* held);
-  /// The set changed at t, or was chosen at a start (`before` nullptr; then `at_zero` tells which selections are zero).
-  /// Two rows and an event if a listed function changed; at a start a row, and an event if one is at zero.
+  /// Records that the set changed at t, or was chosen at a start (`before` nullptr; then `at_zero` tells which
+  /// selections are zero). Two rows and an event if a listed function changed; at a start a row, and an event if one is
+  /// at zero.
   struct Side {
     const ActiveSet* set = nullptr;
     const std::vector<double>* selections = nullptr;
     const double* held = nullptr;  ///< what is held on this side
   };
-  /// `found`: all continuations; the first is where it goes on. Returns whether it was an event.
+  /// Records a switch, and returns whether it was an event. `found` are all continuations; the first is where it goes
+  /// on.
   bool switched(double t, const std::vector<double>& x, const Side& before, const std::vector<Continuation>& found,
                 const double* held, std::string_view reason) {
     return jumped(t, x, x, before, found, held, reason);
   }
-  /// Likewise where the state jumps, too.
+  /// Does the same where the state jumps, too.
   bool jumped(double t, const std::vector<double>& x, const std::vector<double>& x_after, const Side& before,
               const std::vector<Continuation>& found, const double* held, std::string_view reason);
   bool started(double t, const std::vector<double>& x, const std::vector<Continuation>& found, const double* held,
                const std::vector<int>& at_zero);
-  /// Switches have a limit at t: `x` is the last state before it.
+  /// Records that switches have a limit at t: `x` is the last state before it.
   void accumulated(double t, const std::vector<double>& x, const std::vector<double>& x_limit, const Side& before,
                    const std::vector<Continuation>& found, const double* held);
   void user(double t, const std::vector<double>& x, const Side& side, std::size_t event, std::string_view reason);

@@ -19,10 +19,10 @@ class Chain {
   Chain(RunContext& context, Position& position, PartLength& length, const Coarseness& coarseness);
 
   enum class Solved { all, violated, missed, coarse, failed };
-  /// Elements of length h from the position, up to the first that violates a condition, jumps over a switch or is too
-  /// coarse.
+  /// Solves elements of length h from the position, up to the first that violates a condition, jumps over a switch or
+  /// is too coarse.
   [[nodiscard]] Solved solve(int count, double h, Violation& violation);
-  /// The same whatever they violate, with warps at both ends. `first`: whether there are no stage values of a try
+  /// Does the same whatever they violate, with warps at both ends. `first`: whether there are no stage values of a try
   /// before, so that they are extrapolated.
   enum class Try { first, again };
   [[nodiscard]] bool solve_to_end(int count, double h, TimeWarp warp, Try which);
@@ -30,22 +30,22 @@ class Chain {
   /// answer, violation)` returns whether to go on.
   template <class Take>
   void look_again(int count, Take&& take);
-  /// Whether an element's estimated error is beyond its share, and shorter ones are allowed; notes the share.
+  /// Returns whether an element's estimated error is beyond its share, and shorter ones are allowed; notes the share.
   [[nodiscard]] bool is_too_coarse(const Element& element, const std::vector<double>& errors);
-  /// What was divided because it jumped over a switch has got to one, or to an end.
+  /// Forgets divisions: what was divided because it jumped over a switch has got to one, or to an end.
   void forget_jumps() { divided_for_look_ = 0; }
 
-  /// Which are solved.
+  /// Returns how many are solved.
   [[nodiscard]] std::size_t count() const { return count_; }
   void set_count(std::size_t count) { count_ = count; }
   [[nodiscard]] Element& element(std::size_t k) { return elements_[k]; }
   [[nodiscard]] const std::vector<Element>& elements() const { return elements_; }
-  /// Selections at the left ends; that of the right end of the last one is behind.
+  /// Returns the selections at the left ends; that of the right end of the last one is behind.
   [[nodiscard]] std::vector<std::vector<double>>& left() { return left_; }
-  /// Errors of an element, as Watch::errors.
+  /// Returns the errors of an element, as Watch::errors.
   [[nodiscard]] const std::vector<double>& errors(std::size_t k) const { return errors_[k]; }
 
-  /// The element before the position, if the next one continues it.
+  /// Returns the element before the position, if the next one continues it.
   [[nodiscard]] bool continues() const { return previous_.has_value(); }
   void continue_behind(std::size_t count) { previous_ = elements_[count - 1]; }
   void interrupt() { previous_.reset(); }
@@ -56,7 +56,7 @@ class Chain {
   [[nodiscard]] const Element* before(int k) const;
   [[nodiscard]] ElementSolver::Outcome solve_from(const Point& left, double h, ElementSolver::Guess guess,
                                                   Element& element);
-  /// Whether a condition ends along elements of half that length, a quarter, …, as far as it may end between them.
+  /// Whether a condition ends along elements of h/2, h/4, ..., as far as it may end between them.
   [[nodiscard]] bool jumps_over(const Point& left, double h, int halvings);
 
   RunContext& context_;
@@ -68,7 +68,7 @@ class Chain {
   std::size_t count_ = 0;
   std::vector<std::vector<double>> left_;
   std::vector<std::vector<double>> errors_;
-  int divided_for_look_ = 0;  ///< halvings of the step in hand because it jumped over a switch
+  int divided_for_look_ = 0;  ///< halvings of the current step because it jumped over a switch
   std::optional<Element> previous_;
 };
 

@@ -14,12 +14,12 @@ class DecisionCount {
     t_ = t;
     return ++count_ <= most;
   }
-  /// Whether elements of this length see something else than decisions, which look at what is just behind.
+  /// Returns whether elements of this length see something else than decisions, which look at what is just behind.
   [[nodiscard]] bool asks_for_shorter_elements() const { return count_ > most_at_one_length; }
-  /// No set was found to go on with: that is left to the fallback.
+  /// Leaves it open: no set was found to go on with, which is left to the fallback.
   void leave_open() { open_ = true; }
   [[nodiscard]] bool is_open() const { return open_; }
-  /// Whether it was left open; it no longer is.
+  /// Returns whether it was left open; it no longer is.
   [[nodiscard]] bool take_open() { return std::exchange(open_, false); }
 
  private:

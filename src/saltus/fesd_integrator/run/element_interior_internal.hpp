@@ -9,7 +9,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// The point inside an element that was asked for last. Its set is that of the position.
+/// Holds the point inside an element that was asked for last. Its set is that of the position.
 class ElementInterior {
  public:
   /// Both must outlive it.

@@ -26,12 +26,12 @@ class EventTracker {
   [[nodiscard]] bool empty() const { return events_.empty(); }
   /// Takes over the signs at the start; nothing fires.
   void start();
-  /// Events and output times of an element that is accepted; false if an event stops the run.
+  /// Records events and output times of an element that is accepted; false if an event stops the run.
   [[nodiscard]] bool record(const Element& element, const std::vector<double>& left, double end);
-  /// Events whose functions have another sign at the position, and that of `crossed`; functions at zero at the start
-  /// have a sign from now on. True if an event stops the run.
+  /// Fires events whose functions have another sign at the position, and that of `crossed`; functions at zero at the
+  /// start have a sign from now on. True if an event stops the run.
   bool update_here(std::optional<std::size_t> crossed = std::nullopt);
-  /// Events at a switch, behind it.
+  /// Fires events at a switch, behind it.
   void fire_at_switch();
 
  private:

@@ -13,21 +13,21 @@
 
 namespace saltus::fesd_integrator {
 
-/// Rows at the times (or values of a clock) that were asked for, or at ends of elements and, with `straight`, at times
-/// inside them that keep straight lines close. Every time is emitted once, in ascending order.
+/// Writes rows at the times (or values of a clock) that were asked for, or at ends of elements. With `straight` it adds
+/// times inside them that keep straight lines close. Every time is emitted once, in ascending order.
 class OutputRows {
  public:
   /// All must outlive it.
   OutputRows(const RunContext& context, const Position& position, ElementInterior& interior, Recorder& recorder)
       : context_(context), position_(position), interior_(interior), recorder_(recorder) {}
 
-  /// Called before rows of an element: chooses times inside it where `straight` asks for them.
+  /// Chooses, before rows of an element, times inside it where `straight` asks for them.
   void begin_element(const Element& element, const std::vector<double>& selections);
-  /// Rows inside an element, up to a time.
+  /// Writes rows inside an element, up to a time.
   void emit(const Element& element, const std::vector<double>& selections, double until);
-  /// The row at the position, unless an event has put it there.
+  /// Writes the row at the position, unless an event has put it there.
   void emit_here();
-  /// Times between the position and a time get the row of the position.
+  /// Gives times between the position and a time the row of the position.
   void pass(double until);
 
  private:

@@ -10,7 +10,7 @@ namespace {
 /// Parts of simulation steps that are divided for their errors are not shorter than this: what then is left of them has
 /// no derivatives, or is the singularity of a solution.
 constexpr double shortest_for_errors = 1e-3;
-/// Between switches of laps that shrink, where the surface has roots: what is lost there is lost in every lap.
+/// Between switches of cycles that shrink, where the surface has roots: what is lost there is lost in every cycle.
 constexpr int elements_per_switch = 16;
 
 }  // namespace
@@ -19,7 +19,7 @@ double PartLength::end_of_part(double t, double end, double last_switch) {
   const double remaining = end - t;
   double longest = longest_;
   if (between_switches_ > 0.0) {
-    // Where the next switch does not come, laps have ended.
+    // Where the next switch does not come, cycles have ended.
     if (t - last_switch > between_switches_ * elements_per_switch) between_switches_ = 0.0;
     if (between_switches_ > 0.0) longest = std::min(longest, between_switches_);
   }
@@ -46,10 +46,10 @@ void PartLength::lengthen_behind(double h) {
   longest_ = std::max(longest_, h * shape_.elements * std::min(ratio(), 4.0));
 }
 
-void PartLength::follow(const LapSeries& series, double t) {
+void PartLength::follow(const CycleSeries& series, double t) {
   const auto next = series.next_switch();
   between_switches_ = next ? *next * shape_.elements / elements_per_switch : 0.0;
-  // Laps this short are those of roundings, and elements at the roundings of t would get nowhere.
+  // Cycles this short are those of roundings, and elements at the roundings of t would get nowhere.
   constexpr double shortest_followed = 1e-10, roundings = 64.0 * rounding_unit;
   if (between_switches_ <= std::max(shortest_followed * shape_.nominal, shape_.elements * roundings * std::abs(t))) {
     between_switches_ = 0.0;

@@ -1,7 +1,7 @@
 // How long the parts of a simulation step are: they are divided for errors, and where switches accumulate.
 #pragma once
 
-#include "saltus/fesd_integrator/accumulate/lap_series.hpp"
+#include "saltus/fesd_integrator/accumulate/cycle_series.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -19,25 +19,25 @@ class PartLength {
   explicit PartLength(const Shape& shape) : shape_(shape), longest_(shape.nominal) {}
 
   [[nodiscard]] double nominal() const { return shape_.nominal; }
-  /// Of an element by which a decision is tried where first derivatives do not decide.
+  /// Returns the length of an element by which a decision is tried where first derivatives do not decide.
   [[nodiscard]] double trial() const { return shape_.nominal / shape_.elements / 128.0; }
-  /// Length of the elements of a part that was not divided by switches.
+  /// Returns the length of the elements of a part that was not divided by switches.
   [[nodiscard]] double mean() const { return mean_; }
   void set_mean(double h) { mean_ = h; }
 
-  /// Where the part ends that begins at t, in a simulation step that goes to `end`. `last_switch`: its time.
+  /// Returns where the part ends that begins at t, in a simulation step that goes to `end`. `last_switch`: its time.
   [[nodiscard]] double end_of_part(double t, double end, double last_switch);
 
-  /// A chain of elements is solved anew: no share of the error is known of it.
+  /// Begins a chain of elements that is solved anew: no share of the error is known of it.
   void begin_chain() { share_ = 0.0; }
   /// Notes an element's share (Coarseness::share). True if the chain is beyond its share, and may be shorter.
   [[nodiscard]] bool is_too_coarse(double h, double share);
-  /// Behind elements of length h: that were too coarse, that were not.
+  /// Shortens what follows behind elements of length h that were too coarse, and lengthens it behind others.
   void shorten_behind(double h);
   void lengthen_behind(double h);
 
-  /// Between switches that accumulate elements are so short that they resolve what is between two of them.
-  void follow(const LapSeries& series, double t);
+  /// Follows switches that accumulate: elements are so short that they resolve what is between two of them.
+  void follow(const CycleSeries& series, double t);
   void stop_following() { between_switches_ = 0.0; }
   [[nodiscard]] bool is_following() const { return between_switches_ > 0.0; }
 
@@ -48,7 +48,7 @@ class PartLength {
   double mean_ = 0.0;
   double longest_ = 0.0;           ///< of a part, for its errors
   double between_switches_ = 0.0;  ///< of a part while switches accumulate; 0: any
-  double share_ = 0.0;             ///< the largest of the chain in hand
+  double share_ = 0.0;             ///< the largest of the current chain
 };
 
 }  // namespace saltus::fesd_integrator

@@ -15,24 +15,24 @@ namespace saltus::fesd_integrator {
 class Position {
  public:
   Position() = default;
-  /// The set has all `selections` on the side where they are 0 until continue_with().
+  /// Puts all `selections` of the set on the side where they are 0 until continue_with().
   Position(double t, std::vector<double> x, std::size_t selections);
 
   [[nodiscard]] double t() const { return t_; }
   [[nodiscard]] const std::vector<double>& x() const { return x_; }
   [[nodiscard]] const ActiveSet& set() const { return set_; }
   [[nodiscard]] const std::vector<double>& selections() const { return selections_; }
-  /// Continuation::determined of the set.
+  /// Returns Continuation::determined of the set.
   [[nodiscard]] bool is_determined() const { return determined_; }
-  /// The largest state of late: what roundings are relative to. Halved with every element, as what was large a long
-  /// time ago has left no roundings.
+  /// Returns the largest state of late: what roundings are relative to. Halved with every element, as what was large a
+  /// long time ago has left no roundings.
   [[nodiscard]] double size() const { return size_; }
-  /// The left end of an element that begins here; the reference is valid until the next call.
+  /// Returns the left end of an element that begins here; the reference is valid until the next call.
   [[nodiscard]] Point& left_end();
-  /// What slides is on its surfaces, whatever its rounding.
+  /// Returns the selections that slide, with their references: they are on their surfaces, whatever the rounding.
   [[nodiscard]] std::vector<int> on_surfaces() const;
 
-  /// To the right end of an element, or to a point inside it; allocates nothing.
+  /// Moves to the right end of an element, or to a point inside it; allocates nothing.
   void move_to(double t, const Element& element, const std::vector<double>& selections);
   void stop_inside(double t, const std::vector<double>& x, const std::vector<double>& selections);
   void continue_with(const Continuation& next);

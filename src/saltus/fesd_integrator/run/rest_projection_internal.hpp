@@ -11,8 +11,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// Projects states by Newton's method of least norm onto sigma(t, x) = 0, the surfaces of a set that slide, and onto
-/// d sigma / dt = 0 of those that no selection moves at once.
+/// Projects states by Newton's method of least norm onto the surfaces of a set that slide, sigma(t, x) = 0. Those that
+/// no selection moves at once are projected onto d sigma / dt = 0, too.
 class RestProjection {
  public:
   struct Place {
@@ -24,9 +24,9 @@ class RestProjection {
   /// The kernel must outlive it.
   explicit RestProjection(const discretization::StageKernel& kernel);
 
-  /// False, and x is anything, where Newton's method finds no point.
+  /// Projects onto the surfaces. Returns false, and x is anything, where Newton's method finds no point.
   [[nodiscard]] bool onto_surfaces(const ActiveSet& set, const Place& place, std::vector<double>& x);
-  /// The same, and at rest; at most `farthest` away from the surfaces' point.
+  /// Does the same, and projects to rest; at most `farthest` away from the surfaces' point.
   [[nodiscard]] bool to_rest(const ActiveSet& set, const Place& place, double farthest, std::vector<double>& x);
 
  private:

@@ -11,14 +11,15 @@ RootWarps::RootWarps(const RunContext& context, const Position& position) : cont
   context.kernel.size(roots_);
 }
 
-/// A root of the field at a point, with d base/dt, the sum of the sizes of its terms, and of the gradient of the base.
+/// A root of the field at a point. It has d base/dt, the sum of the sizes of its terms, and that of the gradient of the
+/// base.
 struct RootWarps::Root {
   std::size_t number = 0;
   double exponent = 1.0, base = 0.0;
   double rate = 0.0, terms = 0.0, gradient = 0.0;
 };
 
-/// Calls `take(root)` for the roots that the field of the mode at hand has at a point.
+/// Calls `take(root)` for the roots that the field of the current mode has at a point.
 template <class Take>
 void RootWarps::for_each_root(double t, const double* x, Take&& take) {
   const auto& exponents = context_.kernel.root_exponents();

@@ -15,9 +15,9 @@ class RootWarps {
   /// Both must outlive it.
   RootWarps(const RunContext& context, const Position& position);
 
-  /// Warps of an element of length h that begins here, and of one that ends where a root of the mode at hand is zero,
-  /// which it is inside `beyond`; 1 where no root is zero.
+  /// Returns the warp of an element of length h that begins here; 1 where no root of the current mode is zero.
   [[nodiscard]] int behind(double h);
+  /// Returns the warp of an element that ends where a root of the current mode is zero inside `beyond`; 1 without one.
   [[nodiscard]] int before(const Element& beyond);
 
  private:

@@ -148,7 +148,7 @@ void Run::start() {
   events_.start();
   recorder_.started(position_.t(), position_.x(), found, context_.held.data(), functions);
   if (chain_.warps().behind(length_.nominal()) > 1)
-    laps_.add({position_.t(), position_.set().modes(), position_.x(), 0.0});
+    cycles_.add({position_.t(), position_.set().modes(), position_.x(), 0.0});
   rows_.emit_here();
 }
 

@@ -16,14 +16,14 @@ std::vector<Continuation> Run::continuations(const ActiveSet* before, const AtPo
 void Run::decide(const AtPoint& here, std::string_view reason, const Before& before, const double* held_before) {
   const double t = position_.t();
   if (!decisions_.add(t)) {
-    if (go_to_limit(LapSeries::Wanted::soon)) return;
+    if (go_to_limit(CycleSeries::Wanted::soon)) return;
     stop(result::Termination::not_converged,
          fmt::format("the modes at t = {:.10g} change without end; try other simulate.fesd.steps", t));
     return;
   }
   const auto found = continuations(&before.set, here);
   if (found.empty()) {
-    if (go_to_limit(LapSeries::Wanted::soon) || stopped_where_not_finite()) return;
+    if (go_to_limit(CycleSeries::Wanted::soon) || stopped_where_not_finite()) return;
     if (can_fall_back()) return decisions_.leave_open();
     stop(result::Termination::no_admissible_mode,
          fmt::format("no mode continues the solution at t = {:.10g}; try method = \"event\"", t));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "saltus/fesd_integrator/accumulate/lap_series.hpp"
+#include "saltus/fesd_integrator/accumulate/cycle_series.hpp"
 #include "saltus/fesd_integrator/decide/transition.hpp"
 #include "saltus/fesd_integrator/element/fixed_element.hpp"
 #include "saltus/fesd_integrator/integration.hpp"
@@ -101,12 +101,12 @@ class Run {
   [[nodiscard]] double resolution_of(const Condition& condition, const std::vector<double>& selections_before);
   void note_switch(const Condition& condition, const Before& before);
   /// True if the run has gone on from the limit of a sequence of switches, before anything that is held changes.
-  bool go_to_limit(LapSeries::Wanted wanted);
-  /// The set in which everything that a lap changes rests, and what is at zero in it.
+  bool go_to_limit(CycleSeries::Wanted wanted);
+  /// The set in which everything that a cycle changes rests, and what is at zero in it.
   struct Rest {
     std::vector<int> modes, at_zero;
   };
-  [[nodiscard]] Rest rest_of(const LapSeries::Limit& limit) const;
+  [[nodiscard]] Rest rest_of(const CycleSeries::Limit& limit) const;
 
   // run_accept: elements that are taken.
   /// `closing`: the condition that is zero at the end; nullptr if the end is fixed.
@@ -120,7 +120,7 @@ class Run {
     double h = 0.0;
     double end = 0.0;  ///< t + h but for roundings
   };
-  /// One element or, where it has no solution that was found, halves of it (quarters, …).
+  /// One element or, where it has no solution that was found, halves of it, or quarters, and so on.
   void advance_fixed_element(const FixedSpan& span);
   void accept_fixed(double end, double part);
   void stop_without_fixed_sets();
@@ -156,7 +156,7 @@ class Run {
   SwitchLocator locator_;
   Transition transition_;
   DecisionCount decisions_;
-  LapSeries laps_;
+  CycleSeries cycles_;
   RestProjection rest_;
   FixedElement fixed_;
   Recorder recorder_;

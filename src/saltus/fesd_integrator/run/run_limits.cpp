@@ -1,4 +1,4 @@
-// Switches that accumulate: the limit of their laps, and how it goes on behind it.
+// Switches that accumulate: the limit of their cycles, and how it goes on behind it.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -24,18 +24,18 @@ double Run::resolution_of(const Condition& condition, const std::vector<double>&
 }
 
 void Run::note_switch(const Condition& condition, const Before& before) {
-  const double resolution = laps_.shrinks() ? resolution_of(condition, before.selections) : 0.0;
-  laps_.add({position_.t(), position_.set().modes(), position_.x(), resolution});
+  const double resolution = cycles_.shrinks() ? resolution_of(condition, before.selections) : 0.0;
+  cycles_.add({position_.t(), position_.set().modes(), position_.x(), resolution});
   const bool slides_more = position_.set().sliding().size() > before.set.sliding().size();
   if (context_.kernel.root_exponents().empty() || slides_more) {  // no root is lost, or no switch is next
     length_.stop_following();
   } else {
-    length_.follow(laps_, position_.t());
+    length_.follow(cycles_, position_.t());
   }
 }
 
-/// What a lap changes is at rest behind it: on all of its surfaces, in all of its regions.
-Run::Rest Run::rest_of(const LapSeries::Limit& limit) const {
+/// What a cycle changes is at rest behind it: on all of its surfaces, in all of its regions.
+Run::Rest Run::rest_of(const CycleSeries::Limit& limit) const {
   Rest rest{position_.set().modes(), {}};
   for (std::size_t j = 0; j < rest.modes.size(); ++j) {
     const bool changes = std::any_of(limit.modes.begin(), limit.modes.end(),
@@ -48,14 +48,14 @@ Run::Rest Run::rest_of(const LapSeries::Limit& limit) const {
   return rest;
 }
 
-bool Run::go_to_limit(LapSeries::Wanted wanted) {
+bool Run::go_to_limit(CycleSeries::Wanted wanted) {
   if (tangents_.asked()) return false;  // derivatives are those of elements
-  const auto limit = laps_.limit(wanted);
+  const auto limit = cycles_.limit(wanted);
   if (!limit || limit->t > context_.options.until) return false;
   const double* held = context_.held.data();
   if (context_.held.next_change(position_.t(), limit->t, position_.x().data()) < limit->t) return false;
-  const double farthest = laps_.last_change();
-  laps_.clear();
+  const double farthest = cycles_.last_change();
+  cycles_.clear();
   length_.stop_following();
   const Rest rest = rest_of(*limit);
   auto x = limit->x;

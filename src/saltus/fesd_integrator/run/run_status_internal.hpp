@@ -27,10 +27,10 @@ class RunStatus {
   void show_progress(double t, std::size_t events, std::span<const double> x = {});
 
   [[nodiscard]] result::Statistics& statistics() { return statistics_; }
-  /// What is said of a run that gets to its end all the same; the first remark stays.
+  /// Notes what is said of a run that gets to its end all the same; the first remark stays.
   void remark(std::string message);
   [[nodiscard]] bool has_remark() const { return remark_.has_value(); }
-  /// The status of a run that has got to t.
+  /// Returns the status of a run that has got to t.
   [[nodiscard]] result::Status at_end(double t) const;
 
  private:

@@ -16,7 +16,7 @@ constexpr double shortest = 1e-12;
 }  // namespace
 
 Run::StepPart Run::next_part(double end) {
-  return {end, length_.end_of_part(position_.t(), end, laps_.last_time()), context_.options.elements};
+  return {end, length_.end_of_part(position_.t(), end, cycles_.last_time()), context_.options.elements};
 }
 
 void Run::advance(double end) {
@@ -136,7 +136,7 @@ void Run::decide_at(StepPart& part, const Located& located) {
   rows_.emit_here();
   if (!stopped() && !(position_.set() == before.set)) {
     note_switch(located.condition, before);
-    if (go_to_limit(LapSeries::Wanted::resolved)) {
+    if (go_to_limit(CycleSeries::Wanted::resolved)) {
       part = next_part(part.end);
       return;
     }

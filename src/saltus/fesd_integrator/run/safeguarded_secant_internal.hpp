@@ -23,9 +23,9 @@ class SafeguardedSecant {
 
   enum class State { searching, found, none };
   [[nodiscard]] double h() const { return h_; }
-  /// Whether v(h()) is the first value that is asked for.
+  /// Returns whether v(h()) is the first value that is asked for.
   [[nodiscard]] bool is_first() const { return taken_ == 0; }
-  /// `value`: v(h()); `noise`: its rounding level. In every state but `searching` h() stays.
+  /// Takes `value`, v(h()), and `noise`, its rounding level. In every state but `searching` h() stays.
   State take(double value, double noise);
 
  private:

@@ -7,7 +7,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// A chain of elements that ends where a condition does.
+/// Holds a chain of elements that ends where a condition does.
 struct Located {
   int count = 0;
   double h = 0.0;
@@ -16,15 +16,16 @@ struct Located {
   bool divides = false;  ///< what is behind is a step of its own: lengths cannot be within their bounds
 };
 
-/// Lengths of elements before and behind a switch at tau of the part in hand: within (1 -+ bounds) of their mean.
+/// Holds the lengths of elements before and behind a switch at tau of the current part: within (1 -+ bounds) of their
+/// mean.
 struct PartDivision {
   int elements = 0;
   double remaining = 0.0;  ///< length of the part
   double mean = 0.0;       ///< length of elements of a part without switches
   double bounds = 1.0;
 
-  /// The number of elements before a switch nearest to `count` with which all lengths are within the bounds; nullopt
-  /// if there is none.
+  /// Returns the number of elements before a switch nearest to `count` with which all lengths are within the bounds;
+  /// nullopt if there is none.
   [[nodiscard]] std::optional<int> elements_before(double tau, int count) const;
 };
 
@@ -34,7 +35,7 @@ class SwitchLocator {
   SwitchLocator(RunContext& context, const Position& position, PartLength& length, Chain& chain)
       : context_(context), position_(position), length_(length), chain_(chain) {}
 
-  /// From the first violation of a trial, seen in the last element solved, to the chain that ends at the earliest
+  /// Goes from the first violation of a trial, seen in the last element solved, to the chain that ends at the earliest
   /// switch; left in the chain. nullopt if it was not found.
   [[nodiscard]] std::optional<Located> find(int elements, double remaining, Violation violation);
 

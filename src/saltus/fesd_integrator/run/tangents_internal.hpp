@@ -21,12 +21,13 @@ class Tangents {
       : context_(context), position_(position), propagation_(propagation) {}
 
   [[nodiscard]] bool asked() const { return propagation_ != nullptr; }
-  /// What is held, if its change ends the part of a simulation step that is under way.
+  /// Notes what is held, if its change ends the part of a simulation step that is under way.
   void set_time_event(double t, std::optional<std::size_t> changing);
 
-  /// `closing`: the condition that is zero at the end of the elements; nullptr if the end is fixed.
+  /// Follows a chain of elements. `closing`: the condition that is zero at the end of the elements; nullptr if the end
+  /// is fixed.
   void chain(Chain& chain, std::size_t count, double end, const Condition* closing);
-  /// A switch right where the last chain ended.
+  /// Notes a switch right where the last chain ended.
   void switched_here(const Condition& condition);
   void begin_fixed_steps(int count, double end);
   void fixed_step(const Element& element, std::span<const ActiveSet> sets, double part);

@@ -99,8 +99,9 @@ MatrixXd ElementTangent::projected_selections(const ActiveSet& set, const discre
   return -changes * solve(surfaces_of(set, matrix), surfaces_of(set, rate));
 }
 
-/// The end is x_1 = x_b + D mu, x_b = x_0 + h sum b_l f_l, where the direction D = f_alpha is that at x_b and the last
-/// stage's selections: d x_1 = (1 + (D mu)_x) d x_b + D d mu + (D mu)_alpha d alpha_s + (D mu)_t d t + (D mu)_p d p.
+/// The end is x_1 = x_b + D mu with x_b = x_0 + h sum b_l f_l. The direction D = f_alpha is that at x_b and the last
+/// stage's selections:
+///   d x_1 = (1 + (D mu)_x) d x_b + D d mu + (D mu)_alpha d alpha_s + (D mu)_t d t + (D mu)_p d p.
 /// The rows of the end are those of x_b up to here.
 void ElementTangent::add_projection(System& system, const Element& element, const ActiveSet& set, const double* held,
                                     const Directions& go) {
@@ -230,8 +231,8 @@ RowVectorXd ElementTangent::condition(const Condition& condition, const Element&
   return sigma;
 }
 
-/// 0 is on a facet of the velocities of a balance: with selections that hold the surfaces, what moves the facet's
-/// normal takes no part, and it goes as the rates of the surfaces do along it.
+/// 0 is on a facet of the velocities of a balance. With selections that hold the surfaces, what moves the facet's
+/// normal takes no part. It goes as the rates of the surfaces do along it.
 RowVectorXd ElementTangent::margin(const Condition& condition, const ActiveSet& set, const std::vector<double>& right,
                                    const Directions& go) {
   std::vector<double> selections = right;

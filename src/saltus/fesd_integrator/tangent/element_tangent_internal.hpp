@@ -15,7 +15,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// Directions as columns: of the left end, its time, the length, the parameters.
+/// Holds directions as columns: of the left end, its time, the length, the parameters.
 struct Directions {
   Eigen::MatrixXd x;  ///< n_x rows
   Eigen::RowVectorXd t;
@@ -28,12 +28,12 @@ class ElementTangent {
   /// The kernel must outlive it.
   ElementTangent(const discretization::TangentKernel& kernel, discretization::ButcherTableau tableau);
 
-  /// d(end) along directions at the left end. `sets`: one, or one per stage. `left`: selections of the projected field
-  /// at the left end.
+  /// Returns d(end) along directions at the left end. `sets`: one, or one per stage. `left`: selections of the
+  /// projected field at the left end.
   [[nodiscard]] Eigen::MatrixXd end(const Element& element, std::span<const ActiveSet> sets,
                                     const std::vector<double>& left, const double* held, const Directions& go);
-  /// d(value of a condition) at the right end, up to its sign, along directions of that end. `right`: the selections
-  /// of the projected field there.
+  /// Returns d(value of a condition) at the right end, up to its sign, along directions of that end. `right`: the
+  /// selections of the projected field there.
   [[nodiscard]] Eigen::RowVectorXd condition(const Condition& condition, const Element& element, const ActiveSet& set,
                                              const std::vector<double>& right, const double* held,
                                              const Directions& go);

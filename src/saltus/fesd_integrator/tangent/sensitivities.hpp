@@ -16,8 +16,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// Carries X = d x(t_b) / d q and tau = d t_b / d q, the *total* derivatives at the last boundary t_b of elements, from
-/// the start (X = I or 0, tau = 0) to the end, for q = (x(t_0), p).
+/// Carries X = d x(t_b) / d q and tau = d t_b / d q from the start (X = I or 0, tau = 0) to the end, for q = (x(t_0),
+/// p). These are the *total* derivatives at the last boundary t_b of elements.
 ///
 /// An element's equations R(z; x_0, t_0, h, p) = 0 (stages, selections, end) give dz = -R_z^{-1} (R_x0 X + R_t tau +
 /// R_h dh + R_p). Within a chain of k equal elements dh is common; it follows from what closes the chain:
@@ -35,18 +35,18 @@ class SensitivityPropagation {
   SensitivityPropagation(SensitivityPropagation&&) noexcept;
   ~SensitivityPropagation();
 
-  /// Solved elements of equal length and one active set, one after the other.
+  /// Follows solved elements of equal length and one active set, one after the other.
   /// @param left     selections of the projected field at the left end of each, and at the right end of the last
   /// @param closing  the condition that is zero at the end; nullptr: the end is fixed, or a time event
   /// @param changing what is held up to the end; nullopt: it is not the time of an event
   /// Cost: per element the solution of its linear system for n_x + n_p + 1 right-hand sides. Allocates.
   void chain(std::span<const Element> elements, std::span<const std::vector<double>> left, const ActiveSet& set,
              const double* held, const Condition* closing, std::optional<std::size_t> changing);
-  /// At the last boundary, a fixed end, a switch turns out to lie: it moves off it with the field before it.
+  /// Notes that a switch turns out to lie at the last boundary, a fixed end. It moves off it with the field before it.
   /// @param set, selections, held  those before the switch
   void switched_here(double t, const std::vector<double>& x, const std::vector<double>& selections, const double* held,
                      const ActiveSet& set, const Condition& condition);
-  /// Without switch detection: from here `count` elements of equal length go to `end`.
+  /// Follows a step without switch detection. From here `count` elements of equal length go to `end`.
   struct End {
     double t = 0.0;
     const double* x = nullptr;  ///< discrete states are all that counts of it
@@ -54,12 +54,13 @@ class SensitivityPropagation {
     std::optional<std::size_t> changing;
   };
   void begin_fixed_steps(int count, const End& end);
-  /// One of these elements, or `part` of it; an active set for every stage.
+  /// Follows one of these elements, or `part` of it; an active set for every stage.
   void fixed_step(const Element& element, std::span<const ActiveSet> sets, const double* held, double part);
-  /// At the last boundary: something held has changed from `before` to `behind`; `selections` are those before it.
+  /// Notes that something held has changed at the last boundary from `before` to `behind`; `selections` are those
+  /// before it.
   void held_changed(double t, const double* x, const double* selections, const double* before, const double* behind);
 
-  /// At the last boundary, which must be the fixed end of the run.
+  /// Returns those at the last boundary, which must be the fixed end of the run.
   [[nodiscard]] result::Sensitivities sensitivities(const std::vector<std::string>& parameter_names) const;
 
  private:

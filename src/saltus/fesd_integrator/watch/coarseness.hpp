@@ -13,11 +13,11 @@ namespace saltus::fesd_integrator {
 /// component has had by the end: an estimate of the error of a solution that neither damps nor amplifies errors.
 class Coarseness {
  public:
-  /// `limit`: of that sum over a run of length `span`; nullopt if elements may be as coarse as they are.
+  /// Sets the `limit` of that sum over a run of length `span`; nullopt if elements may be as coarse as they are.
   Coarseness(std::optional<double> limit, double span) : limit_(limit), span_(span) {}
 
-  /// The error of an element that might be next over its share of the limit, limit h / span times the largest value
-  /// so far: with shares up to 1 the sum stays below the limit. 0 without a limit.
+  /// Returns the error of an element that might be next over its share of the limit, limit h / span times the largest
+  /// value so far: with shares up to 1 the sum stays below the limit. 0 without a limit.
   [[nodiscard]] double share(const Element& element, const std::vector<double>& errors) const;
   void note(const Element& element, const std::vector<double>& errors);
   struct Worst {
@@ -26,7 +26,7 @@ class Coarseness {
     double error = 0.0;     ///< of the worst element
     double t = 0.0;         ///< where that begins
   };
-  /// nullopt before the first element, and where all states are 0.
+  /// Returns the worst; nullopt before the first element, and where all states are 0.
   [[nodiscard]] std::optional<Worst> worst() const;
 
  private:

@@ -12,7 +12,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// The defect d(theta) = u'(theta) - f(u(theta)) of an element's polynomial u, seen at one point theta_c where the
+/// Measures the defect d(theta) = u'(theta) - f(u(theta)) of an element's polynomial u at one point theta_c. There the
 /// method does not ask for it to be zero. Of collocation methods it is d(theta_c) omega(theta) / omega(theta_c) to
 /// leading order, omega(theta) = prod_m (theta - c_m), so that
 ///   u(theta) - x(theta) ~ h d(theta_c) W(theta) / omega(theta_c),   W(theta) = int_0^theta omega.
@@ -24,9 +24,9 @@ class Defect {
   /// The solver must outlive it.
   explicit Defect(const ElementSolver& solver);
 
-  /// Where f is wanted.
+  /// Returns where f is wanted.
   [[nodiscard]] double place() const { return place_; }
-  /// max over theta of |u(theta) - x(theta)| by component, from f at the place and at the left end.
+  /// Finds max over theta of |u(theta) - x(theta)| by component, from f at the place and at the left end.
   /// @param f, f_left, error  n_x
   void errors(const Element& element, const double* f, const double* f_left, std::vector<double>& error);
 

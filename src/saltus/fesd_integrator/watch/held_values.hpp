@@ -10,21 +10,22 @@
 
 namespace saltus::fesd_integrator {
 
-/// Values of Dcs::held from a time on, and the time of their next change.
+/// Holds the values of Dcs::held from a time on, and the time of their next change.
 class HeldValues {
  public:
   /// Both must outlive it.
   HeldValues(const discretization::PointFunctions& functions, const std::vector<HeldFact>& facts);
 
   [[nodiscard]] const double* data() const { return values_.data(); }
-  /// The values just behind a time; `reach` is a length that is small against what happens, at whose thousand
+  /// Finds the values just behind a time; `reach` is a length that is small against what happens, at whose thousand
   /// millionth part signs are looked at. Returns whether something has changed.
   enum class Change { none, some };
   Change set_behind(double t, double reach, const double* x);
-  /// The first time in (t, end] at which one of the arguments leaves its sign or its cell; `end` if none does. Signs
-  /// between the points where they are looked at are those of interpolants of degree 8 in a quarter of the interval.
+  /// Returns the first time in (t, end] at which one of the arguments leaves its sign or its cell; `end` if none does.
+  /// Signs between the points where they are looked at are those of interpolants of degree 8 in a quarter of the
+  /// interval.
   [[nodiscard]] double next_change(double t, double end, const double* x);
-  /// What that is; nullopt if none does. Of several at the same time the first.
+  /// Returns what that is; nullopt if none does. Of several at the same time the first.
   [[nodiscard]] std::optional<std::size_t> next_changing() const { return next_changing_; }
 
  private:

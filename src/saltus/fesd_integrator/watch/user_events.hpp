@@ -14,7 +14,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// Signs of the event functions and truths of the conditions as they were last, and what a change of them means.
+/// Holds the signs of the event functions and truths of the conditions as they were last, and what a change of them
+/// means.
 class UserEvents {
  public:
   /// The functions must outlive it. `span`: of the run, in units of time.
@@ -22,22 +23,23 @@ class UserEvents {
 
   [[nodiscard]] bool empty() const { return signs_.empty(); }
   [[nodiscard]] std::size_t functions() const { return signs_.size(); }
-  /// The sign of a function as it was last; 0 at a zero it started from.
+  /// Returns the sign of a function as it was last; 0 at a zero it started from.
   [[nodiscard]] int sign(std::size_t function) const { return signs_[function]; }
-  /// Whether a zero of the function was crossed here: what is left of its value is the rounding of the time.
+  /// Returns whether a zero of the function was crossed here: what is left of its value is the rounding of the time.
   [[nodiscard]] bool crosses_at(std::size_t function, double t) const {
     return t - crossed_at_[function] <= resolution(t);
   }
   /// Gives functions that have no sign yet, but have left zero at this point, their first one: that is no change.
   void settle(double t, const double* x, const double* selections, const double* held);
-  /// Whether some function has no sign yet.
+  /// Returns whether some function has no sign yet.
   [[nodiscard]] bool unsettled() const { return std::find(signs_.begin(), signs_.end(), 0) != signs_.end(); }
-  /// Whether the value is within `noise` of zero where update() was called last, and was not at the time before that.
+  /// Returns whether the value is within `noise` of zero where update() was called last, and was not at the time before
+  /// that.
   [[nodiscard]] bool reaches_zero(std::size_t function, double noise) const {
     return std::abs(values_[function]) <= noise && std::abs(values_before_[function]) > noise;
   }
-  /// Takes over the signs at a point, where those of functions within their rounding, or crossed here, stay, and that
-  /// of `crossed` is the other one.
+  /// Takes over the signs at a point. Those of functions within their rounding, or crossed here, stay. That of
+  /// `crossed` is the other one.
   /// @return the events that this fires, in the order of the model
   [[nodiscard]] std::vector<std::size_t> update(double t, const double* x, const double* selections, const double* held,
                                                 std::optional<std::size_t> crossed);

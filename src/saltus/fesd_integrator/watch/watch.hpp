@@ -16,15 +16,15 @@
 
 namespace saltus::fesd_integrator {
 
-/// A condition that does not hold behind `theta` of an element.
+/// Holds a condition that does not hold behind `theta` of an element.
 struct Violation {
   Condition condition;
   double theta = 0.0;  ///< a part of the time
   double slope = 0.0;  ///< d value / dt there
 };
 
-/// Rounding level of every indicator: a few roundings of its largest term.
-/// `size` is that of the largest state around: Newton's method is accurate relative to it.
+/// Finds the rounding level of every indicator: a few roundings of its largest term. `size` is that of the largest
+/// state around: Newton's method is accurate relative to it.
 void indicator_noise(const discretization::StageValues& values, double t, double size, std::vector<double>& noise);
 
 /// Looks at the conditions of an active set in solved elements: at the points of the method, and between them along
@@ -33,7 +33,7 @@ class Watch {
  public:
   Watch(const discretization::StageKernel& kernel, const ElementSolver& solver);
 
-  /// The earliest violation; a condition that is zero at the left end or at the right one, within rounding, holds
+  /// Finds the earliest violation; a condition that is zero at the left end or at the right one, within rounding, holds
   /// there. Selections that slide are those of the projected field.
   /// @param selections  at the left end; left at those of the right end
   /// @param only        conditions of these selections, all if it is empty
@@ -41,12 +41,12 @@ class Watch {
   enum class Answer { holds, violated, not_finite };
   [[nodiscard]] Answer look(const Element& element, const ActiveSet& set, const double* held,
                             std::vector<double>& selections, Violation& earliest, std::span<const int> only = {});
-  /// Of the element last looked at: how far its polynomial is from a solution, by component (Defect::errors).
+  /// Returns, of the element last looked at, how far its polynomial is from a solution, by component (Defect::errors).
   [[nodiscard]] const std::vector<double>& errors() const { return errors_; }
-  /// Whether a condition of the element last looked at, which holds along its polynomial, may end along the solution
-  /// all the same: it comes nearer to zero than twice the error.
+  /// Returns whether a condition of the element last looked at, which holds along its polynomial, may end along the
+  /// solution all the same: it comes nearer to zero than twice the error.
   [[nodiscard]] bool may_miss() const { return may_miss_; }
-  /// Value of a condition at the right end of the element last looked at, and its rounding level.
+  /// Returns the value of a condition at the right end of the element last looked at, and its rounding level.
   [[nodiscard]] double end_value(const ActiveSet& set, const Condition& condition) const;
   [[nodiscard]] double noise(const Condition& condition) const;
 
@@ -79,7 +79,7 @@ class Watch {
   [[nodiscard]] Interpolation interpolation_for(const TimeWarp& warp) const;
   [[nodiscard]] std::size_t find_interpolation(const TimeWarp& warp);
   std::vector<Interpolation> interpolations_;
-  std::size_t interpolation_ = 0;   ///< of the element in hand
+  std::size_t interpolation_ = 0;   ///< of the current element
   std::vector<double> indicators_;  ///< one row per watch point
   std::vector<double> selections_;
   SelectionMargins margins_;

@@ -30,7 +30,7 @@ struct OverviewEquation {
 /// One of [[modes]]: where it holds and what it adds.
 struct OverviewMode {
   std::string group, name;
-  std::string when;  ///< a condition, "otherwise", or "indicator …"
+  std::string when;  ///< a condition, "otherwise", or "indicator" and its expression
   std::vector<OverviewEquation> rates;
 };
 

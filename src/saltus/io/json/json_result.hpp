@@ -19,13 +19,13 @@ namespace saltus::io {
 /// Reads a stored result; errors name the file, the position or the JSON path, and what was expected.
 [[nodiscard]] Expected<result::Result> read_result(const std::filesystem::path& file);
 [[nodiscard]] Expected<result::Result> parse_result(const std::string& text, const std::string& file);
-/// Header t,side,<states>,<controls>,<outputs>,alpha(<name>)…,mode(<name>)…; fields quoted by RFC 4180. `side` is
-/// result::side.
+/// The header is t,side,<states>,<controls>,<outputs>, then alpha(<name>) of all surfaces, then mode(<name>) of all.
+/// Fields are quoted by RFC 4180. `side` is result::side.
 [[nodiscard]] bool write_csv(const result::Result& result, Sink sink);
 [[nodiscard]] std::string to_csv(const result::Result& result);
-/// A line per event: t,kind,name,surfaces,<states>,after(<state>)…,mode_before(<name>)…,mode_after(<name>)…,
-/// alpha_before(<name>)…,alpha_after(<name>)…,unique,reason. Surfaces are separated by semicolons; what an event does
-/// not have, and `unique` where it is not decided, is empty.
+/// A line per event: t,kind,name,surfaces,<states>, then after(<state>) of all states, then mode_before(<name>),
+/// mode_after(<name>), alpha_before(<name>), alpha_after(<name>) of all surfaces each, then unique,reason. Surfaces are
+/// separated by semicolons. What an event does not have is empty, and so is `unique` where it is not decided.
 [[nodiscard]] bool write_events_csv(const result::Result& result, Sink sink);
 /// A file of a result that gets its rows and events part by part, while they are computed; it becomes what the writers
 /// above write, without branches.

@@ -160,7 +160,7 @@ class ConstraintReader {
     }
   }
 
-  /// A side is a number: comparisons stand in conditions of if(...) only.
+  /// A side is a number: comparisons stand in conditions of if() only.
   void check_side(const expression::Node& node) {
     if (const auto* call = std::get_if<expression::Call>(&node.value)) {
       const bool skip = call->function == "if" && !call->arguments.empty();

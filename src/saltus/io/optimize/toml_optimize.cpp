@@ -274,7 +274,7 @@ void read_freezing_number(TomlReader& reader, const TomlEntry& field, expression
                            "in [time_freezing]"));
 }
 
-/// A number, or { initial = …, final = … }.
+/// A number, or { initial = a, final = b }.
 void read_stabilisation(TomlReader& reader, const TomlEntry& field, model::ClockDescription& clock) {
   const auto* table = std::get_if<TomlTable>(&field.value.value);
   if (table == nullptr) return read_freezing_number(reader, field, clock.stabilisation);

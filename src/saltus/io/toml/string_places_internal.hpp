@@ -16,7 +16,7 @@ struct StringAnchor {
   SourceLocation place;
 };
 
-/// The anchors of a basic string ("…" or """…""").
+/// The anchors of a basic string ("text" or """text""").
 /// @param raw    the text of the file from behind the opening quotes (and the line break that TOML drops) on
 /// @param start  its place
 /// @return one anchor at the beginning and one behind every escape; nothing if there is no escape.

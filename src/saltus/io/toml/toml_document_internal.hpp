@@ -42,7 +42,7 @@ struct TomlEntry {
 ///         refused with a message of its own.
 [[nodiscard]] Expected<TomlTable> parse_toml(std::string_view text, const std::string& file);
 
-/// "the number 3", "a string", "a table": for "expected …, found …".
+/// "the number 3", "a string", "a table": what was found in the place of what was expected.
 [[nodiscard]] std::string description_of(const TomlValue& value);
 
 }  // namespace saltus::io

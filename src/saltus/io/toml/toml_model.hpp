@@ -68,10 +68,13 @@ struct Diagnosis {
 /// Larger files are refused: no model is written by hand at that length.
 inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
 
-/// `--set a.b=value` for any key of the file: options of [simulate], its inputs, options and expressions of [optimize],
-/// the inclusion, and the expressions of [parameters] [states] [controls] [definitions] [switching] [dynamics]
-/// [outputs] that the file already has
-/// ("states.q", "states.q.lower", "dynamics.v").
+/// Does what `--set a.b=value` says, for any key of the file:
+/// - options of [simulate] and its inputs;
+/// - options and expressions of [optimize];
+/// - the inclusion;
+/// - the expressions that the file already has ("states.q", "states.q.lower", "dynamics.v") in [parameters] [states]
+///   [controls] [definitions] [switching] [dynamics] [outputs].
+///
 /// @param key    dotted path below the file's root
 /// @param value  a number, a list of numbers, an expression, or a bare word
 /// @return the model with that key replaced, or an error that names the nearest known keys.
@@ -93,9 +96,8 @@ inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
 /// if none is named. Fails if there is no such file, or if it holds no result.
 [[nodiscard]] Expected<void> read_start_result(ModelFile& model);
 
-/// The error with the place of the option or the table it is about, if it has no place of its own and a frame of its
-/// context names it ("in simulate.initial_mode.slip", "in [states]"); a table the file does not have is missed at its
-/// beginning.
+/// Gives an error without a place that of the option or the table it is about. A frame of its context has to name it
+/// ("in simulate.initial_mode.slip", "in [states]"). A table the file does not have is missed at its beginning.
 [[nodiscard]] Error located(Error error, const ModelFile& model);
 
 /// `--set a.b=value` for the options of a simulation: KEY is a dotted path below the file's root

@@ -22,7 +22,7 @@ void read_caption(TomlReader& reader, const TomlEntry& field, result::Caption& c
   (field.key == "unit" ? caption.unit : caption.label) = reader.string(field.value, "a text in quotes");
 }
 
-/// Reads `name = value` or `name = { initial = …, … }`.
+/// Reads `name = value` or `name = { initial = value }`, with more keys in the table.
 Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
   Quantity quantity;
   const auto* table = std::get_if<TomlTable>(&entry.value.value);
@@ -66,7 +66,7 @@ void require_initial(TomlReader& reader, const TomlEntry& entry, const Quantity&
                {}});
 }
 
-/// `name = "…"` or `name = { value = "…", unit = "…", label = "…" }`.
+/// `name = "value"` or `name = { value = "value", unit = "unit", label = "label" }`.
 model::NamedExpression read_output(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   result::Caption caption;
   model::NamedExpression output{entry.key, nullptr, entry.location};

@@ -26,7 +26,7 @@ void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& m
 
 void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
-/// Names of [tables.…]: expressions anywhere in the file may call them.
+/// Names of the tables [tables.NAME]: expressions anywhere in the file may call them.
 [[nodiscard]] std::vector<std::string> table_names(const TomlTable& document);
 /// A file named in a model file, relative to it.
 [[nodiscard]] std::filesystem::path beside(const std::string& model, const std::string& file);

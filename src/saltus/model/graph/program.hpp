@@ -8,8 +8,8 @@
 
 namespace saltus::model {
 
-/// What CasADi's interpreter does with a function of SX, operation by operation and bit by bit, without its counts of
-/// references and memory objects, which are not for several threads.
+/// Does what CasADi's interpreter does with a function of SX, operation by operation and bit by bit. It has none of its
+/// counts of references and memory objects, which are not for several threads.
 class Program {
  public:
   /// Null where the function calls others. Under the symbolic lock.

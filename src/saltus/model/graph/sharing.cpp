@@ -50,7 +50,7 @@ void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& 
 namespace {
 
 /// Constants of cells at numbers of their own: functions of time and state that look alike at the points of the pool
-/// may differ in a cell that none of them lies in, so only the same cells, used in the same way, are equal.
+/// may differ in a cell that none of them lies in. So only the same cells, used in the same way, are equal.
 void draw_cells(const Tape& tape, std::span<const int> cone, int k, Point& point) {
   for (const int node : cone) {
     if (tape[node].operation != cell_operation) continue;

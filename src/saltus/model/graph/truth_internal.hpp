@@ -14,9 +14,9 @@ namespace saltus::model {
 /// A diagram node: the two terminals are 0 (false) and 1 (true).
 using Truth = int;
 
-/// Nodes are unique, so two conditions with the same truth table are the same number, and the multi-affine polynomial
-/// of a table is read off the diagram: P(node) = alpha P(high) + (1 - alpha) P(low). A conjunction of m independent
-/// literals has m nodes, not 2^m entries.
+/// Nodes are unique, so two conditions with the same truth table are the same number. The multi-affine polynomial of a
+/// table is read off the diagram: P(node) = alpha P(high) + (1 - alpha) P(low). A conjunction of m independent literals
+/// has m nodes, not 2^m entries.
 class TruthDiagram {
  public:
   struct Node {

@@ -54,8 +54,7 @@ using StateContacts =
 /// initial values of the states are known.
 /// @param contacts  as they are for the event engine if empty
 /// @return the mistake: a right-hand side that is there already; a mass matrix, a potential or a drawing that depends
-/// on
-///         more than positions and parameters; a mass matrix that is not symmetric or not positive definite at the
+///         on more than positions and parameters; a mass matrix that is not symmetric or not positive definite at the
 ///         start
 [[nodiscard]] std::optional<Error> state_mechanics(Recognition& recognition, Statement& statement,
                                                    const MechanicsStatement& mechanics,

@@ -81,8 +81,8 @@ class Recognition {
     enum class Kind { constant, alpha, polynomial } kind = Kind::constant;
     double constant = 0.0;          ///< the value of e, not of its step
     SharedFunction function{};      ///< of kind alpha
-    std::vector<int> literals{};    ///< of kind polynomial: e depends on nothing but these functions' alphas …
-    std::vector<double> corners{};  ///< … and has these values at their corners
+    std::vector<int> literals{};    ///< of kind polynomial: e depends on nothing but these functions' alphas
+    std::vector<double> corners{};  ///< of kind polynomial: values of e at the corners of `literals`
   };
   /// @param at_zero  the selection where e is 0, if that matters; regarded for discrete functions only
   [[nodiscard]] Expected<Selection> selection(const SXElem& e, const std::string& name, std::optional<double> at_zero);
@@ -104,8 +104,8 @@ class Recognition {
   std::shared_ptr<const CellTable> integers_ = std::make_shared<const CellTable>(integer_cells());
 };
 
-/// Number of smooth branches an expression unfolds into when the alphas in it and in their switching functions are
-/// decided one after the other, each that has become constant not counting; stops counting above the limit.
+/// Counts the smooth branches an expression unfolds into, up to the limit. The alphas in it and in their switching
+/// functions are decided one after the other. Each that has become constant does not count.
 [[nodiscard]] int count_branches(const Tape& tape, int node, int limit);
 
 [[nodiscard]] Error chain_too_long(const std::string& name);

@@ -119,8 +119,8 @@ double bend_of(const Triple& values) { return values[1] - 0.5 * (values[0] + val
 using Difference = double (*)(const Triple&);
 
 /// Sides of the other surfaces on which a target would show a difference. A term that needs many conditions at once
-/// shows none at random points, so the corner is searched, not drawn: starting between the corners, where the
-/// (multi-affine) difference is the mean of those at the corners, each alpha in turn goes to the side where more of it
+/// shows none at random points, so the corner is searched, not drawn. The search starts between the corners, where the
+/// (multi-affine) difference is the mean of those at the corners. Each alpha in turn goes to the side where more of it
 /// is left.
 class CornerSearch {
  public:

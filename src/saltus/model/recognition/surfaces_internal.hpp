@@ -23,12 +23,12 @@ struct SurfaceClass {
 
 /// Which surfaces are kinks, which depend on time only, and which make something jump.
 ///
-/// Everything that can jump is in `targets`, the other psi among them. At up to 64 points on psi_j = 0, around the
-/// initial state and far from it, the targets that contain alpha_j are evaluated for alpha_j = 0 and 1, the other
-/// alphas being the signs there; a difference beyond rounding and 1e-9 of the difference a step away from the surface
-/// is a jump. A surface without jump is a kink; one on which no point is found counts as listed. Discrete states are
-/// points like others; a psi of nothing else is discrete whether something jumps or not. Where no such point shows a
-/// jump, points are moved to where conditions hold that would show one, discrete ones (n == 2) at equality, too.
+/// Everything that can jump is in `targets`, the other psi among them. The targets that contain alpha_j are evaluated
+/// at up to 64 points on psi_j = 0, around the initial state and far from it. There alpha_j is 0 and 1, and the other
+/// alphas are the signs; a difference beyond rounding and 1e-9 of the difference a step away from the surface is a
+/// jump. A surface without jump is a kink; one on which no point is found counts as listed. Discrete states are points
+/// like others; a psi of nothing else is discrete whether something jumps or not. Where no such point shows a jump,
+/// points are moved to where conditions hold that would show one, discrete ones (n == 2) at equality, too.
 /// @param surfaces  in the order of their alphas
 /// @param discrete  the discrete functions, and their selections where they are 0
 /// @return one class per surface

@@ -22,7 +22,7 @@ class Patterns {
   Patterns(const TruthDiagram& diagram, const std::vector<MetFunction>& functions, std::vector<int> literals)
       : diagram_(diagram), functions_(functions), literals_(std::move(literals)) {}
 
-  /// "3 sign patterns: a > 0, b < 0; …"
+  /// "3 sign patterns: a > 0, b < 0; a < 0, b > 0" and one more.
   [[nodiscard]] std::string text(Truth set) const {
     const double number = count(set, 0);
     std::vector<std::string> shown;

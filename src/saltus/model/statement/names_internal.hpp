@@ -24,7 +24,7 @@ enum class NameKind {
   contact
 };
 
-/// "a parameter", "a state" …
+/// "a parameter", "a state" and the like.
 [[nodiscard]] std::string with_article(NameKind kind);
 
 struct Meaning {

@@ -1,6 +1,6 @@
-// Compiled without vector instructions but those of lanes_internal.hpp: f writes one component after the other, and
-// reading two of them at once has to wait until both are in the cache, longer than a stage takes otherwise (dopri5, 3
-// states: 120 instead of 70 ns a step).
+// Compiled without vector instructions but those of lanes_internal.hpp. f writes one component after the other, and
+// reading two of them at once has to wait until both are in the cache. That takes longer than a stage does otherwise
+// (dopri5, 3 states: 120 instead of 70 ns a step).
 #include <array>
 #include <type_traits>
 #include <utility>

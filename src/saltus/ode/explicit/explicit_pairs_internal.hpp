@@ -80,10 +80,10 @@ struct Dop853 {
     return fifth / std::sqrt(1.0 + ratio_of_both * ratio_of_both);
   }
 
-  // With the chord's slope d = (x_new - x) / h, R = h max |k_i - d| over the stages and p the dense output, p' - d is a
-  // polynomial of degree 6 and mean 0 on the step. What it is at most at the nodes of stages 1, 4, 8 to 12 (0, 0.118,
-  // 0.308, 0.651, 0.6, 0.857, 1) bounds |p - chord| by 0.4903 times as much, by interpolation there; the stages' slopes
-  // are those of p up to terms of higher order in h, and the bound used is R itself, twice that, over stages 1 and 4
+  // Let d = (x_new - x) / h be the chord's slope, R = h max |k_i - d| over the stages and p the dense output. Then p' -
+  // d is a polynomial of degree 6 and mean 0 on the step. What it is at most at the nodes of stages 1, 4, 8 to 12 (0,
+  // 0.118, 0.308, 0.651, 0.6, 0.857, 1) bounds |p - chord| by 0.4903 times as much, by interpolation there. The stages'
+  // slopes are those of p up to terms of higher order in h. The bound used is R itself, twice that, over stages 1 and 4
   // to 12.
   template <class Size>
   static void bounds(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
@@ -102,7 +102,7 @@ struct Dop853 {
     });
   }
 
-  // The mean of p' over [0, theta], p' interpolated at the nodes of stages 1, 4, 8, 10, 11, 12, has weights of sum 1,
+  // Let p' be interpolated at the nodes of stages 1, 4, 8, 10, 11, 12. Its mean over [0, theta] has weights of sum 1,
   // of which the negative ones come to 0.199 at most. So it lies between the least and the largest of these slopes but
   // for 0.199 times their distance; the bound used is half of it, over stages 1 and 4 to 12.
   template <class Size>

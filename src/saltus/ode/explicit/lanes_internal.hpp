@@ -12,7 +12,7 @@ namespace saltus::ode {
 using Pair = double __attribute__((vector_size(16)));
 using PairBits = std::uint64_t __attribute__((vector_size(16)));
 
-/// Says of what kind, Pair or double, the components at hand are.
+/// Says of what kind, Pair or double, the current components are.
 template <class Value>
 struct Lanes {};
 

@@ -18,9 +18,12 @@ struct OptimizeObservers {
 };
 
 /// Solves the problem by finite elements with switch detection as an MPCC, certifies the point, and simulates it again
-/// with the event engine. The result has command "optimize", method "fesd" and Result::optimization.
-/// Fails for bad input: options outside their ranges, models that the method does not cover, a cost or constraint that
-/// is not finite at the guess, more equality constraints than freedom. Numerical outcomes are the result's status.
+/// with the event engine. The result has command "optimize", method "fesd" and Result::optimization. Numerical outcomes
+/// are the result's status. Fails for bad input:
+/// - options outside their ranges;
+/// - models that the method does not cover;
+/// - a cost or constraint that is not finite at the guess;
+/// - more equality constraints than freedom.
 [[nodiscard]] Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& options,
                                                 const OptimizeObservers& observers = {});
 

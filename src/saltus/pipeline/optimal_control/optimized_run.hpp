@@ -15,8 +15,10 @@
 
 namespace saltus::pipeline {
 
-/// Rows at stages and ends of elements with controls and outputs of the user, events where the active set changes,
-/// the complementarities at the points of the elements, as in a simulation with `fesd`.
+/// Holds what a simulation with `fesd` has, too:
+/// - rows at stages and ends of elements with controls and outputs of the user;
+/// - events where the active set changes;
+/// - the complementarities at the points of the elements.
 struct OptimizedRun {
   result::Trajectory trajectory;
   result::Events events;

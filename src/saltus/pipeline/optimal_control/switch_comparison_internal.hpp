@@ -28,8 +28,8 @@ struct SwitchComparison {
 
 /// Compares what was simulated, interval by interval, with the solution. Switches are the same if place and modes are;
 /// among the ways to pair those of an interval in their order, as many as possible are paired, then as near as
-/// possible. Switches within `end_tolerance` lengths of an end of their interval may belong to either side of it, or
-/// happen on both or on neither of two separate simulations: if no other one is the same, they do not count.
+/// possible. Switches within `end_tolerance` lengths of an end of their interval may belong to either side of it. Of
+/// two separate simulations they may happen in both or in neither. If no other one is the same, they do not count.
 /// @param times  N + 1 ends of the intervals
 /// @param simulated  N lists
 /// Cost: for every interval and place the product of the numbers of switches.

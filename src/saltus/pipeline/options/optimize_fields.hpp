@@ -17,8 +17,8 @@
 
 namespace saltus::pipeline {
 
-/// One option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = …) and on
-/// the command line (--set optimize.mpcc.sigma_final=…).
+/// One option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = VALUE) and
+/// on the command line (--set optimize.mpcc.sigma_final=VALUE).
 struct OptimizeField {
   std::string key;      ///< dotted, below [optimize]
   std::string expects;  ///< "a number > 0"
@@ -49,8 +49,7 @@ struct ProblemKey {
 /// @param key    dotted, below [optimize]: "elements", "mpcc.tolerance"
 /// @param value  as written; integers are taken where numbers are expected
 /// @return the options, or unknown_name (with the nearest known keys, those of the problem among them), invalid_option
-/// or
-///         not_available, each naming what was expected and what was found, without a location.
+///         or not_available, each naming what was expected and what was found, without a location.
 [[nodiscard]] Expected<OptimizeOptions> with_value(OptimizeOptions options, std::string_view key,
                                                    const result::OptionValue& value);
 

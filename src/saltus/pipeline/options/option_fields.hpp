@@ -14,8 +14,9 @@
 
 namespace saltus::pipeline {
 
-/// One option a person may write. Spelled the same in TOML ([simulate.event] integrator = …) and on the command line
-/// (--set simulate.event.integrator=…).
+/// One option a person may write. Spelled the same in TOML ([simulate.event] integrator = VALUE) and on the command
+/// line
+/// (--set simulate.event.integrator=VALUE).
 struct OptionField {
   std::string_view key;      ///< dotted, below [simulate]; a final `*` stands for a name of the model
   std::string_view expects;  ///< "a number > 0"

@@ -8,8 +8,9 @@
 
 namespace saltus::solver::crossover {
 
-/// min f(w(v))   subject to   the rows and bounds of a Reduction, where w(v) has the held variables at their values and
-/// equal ones at that of their place. Refers to the problem.
+/// States the problem of one branch:
+///   min f(w(v))   subject to   the rows and bounds of a Reduction.
+/// w(v) has the held variables at their values and equal ones at that of their place. Refers to the problem.
 class BranchProblem final : public mpcc::Problem {
  public:
   BranchProblem(mpcc::Problem& problem, Reduction reduction);

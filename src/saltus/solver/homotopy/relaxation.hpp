@@ -53,11 +53,11 @@ struct PairFunction {
   double ss = 0.0;
 };
 
-/// The relaxation at (a, b), number `which` of its inequalities. The parameter is normalised: a pair whose one side is
-/// of order 1 has its other side of order sigma at most (so s = sigma where the set reaches that far along the axes;
-/// with s^2 = sigma no such pair ever gets more accurate than 1e-5), and the other relaxations have a = b = sqrt(sigma)
-/// on their boundary. kanzow_schwartz has second derivatives on either side of its seam a + b = 2s only. Source:
-/// [hoheisel2013]; [kanzow1996] for the NCP functions, [scholtes2001] for scholtes.
+/// Evaluates the relaxation at (a, b), number `which` of its inequalities. The parameter is normalised: a pair whose
+/// one side is of order 1 has its other side of order sigma at most. So s = sigma where the set reaches that far along
+/// the axes; with s^2 = sigma no such pair ever gets more accurate than 1e-5. The other relaxations have a = b =
+/// sqrt(sigma) on their boundary. kanzow_schwartz has second derivatives on either side of its seam a + b = 2s only.
+/// Source: [hoheisel2013]; [kanzow1996] for the NCP functions, [scholtes2001] for scholtes.
 [[nodiscard]] PairFunction pair_function(Relaxation relaxation, int which, double a, double b, double sigma);
 
 }  // namespace saltus::solver::homotopy

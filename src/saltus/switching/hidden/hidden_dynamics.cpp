@@ -250,7 +250,7 @@ HiddenDecision decide_leaving(int surfaces, ProjectedField g, ProjectedField rat
       face.set_scaling(own_options.scaling);
       TrajectoryOptions closely =
           trajectory_options(own_options, fraction < 1.0 ? 0.1 * tolerance : tolerance, tolerance_away);
-      closely.method = ode::Method::dop853;  // long laps at tight tolerances
+      closely.method = ode::Method::dop853;  // long turns at tight tolerances
       HiddenTrajectory trajectory(face, closely);
       for (const auto& start : starts_of(own)) {
         const TrajectoryEnd end = trajectory.follow(start);

@@ -10,7 +10,7 @@
 
 namespace saltus::switching {
 
-/// How the solution got to the surfaces.
+/// Says how the solution got to the surfaces.
 struct HiddenSituation {
   std::vector<Arrival> arrival;  ///< m
   std::vector<double> alpha;     ///< m; read where the arrival is `along`: the selection with which it slid so far
@@ -23,7 +23,7 @@ struct HiddenOptions {
   int budget = 100000;  ///< Runge-Kutta steps and changes of zone per trajectory before it is given up
 };
 
-/// How a trajectory of the hidden dynamics ends.
+/// Says how a trajectory of the hidden dynamics ends.
 enum class HiddenLimit {
   settled,      ///< every surface is left for good, or its selection has a stable limit
   oscillating,  ///< recurrent: the solution slides, the regularised solution oscillates about it
@@ -48,8 +48,8 @@ struct HiddenDecision {
 /// of [guglielmi2022], to its limit set.
 ///
 /// Start: u_j = 0 or 1 on the side of arrival; u_j = alpha_j while sliding. Several arrivals at once are unfolded in
-/// every order, one surface ahead of the rest, and a start on the surfaces is tried from the corners (the one with all
-/// selections 1 decides, as on one surface); where these disagree the decision is structurally unstable.
+/// every order, one surface ahead of the rest. A start on the surfaces is tried from the corners (the one with all
+/// selections 1 decides, as on one surface). Where these disagree the decision is structurally unstable.
 ///
 /// Surfaces that do not depend on each other, which differences of g tell, are decided group by group: the cost is
 /// 2^(largest group), not 2^m. Exact where at most one selection varies, Dormand-Prince 5(4) or Radau IIA elsewhere.
@@ -60,8 +60,8 @@ struct HiddenDecision {
 [[nodiscard]] HiddenDecision decide_by_hidden_dynamics(const CornerTable& table, const HiddenSituation& situation,
                                                        const HiddenOptions& options = {});
 
-/// Decides where sliding that was determined by its selections ends: at the event itself the hidden dynamics rests at
-/// the degenerate root, so it is started there with the fields a little later, g + eta dg/dt, and again with eta / 100.
+/// Decides where sliding that was determined by its selections ends. At the event itself the hidden dynamics rests at
+/// the degenerate root. So it is started there with the fields a little later, g + eta dg/dt, and again with eta / 100.
 /// Where the root is still there, but no longer stable, it is left in several directions.
 /// @param rate  dg/dt along the sliding field for selections held, same shape as g
 /// @param eta   a short time: 1e-6 to 1e-4 of the time scale on which g changes

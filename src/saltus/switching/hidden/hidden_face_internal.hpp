@@ -10,8 +10,9 @@
 
 namespace saltus::switching {
 
-/// v = kappa o g(pi(u)) on one of the 3^m zones of the cube: zone_j = 0 where u_j is in [0, 1] and its selection
-/// varies, -1 and +1 below and above. In a zone v is a smooth function of the free components, continued outside it.
+/// Evaluates v = kappa o g(pi(u)) on one of the 3^m zones of the cube: zone_j = 0 where u_j is in [0, 1] and its
+/// selection varies, -1 and +1 below and above. In a zone v is a smooth function of the free components, continued
+/// outside it.
 class HiddenFace {
  public:
   /// Tables of up to 2^8 corners are restricted to a zone once; larger groups call g.
@@ -22,12 +23,13 @@ class HiddenFace {
 
   void enter(const std::vector<int>& zone);
   void velocity(const double* u, double* v) const;  ///< m doubles each
-  /// d v_j / d u_p for all j and the free p: surfaces x free, row by row, from v = v(u).
+  /// Evaluates d v_j / d u_p for all j and the free p: surfaces x free, row by row, from v = v(u).
   void derivatives(const double* u, const double* v, double* result) const;
 
   [[nodiscard]] int surfaces() const { return surfaces_; }
   [[nodiscard]] const std::vector<int>& free() const { return free_; }
-  /// The velocities at the corners of the zone where two selections vary and g is multi-affine in them; else none.
+  /// Returns the velocities at the corners of the zone where two selections vary and g is multi-affine in them; else
+  /// none.
   [[nodiscard]] const MultiAffine* pair() const { return tabulated_ && free_.size() == 2 ? &face_ : nullptr; }
   [[nodiscard]] double speed(int j) const { return speed_[at(j)]; }  ///< max |v_j| at corners
   [[nodiscard]] long evaluations() const { return evaluations_; }

@@ -119,15 +119,15 @@ bool HiddenTrajectory::rests_near(const std::vector<double>& u) {
   return !is_hurwitz(rest_.jacobian(), m_);
 }
 
-/// The root that a cycle surrounds: with a stabilising scaling if there is one, the nearest to the mean over the lap.
-/// Returns false if there is none, which needs three surfaces (in the plane a cycle has a root inside).
-bool HiddenTrajectory::enclosed_root(const Lap& lap) {
-  face_.enter(lap.side);
+/// The root that a limit cycle surrounds: with a stabilising scaling if there is one, the nearest to the mean over a
+/// turn. Returns false if there is none, which needs three surfaces (in the plane a cycle has a root inside).
+bool HiddenTrajectory::enclosed_root(const Turn& turn) {
+  face_.enter(turn.side);
   const auto& free = face_.free();
   const std::size_t n = free.size();
   std::vector<double> start(at(m_));
-  for (int j = 0; j < m_; ++j) start[at(j)] = lap.side[at(j)] > 0 ? 1.0 : 0.0;
-  for (const int j : free) start[at(j)] = lap.mean[at(j)];
+  for (int j = 0; j < m_; ++j) start[at(j)] = turn.side[at(j)] > 0 ? 1.0 : 0.0;
+  for (const int j : free) start[at(j)] = turn.mean[at(j)];
   double nearest = infinite;
   const auto consider = [&] {
     if (!rest_.find(start)) return;
@@ -135,7 +135,7 @@ bool HiddenTrajectory::enclosed_root(const Lap& lap) {
     double distance = 0.0;
     for (const int j : free) {
       if (!(0.0 < root[at(j)] && root[at(j)] < 1.0)) return;
-      distance = std::max(distance, std::abs(root[at(j)] - lap.mean[at(j)]));
+      distance = std::max(distance, std::abs(root[at(j)] - turn.mean[at(j)]));
     }
     // Distances in the cube are below 1: any root with a stabilising scaling comes before those without.
     if (!(fisher_fuller_margin(rest_.jacobian(), static_cast<int>(n)) > 0.0)) distance += 1.0;

@@ -9,8 +9,8 @@
 
 namespace saltus::switching {
 
-/// A step of u_j' = v_j, all v_j bilinear in the two free components. From the coefficients up to k those of k + 1
-/// follow by one product of the two free series and one linear combination: an order costs about as much as one
+/// Takes a step of u_j' = v_j, all v_j bilinear in the two free components. From the coefficients up to k those of k +
+/// 1 follow by one product of the two free series and one linear combination: an order costs about as much as one
 /// evaluation of v, and the step's length is known before it is taken.
 ///
 /// Source: [jorba2005] for the series and the length.
@@ -18,8 +18,8 @@ class PairSeries {
  public:
   explicit PairSeries(int surfaces) : coefficients_(static_cast<std::size_t>(surfaces)) {}
 
-  /// The step from u with v = v(u), as long as its last two terms remain below the tolerance (absolute and relative),
-  /// at most `longest`. No allocation.
+  /// Takes the step from u with v = v(u), as long as its last two terms remain below the tolerance (absolute and
+  /// relative), at most `longest`. No allocation.
   /// @param face  v at the four corners of the free components
   /// @param free  which two components those are
   void take(const MultiAffine& face, const std::vector<int>& free, const std::vector<double>& u,

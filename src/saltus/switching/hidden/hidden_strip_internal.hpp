@@ -13,7 +13,7 @@ struct StripMotion {
 
   [[nodiscard]] double position(double t) const;              ///< x(t)
   [[nodiscard]] double integrated_excursion(double t) const;  ///< integral of x - x0 over [0, t]
-  /// When x = `target`, which lies in the direction of v0; nothing if x tends to a value before it.
+  /// Returns when x = `target`, which lies in the direction of v0; nothing if x tends to a value before it.
   [[nodiscard]] std::optional<double> time_to(double target) const;
 };
 
@@ -23,8 +23,8 @@ struct SaturatedMotion {
   double slope = 0.0;     ///< d y' / d x
 };
 
-/// First t in (0, end] at which y, y' = velocity + slope (x - x0), passes from y <= 0 to y > 0; `end` may be infinite,
-/// where x tends to x_end. y' changes sign at most once, so that the answer is certain.
+/// Returns the first t in (0, end] at which y, y' = velocity + slope (x - x0), passes from y <= 0 to y > 0; `end` may
+/// be infinite, where x tends to x_end. y' changes sign at most once, so that the answer is certain.
 [[nodiscard]] std::optional<double> time_of_return(const StripMotion& motion, const SaturatedMotion& saturated,
                                                    double end, double x_end);
 

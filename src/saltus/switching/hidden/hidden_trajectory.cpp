@@ -104,28 +104,28 @@ HiddenTrajectory::Status HiddenTrajectory::at_boundary(int j) {
 }
 
 HiddenTrajectory::Status HiddenTrajectory::pass_section(std::uint64_t event) {
-  const Lap lap = recurrence_.pass(zone_number() * static_cast<std::uint64_t>(3 * m_) + event, u_, zone_);
-  if (lap.kind == Lap::Kind::none) return Status::goes_on;
-  if (lap.laps_to_skip > 0.0) {
+  const Turn turn = recurrence_.pass(zone_number() * static_cast<std::uint64_t>(3 * m_) + event, u_, zone_);
+  if (turn.kind == Turn::Kind::none) return Status::goes_on;
+  if (turn.turns_to_skip > 0.0) {
     for (std::size_t j = 0; j < u_.size(); ++j) {
-      if (lap.side[j] != 0) u_[j] += lap.laps_to_skip * lap.change[j];
+      if (turn.side[j] != 0) u_[j] += turn.turns_to_skip * turn.change[j];
     }
     return Status::goes_on;
   }
-  end_.mode = lap.side;
-  end_.alpha = lap.mean;
-  if (lap.kind == Lap::Kind::spiral_out) {
+  end_.mode = turn.side;
+  end_.alpha = turn.mean;
+  if (turn.kind == Turn::Kind::spiral_out) {
     end_.limit = HiddenLimit::spirals_out;
     end_.reason = "the solution spirals out through all regions";
     return Status::ended;
   }
-  const bool enclosed = enclosed_root(lap);
+  const bool enclosed = enclosed_root(turn);
   // A cycle is further from the root that it surrounds, or from its mean, than from its own limit.
   double distance = 0.0;
   for (std::size_t j = 0; j < u_.size(); ++j) {
-    if (lap.side[j] == 0) distance = std::max(distance, std::abs(u_[j] - end_.alpha[j]));
+    if (turn.side[j] == 0) distance = std::max(distance, std::abs(u_[j] - end_.alpha[j]));
   }
-  if (lap.remaining > 0.05 * distance) return Status::goes_on;
+  if (turn.remaining > 0.05 * distance) return Status::goes_on;
   if (!enclosed) {
     end_.limit = HiddenLimit::rootless;
     end_.reason = "the hidden dynamics is periodic about no selections that slide";

@@ -40,9 +40,10 @@ struct TrajectoryOptions {
 class HiddenTrajectory {
  public:
   HiddenTrajectory(HiddenFace& face, const TrajectoryOptions& options);
+  /// Follows the trajectory to its end.
   /// @param u  m numbers: the start
   TrajectoryEnd follow(const std::vector<double>& u);
-  /// Whether all components rest at an unstable root inside the cube, close to u.
+  /// Returns whether all components rest at an unstable root inside the cube, close to u.
   [[nodiscard]] bool rests_near(const std::vector<double>& u);
 
  private:
@@ -91,7 +92,7 @@ class HiddenTrajectory {
   };
   [[nodiscard]] std::optional<Return> first_return() const;
   void rest_until(const Return& first);
-  bool enclosed_root(const Lap& lap);
+  bool enclosed_root(const Turn& turn);
   [[nodiscard]] double boundary(int j) const;
   [[nodiscard]] std::uint64_t zone_number() const;
 

@@ -10,7 +10,7 @@
 
 namespace saltus::switching {
 
-/// A mode of both surfaces with its selections.
+/// Holds a mode of both surfaces with its selections.
 struct PlaneContinuation {
   PlaneMode mode{};
   PlaneAlpha alpha{};
@@ -18,7 +18,7 @@ struct PlaneContinuation {
   bool attracts = false;
 };
 
-/// At most four regions, four edges and two roots.
+/// Holds at most four regions, four edges and two roots.
 class PlaneModes {
  public:
   void push(const PlaneContinuation& mode) {
@@ -35,7 +35,8 @@ class PlaneModes {
   std::size_t size_ = 0;
 };
 
-/// The modes that continue a solution in the sense of Definition 2.1 of [guglielmi2022], each by its own inequalities:
+/// Returns the modes that continue a solution in the sense of Definition 2.1 of [guglielmi2022], each by its own
+/// inequalities:
 ///   region k:           k_j f_j^k > 0, j = 1, 2   (by the drift, so that tangencies count by their higher derivatives)
 ///   sliding on psi_1, psi_2 leaves to k2: g_1(alpha_1, k2) = 0 with alpha_1 in [0, 1], k2 g_2(alpha_1, k2) > 0
 ///   sliding on both:    every root of g_1 = g_2 = 0 in the square, whatever its stability.

@@ -109,8 +109,8 @@ PlaneDecision decide_intersection_start(const PlaneTable& table) {
 
 PlaneDecision decide_spiral_in(const PlaneTable& table) {
   SignTests signs;
-  const auto lap = spiral_lap(table, 0);
-  if (!lap || !signs.negative(lap->lap_ratio - 1.0, 1.0, "ratio of successive laps of the spiral")) {
+  const auto cycle = spiral_cycle(table, 0);
+  if (!cycle || !signs.negative(cycle->cycle_ratio - 1.0, 1.0, "ratio of successive cycles of the spiral")) {
     signs.fail("turning of the four fields around the intersection");
   }
   return conclude(table, Leaf::spiral_in, {0, 0}, signs, admissible_modes(table));

@@ -9,11 +9,11 @@ namespace saltus::switching {
 /// alpha_j = k_j.
 using PairCorners = std::array<std::array<double, 2>, 4>;
 
-/// Of the two roots of g(alpha_1, alpha_2) = 0 the one with det G > 0 or < 0, G_jp = d g_j / d alpha_p. Only the first
-/// kind can attract; the other one is a solution where a mode is forced.
+/// Says which of the two roots of g(alpha_1, alpha_2) = 0 is meant: that with det G > 0 or < 0, G_jp = d g_j / d
+/// alpha_p. Only the first kind can attract; the other one is a solution where a mode is forced.
 enum class RootKind { rising, falling };
 
-/// Such a root.
+/// Holds such a root.
 struct BilinearRoot {
   std::array<double, 2> alpha{};      ///< not finite where the root is at infinity
   std::array<double, 2> from_one{};   ///< alpha - 1, relatively exact near 0
@@ -27,19 +27,19 @@ struct BilinearRoot {
   double stability = 0.0;
 };
 
-/// With g(s, .) affine, P(s) = g(s, 0) x g(s, 1) vanishes where g(s, v) does for some v, and there P'(s) = det G: the
-/// root of the quadratic P where it rises, or falls, for either selection. At the corners of the square P is the
-/// product of two normal components less that of two others, and alpha_j is that over a positive number: it reaches a
-/// bound where they do, without cancellation. Where the two roots have coalesced and vanished (discriminant < 0) the
-/// double root is continued, so that steps may look beyond. Invariant under scaling of a row. Cost: about 60
+/// Finds the root of the quadratic P where it rises, or falls, for either selection. With g(s, .) affine, the product
+/// P(s) = g(s, 0) x g(s, 1) vanishes where g(s, v) does for some v, and there P'(s) = det G. At the corners of the
+/// square P is the product of two normal components less that of two others. alpha_j is that over a positive number: it
+/// reaches a bound where they do, without cancellation. Where the two roots have coalesced and vanished (discriminant <
+/// 0) the double root is continued, so that steps may look beyond. Invariant under scaling of a row. Cost: about 60
 /// operations, one square root. [guglielmi2022], eq. (4.6).
 [[nodiscard]] BilinearRoot bilinear_root(const PairCorners& g, RootKind kind);
 
-/// The selections to evaluate the field with: g(alpha) = 0 to the rounding u of its terms, as far as det G goes to 0.
-/// Those of `root` are each known to u condition_j and leave as much of g; for G of rank one what both errors leave is
-/// in the column space of G, and the smallest change of alpha that balances the longer row balances the other one to u.
-/// Both rows count in their sizes. The same numbers as in `root` where their residual is below 1e-10, a tenth of what
-/// selections may leave, and where there is no root. Cost: 40 operations where not.
+/// Returns the selections to evaluate the field with: g(alpha) = 0 to the rounding u of its terms, as far as det G goes
+/// to 0. Those of `root` are each known to u condition_j and leave as much of g. For G of rank one what both errors
+/// leave is in the column space of G. There the smallest change of alpha that balances the longer row balances the
+/// other one to u. Both rows count in their sizes. The same numbers as in `root` where their residual is below 1e-10, a
+/// tenth of what selections may leave, and where there is no root. Cost: 40 operations where not.
 [[nodiscard]] std::array<double, 2> balanced_selections(const PairCorners& g, const BilinearRoot& root);
 
 }  // namespace saltus::switching

@@ -5,8 +5,8 @@
 namespace saltus::switching {
 namespace {
 
-/// In canonical form the corner is (+, +). Close to it, with w = u - 1 and the root beyond at w = delta > 0 (both), the
-/// hidden dynamics is w' = G (min(w, 0) - delta), from w = 0 with w' = r = -G delta, the drifts of f^{++}.
+/// In canonical form the corner is (+, +). Close to it, with w = u - 1, the root beyond is at w = delta > 0 (both). The
+/// hidden dynamics is w' = G (min(w, 0) - delta). It starts from w = 0 with w' = r = -G delta, the drifts of f^{++}.
 LeafMode leave_by_corner(const Plane& p, const std::array<Drift, 2>& r, SignTests& signs) {
   const bool first_out = r[0] == Drift::up;
   const bool second_out = r[1] == Drift::up;

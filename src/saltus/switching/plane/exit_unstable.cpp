@@ -75,7 +75,7 @@ PlaneDecision decide_exit_unstable(const PlaneTable& table) {
   const PlaneModes admissible = admissible_modes(table, plane, roots);
   if (loss.leaf == Leaf::C9_1) return spirals(table, signs, admissible);
   PlaneDecision decision = conclude(table, loss.leaf, symmetry->apply_inverse(loss.mode), signs, admissible);
-  // Fig. 10: during the laps around the root the solution comes close to the asymptote; for a large ratio of scalings
+  // Fig. 10: during the turns around the root the solution comes close to the asymptote; for a large ratio of scalings
   // it leaks through the gap that has opened, so that only the first picture is the same for all.
   decision.by_scaling = loss.leaf == Leaf::C10_2 || loss.leaf == Leaf::C10_3 || loss.leaf == Leaf::C10_4;
   decision.ambiguous = decision.by_scaling || loss.second.has_value();

@@ -3,7 +3,7 @@
 //
 // Everything is decided by the hidden dynamics u_j' = kappa_j g_j(pi(u)) of the point, in closed form, for all scalings
 // kappa at once. Which function to ask, and what it needs beside the table of normal components at the point:
-//   sliding on one surface reaches the other        decide_entering        the mode before
+//   sliding on one surface reaches the other         decide_entering        the mode before
 //   a selection leaves the square, exit (a)          decide_exit_edge       through which edge
 //   both selections leave together                   decide_exit_corner     through which corner
 //   the two roots coalesce and vanish, exit (b)      decide_exit_fold       -
@@ -11,8 +11,8 @@
 //   a classical solution reaches both at once        decide_corner_arrival  the region it comes from
 //   a solution starts on the intersection            decide_intersection_start
 //   a spiral shrinks to the point                    decide_spiral_in; times and places by spiral.hpp
-// // While sliding on, the selections are intersection_roots(table).rising; where the roots meet and part again (the
-// first case of exit (c)) nothing is to be decided.
+// While sliding on, the selections are intersection_roots(table).rising. Where the roots meet and part again (the first
+// case of exit (c)) nothing is to be decided.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@
 
 namespace saltus::switching {
 
-/// The leaves of the trees; docs/switching-trees.md draws them.
+/// Names the leaves of the trees; docs/switching-trees.md draws them.
 enum class Leaf {
   none,
   // clang-format off
@@ -40,7 +40,7 @@ enum class Leaf {
   spiral_in, spiral_out,                               // (4.14)
   // clang-format on
 };
-/// "E1", "C9-2", …
+/// Returns the name of a leaf: "E1", "C9-2".
 [[nodiscard]] std::string_view name(Leaf leaf);
 
 struct PlaneDecision {
@@ -59,15 +59,15 @@ struct PlaneDecision {
   [[nodiscard]] bool unique() const { return others.size() == 0 && !spirals_out; }
 };
 
-/// The usual passage of a solution that slides on one surface across the other: on both sides the first one attracts,
-/// and all four fields lead across. The mode behind is the only one, leaf E3 of decide_entering(), whose answer this
-/// is; nullopt where it is not so, or not clear of any rounding. Cost: O(1), the tree is not gone through.
+/// Decides the usual passage of a solution that slides on one surface across the other: on both sides the first one
+/// attracts, and all four fields lead across. The mode behind is the only one, leaf E3 of decide_entering(), whose
+/// answer this is; nullopt where it is not so, or not clear of any rounding. Cost: O(1), the tree is not gone through.
 /// @param incoming  0 for the surface that is slid on, the side it comes from for the other
 [[nodiscard]] std::optional<PlaneContinuation> pass_across(const PlaneTable& table, PlaneMode incoming);
-/// Why: of static duration.
+/// Returns why; the text has static duration.
 [[nodiscard]] std::string_view reason_of_passage();
 
-/// Sliding on one surface arrives at the other (Figs. 5 and 6; Theorems 6.1, 6.2 of [guglielmi2022]).
+/// Decides where sliding on one surface arrives at the other (Figs. 5 and 6; Theorems 6.1, 6.2 of [guglielmi2022]).
 /// @param incoming  0 for the surface that is slid on, the side it comes from for the other
 [[nodiscard]] PlaneDecision decide_entering(const PlaneTable& table, PlaneMode incoming,
                                             SelectionPolicy policy = SelectionPolicy::active_dominant);
@@ -80,29 +80,29 @@ struct SquareEdge {
 };
 [[nodiscard]] PlaneDecision decide_exit_edge(const PlaneTable& table, SquareEdge edge);
 
-/// Both selections leave the square together, through `corner` (two signs). The drifts of the field of that corner must
-/// be those of second order: its normal components are 0 there. Extends Fig. 7 where the linearised hidden dynamics at
-/// the corner has one outcome for all scalings; else undecided.
+/// Decides where both selections leave the square together, through `corner` (two signs). The drifts of the field of
+/// that corner must be those of second order: its normal components are 0 there. Extends Fig. 7 where the linearised
+/// hidden dynamics at the corner has one outcome for all scalings; else undecided.
 [[nodiscard]] PlaneDecision decide_exit_corner(const PlaneTable& table, PlaneMode corner);
 
-/// The two roots coalesce inside the square and vanish: exit (b), Fig. 8.
+/// Decides where the two roots coalesce inside the square and vanish: exit (b), Fig. 8.
 [[nodiscard]] PlaneDecision decide_exit_fold(const PlaneTable& table);
 
-/// min(G11, G22) of the root becomes 0 while the other is positive: exit (c), Figs. 9 and 10. The table is taken at
-/// that point or shortly behind. Never unique: staying on the root is a solution.
+/// Decides where min(G11, G22) of the root becomes 0 while the other is positive: exit (c), Figs. 9 and 10. The table
+/// is taken at that point or shortly behind. Never unique: staying on the root is a solution.
 [[nodiscard]] PlaneDecision decide_exit_unstable(const PlaneTable& table);
 
-/// A solution in the region `incoming` (two signs) reaches both surfaces at once, as happens with symmetric systems.
-/// Decided where reaching either surface first leads to the same mode; else undecided.
+/// Decides where a solution in the region `incoming` (two signs) reaches both surfaces at once, as happens with
+/// symmetric systems. It is decided where reaching either surface first leads to the same mode; else undecided.
 [[nodiscard]] PlaneDecision decide_corner_arrival(const PlaneTable& table, PlaneMode incoming);
 
-/// A solution starts on the intersection: the only admissible mode; else the only one that attracts; else one of those
-/// with most sliding, psi > 0 rather than psi < 0 (and the first surface before the second). Where the fields turn
-/// around an unstable root, the spiral.
+/// Decides where a solution starts on the intersection: the only admissible mode; else the only one that attracts; else
+/// one of those with most sliding, psi > 0 rather than psi < 0 (and the first surface before the second). Where the
+/// fields turn around an unstable root, the spiral.
 [[nodiscard]] PlaneDecision decide_intersection_start(const PlaneTable& table);
 
-/// The fields turn around the intersection with gamma < 1 (section 4.4 of [guglielmi2022]): sliding on it. The root has
-/// (4.12) then, and is the only continuation.
+/// Decides where the fields turn around the intersection with gamma < 1 (section 4.4 of [guglielmi2022]): sliding on
+/// it. The root has (4.12) then, and is the only continuation.
 [[nodiscard]] PlaneDecision decide_spiral_in(const PlaneTable& table);
 
 }  // namespace saltus::switching

@@ -9,13 +9,13 @@
 
 namespace saltus::switching {
 
-/// What a tree finds.
+/// Holds what a tree finds.
 struct LeafMode {
   Leaf leaf = Leaf::none;
   PlaneMode mode{};
 };
 
-/// The first symmetry for which `canonical(symmetry)` holds.
+/// Finds the first symmetry for which `canonical(symmetry)` holds.
 template <class Canonical>
 std::optional<PlaneSymmetry> find_symmetry(Canonical&& canonical) {
   for (unsigned i = 0; i < 8; ++i) {
@@ -25,20 +25,20 @@ std::optional<PlaneSymmetry> find_symmetry(Canonical&& canonical) {
   return std::nullopt;
 }
 
-/// admissible_modes() of a table whose plane and roots are known.
+/// Returns admissible_modes() of a table whose plane and roots are known.
 [[nodiscard]] PlaneModes admissible_modes(const PlaneTable& table, const Plane& plane, const IntersectionRoots& roots);
 
-/// Selections of a mode, whether or not it is admissible: the sliding ones by their formulas.
+/// Returns the selections of a mode, whether or not it is admissible: the sliding ones by their formulas.
 [[nodiscard]] PlaneContinuation continuation(const PlaneTable& table, PlaneMode mode);
 
-/// What a leaf decides, in words.
+/// Returns what a leaf decides, in words.
 [[nodiscard]] std::string_view reason(Leaf leaf);
 
-/// The decision for `mode`, with all other admissible modes.
+/// Returns the decision for `mode`, with all other admissible modes.
 [[nodiscard]] PlaneDecision conclude(const PlaneTable& table, Leaf leaf, PlaneMode mode, const SignTests& signs,
                                      const PlaneModes& admissible);
 
-/// Where no symmetry brings the situation into canonical form.
+/// Decides where no symmetry brings the situation into canonical form.
 [[nodiscard]] PlaneDecision not_canonical(const PlaneTable& table, std::string_view what);
 
 }  // namespace saltus::switching

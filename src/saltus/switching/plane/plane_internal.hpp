@@ -15,7 +15,8 @@ namespace saltus::switching {
 /// that enter it): switches are located to about 1e-12 of the fields, which leaves two digits.
 inline constexpr double sign_tolerance = 1e-10;
 
-/// Bilinear interpolation of the normal component on one surface, g = a + b alpha_1 + c alpha_2 + d alpha_1 alpha_2.
+/// Holds the bilinear interpolation of the normal component on one surface, g = a + b alpha_1 + c alpha_2 + d alpha_1
+/// alpha_2.
 struct Bilinear {
   double a, b, c, d;
 
@@ -24,7 +25,7 @@ struct Bilinear {
   }
 };
 
-/// Rows divided by a power of two, so that their largest entry is in [0.5, 1): exact, and no product over- or
+/// Holds rows divided by a power of two, so that their largest entry is in [0.5, 1): exact, and no product over- or
 /// underflows.
 struct Plane {
   std::array<std::array<double, 4>, 2> f{};
@@ -44,7 +45,7 @@ struct Plane {
     }
   }
 
-  /// f_1^{k1 k2} and f_2^{k1 k2}.
+  /// Returns f_1^{k1 k2} and f_2^{k1 k2}.
   [[nodiscard]] double f1(int k1, int k2) const { return f[0][corner(k1, k2)]; }
   [[nodiscard]] double f2(int k1, int k2) const { return f[1][corner(k1, k2)]; }
 
@@ -53,7 +54,8 @@ struct Plane {
     return {mm, pm - mm, mp - mm, (pp - mp) - (pm - mm)};
   }
 
-  /// H_j = f_j^{-+} f_j^{+-} - f_j^{++} f_j^{--}: on g_j = 0 the slope d alpha_1/d alpha_2 has the sign of -H_j.
+  /// Returns H_j = f_j^{-+} f_j^{+-} - f_j^{++} f_j^{--}: on g_j = 0 the slope d alpha_1/d alpha_2 has the sign of
+  /// -H_j.
   [[nodiscard]] double h(std::size_t j) const { return f[j][2] * f[j][1] - f[j][3] * f[j][0]; }
 
  private:

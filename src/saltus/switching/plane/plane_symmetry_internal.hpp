@@ -9,10 +9,10 @@
 
 namespace saltus::switching {
 
-/// The roots with the rows as they are in `plane`.
+/// Returns the roots with the rows as they are in `plane`.
 [[nodiscard]] IntersectionRoots intersection_roots(const Plane& plane);
 
-/// Where the roots coalesce as the discriminant goes to 0.
+/// Returns where the roots coalesce as the discriminant goes to 0.
 [[nodiscard]] PlaneAlpha double_root(const Plane& plane);
 
 /// First the sign of psi_1, then that of psi_2 is changed, then both are exchanged:

@@ -13,8 +13,8 @@ namespace saltus::switching {
 using PlaneMode = std::array<int, 2>;
 using PlaneAlpha = std::array<double, 2>;
 
-/// Normal components of four fields on two surfaces: side(j, corner), bit i of the corner is alpha_i. In the notation
-/// of [guglielmi2022] f_j^{k1 k2} with corner 0 = (--), 1 = (+-), 2 = (-+), 3 = (++). The rows may be scaled
+/// Holds the normal components of four fields on two surfaces: side(j, corner), bit i of the corner is alpha_i. In the
+/// notation of [guglielmi2022] f_j^{k1 k2} with corner 0 = (--), 1 = (+-), 2 = (-+), 3 = (++). The rows may be scaled
 /// separately.
 struct PlaneTable {
   std::array<std::array<Side, 4>, 2> sides{};
@@ -25,10 +25,10 @@ struct PlaneTable {
   }
 };
 
-/// From velocities alone; the drifts are their signs.
+/// Makes the table from velocities alone; the drifts are their signs.
 [[nodiscard]] PlaneTable plane_table(const std::array<std::array<double, 4>, 2>& velocities);
 
-/// From a table of two surfaces.
+/// Makes the table from one of two surfaces.
 [[nodiscard]] PlaneTable plane_table(const CornerTable& table);
 
 }  // namespace saltus::switching

@@ -31,28 +31,28 @@ std::optional<Turning> turning(const PlaneTable& table) {
   return std::nullopt;
 }
 
-std::optional<SpiralLap> spiral_lap(const PlaneTable& table, std::size_t first) {
+std::optional<SpiralCycle> spiral_cycle(const PlaneTable& table, std::size_t first) {
   const auto sense = turning(table);
   if (!sense) return std::nullopt;
   std::size_t at = 0;
   while (counterclockwise_order[at] != first) ++at;
   const std::size_t step = *sense == Turning::counterclockwise ? 1 : 3;
-  SpiralLap lap;
+  SpiralCycle cycle;
   double distance = 1.0;
   for (std::size_t i = 0; i < 4; ++i, at = (at + step) % 4) {
     const std::size_t corner = counterclockwise_order[at];
     const std::size_t crossed = (corner ^ counterclockwise_order[(at + step) % 4]) >> 1U;
-    lap.corners[i] = corner;
-    lap.durations[i] = distance / std::abs(table.velocity(crossed, corner));
-    distance = lap.durations[i] * std::abs(table.velocity(1 - crossed, corner));
+    cycle.corners[i] = corner;
+    cycle.durations[i] = distance / std::abs(table.velocity(crossed, corner));
+    distance = cycle.durations[i] * std::abs(table.velocity(1 - crossed, corner));
   }
-  lap.lap_ratio = distance;
-  return lap;
+  cycle.cycle_ratio = distance;
+  return cycle;
 }
 
-std::array<double, 4> SpiralLap::times_to_limit(double delta) const {
+std::array<double, 4> SpiralCycle::times_to_limit(double delta) const {
   std::array<double, 4> times = durations;
-  for (double& time : times) time *= delta / (1.0 - lap_ratio);
+  for (double& time : times) time *= delta / (1.0 - cycle_ratio);
   return times;
 }
 

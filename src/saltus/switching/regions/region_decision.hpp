@@ -7,7 +7,7 @@
 
 namespace saltus::switching {
 
-/// n regions with equal indicators g_i at a point, and their fields f_j:
+/// Holds n regions with equal indicators g_i at a point, and their fields f_j:
 ///   rates[i n + j] = w_ij = d/dt g_i along f_j, up to a constant per column j.
 struct RegionRates {
   int regions = 0;
@@ -17,7 +17,7 @@ struct RegionRates {
   }
 };
 
-/// A set of regions I that moves on with equal, and smallest, indicators: a solution of Stewart's linear
+/// Holds a set of regions I that moves on with equal, and smallest, indicators: a solution of Stewart's linear
 /// complementarity system ([stewart1990])
 ///   theta >= 0, sum_i theta_i = 1,   w_i = sum_j w_ij theta_j >= mu,   theta_i (w_i - mu) = 0.
 struct RegionSet {
@@ -32,19 +32,24 @@ struct RegionSet {
   bool marginal = false;  ///< it is within rounding of 0, and stays there: for who looks along the motion to set
 };
 
-/// Weights of the set `active` (ascending) as they solve the equalities, admissible or not; nothing if they are not
-/// determined. Cost: one linear system of order |I| + 1.
+/// Finds the weights of the set `active` (ascending) as they solve the equalities, admissible or not; nothing if they
+/// are not determined. Cost: one linear system of order |I| + 1.
 [[nodiscard]] bool solve_region_set(const RegionRates& rates, const std::vector<int>& active, RegionSet& set);
 
-/// All sets whose margin is at least -tolerance, by enumeration of the 2^n - 1 subsets; n <= 12.
+/// Returns all sets whose margin is at least -tolerance, by enumeration of the 2^n - 1 subsets; n <= 12.
 [[nodiscard]] std::vector<RegionSet> admissible_region_sets(const RegionRates& rates, double tolerance);
 
-/// Of marginal sets that move alike, with the same weights, the largest one stands for all: at an equilibrium of one of
-/// the fields the indicators of all regions stay equal.
+/// Lets the largest one of marginal sets that move alike, with the same weights, stand for all. At an equilibrium of
+/// one of the fields the indicators of all regions stay equal.
 void merge_same_motions(std::vector<RegionSet>& sets);
 
-/// Which of several sets to go on with: one that attracts before one that does not, then one with the weights of before
-/// (n of them, or none), then the one with most regions of `before`, then the larger one, then the first.
+/// Decides which of several sets to go on with. A set comes before another one for the first of these that tells them
+/// apart:
+/// - it attracts;
+/// - it has the weights of before (n of them, or none);
+/// - it has more regions of `before`;
+/// - it is larger;
+/// - it is listed first.
 [[nodiscard]] std::size_t preferred_region_set(const std::vector<RegionSet>& sets, const std::vector<int>& before,
                                                const std::vector<double>& weights = {});
 

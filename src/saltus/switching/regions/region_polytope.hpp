@@ -12,27 +12,29 @@ namespace saltus::switching {
 /// Sets of regions as bits.
 using RegionBits = unsigned;
 
-/// n regions with equal indicators at a point, as points y_i of R^m (rows; m = independent differences of indicators):
+/// Holds n regions with equal indicators at a point, as points y_i of R^m (rows; m = independent differences of
+/// indicators):
 ///   g_r - g_i = sum_k y_ik s_k   to first order, with independent s_k.
 /// The regions that stay at the minimum along a direction s are those with the largest y_i . s: a face of the hull.
 /// n <= 12.
 class RegionPolytope {
  public:
-  /// nullopt if the points do not span R^m.
+  /// Returns nullopt if the points do not span R^m.
   [[nodiscard]] static std::optional<RegionPolytope> make(Eigen::MatrixXd points);
 
   [[nodiscard]] const Eigen::MatrixXd& points() const { return points_; }
   [[nodiscard]] int regions() const { return static_cast<int>(points_.rows()); }
   [[nodiscard]] int dimension() const { return static_cast<int>(points_.cols()); }
-  /// Faces of dimension m - 1, in an order that depends on the numbering of the regions only.
+  /// Returns the faces of dimension m - 1, in an order that depends on the numbering of the regions only.
   [[nodiscard]] const std::vector<RegionBits>& facets() const { return facets_; }
-  /// Distances of the points from a facet, the smallest one that is not 0 being 1; facets in rows.
+  /// Returns the distances of the points from a facet, the smallest one that is not 0 being 1; facets in rows.
   [[nodiscard]] const Eigen::MatrixXd& heights() const { return heights_; }
-  /// Inward normals with these heights: nu_f . (y_i - y) for y on facet f; facets in rows.
+  /// Returns the inward normals with these heights: nu_f . (y_i - y) for y on facet f; facets in rows.
   [[nodiscard]] const Eigen::MatrixXd& normals() const { return normals_; }
-  /// All faces but the empty one, the polytope itself first.
+  /// Returns all faces but the empty one, the polytope itself first.
   [[nodiscard]] std::vector<RegionBits> faces() const;
-  /// Other points with the same faces, as where gradients turn a little while the solution slides. Allocates nothing.
+  /// Takes other points with the same faces, as where gradients turn a little while the solution slides. Allocates
+  /// nothing.
   void move(const Eigen::Ref<const Eigen::MatrixXd>& points);
 
  private:

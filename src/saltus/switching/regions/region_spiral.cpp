@@ -29,43 +29,43 @@ int beyond(const RegionPolytope& polytope, std::size_t edge, int region) {
 }
 
 /// From vertex to vertex, the first one entered over the edge `entry`.
-std::optional<RegionLap> lap_over(const RegionTie& tie, int first, std::size_t entry) {
+std::optional<RegionCycle> cycle_over(const RegionTie& tie, int first, std::size_t entry) {
   const auto border = [&](std::size_t edge) -> Eigen::Vector2d {
     return -tie.polytope.normals().row(static_cast<Eigen::Index>(edge)).normalized().transpose();
   };
-  RegionLap lap;
-  lap.lap_ratio = 1.0;
+  RegionCycle cycle;
+  cycle.cycle_ratio = 1.0;
   int region = first;
   std::size_t edge = entry;
   do {
     const auto edges = edges_at(tie.polytope, region);
-    if (!edges || lap.regions.size() > static_cast<std::size_t>(tie.polytope.regions())) return std::nullopt;
+    if (!edges || cycle.regions.size() > static_cast<std::size_t>(tie.polytope.regions())) return std::nullopt;
     const std::size_t exit = (*edges)[0] == edge ? (*edges)[1] : (*edges)[0];
     Eigen::Matrix2d directions;
     directions.col(0) = -tie.rates.col(region);
     directions.col(1) = border(exit);
     const Eigen::Vector2d parts = directions.partialPivLu().solve(border(edge));
     if (!(parts[0] > 0.0 && parts[1] > 0.0) || !parts.allFinite()) return std::nullopt;
-    lap.regions.push_back(region);
-    lap.durations.push_back(lap.lap_ratio * parts[0]);
-    lap.lap_ratio *= parts[1];
+    cycle.regions.push_back(region);
+    cycle.durations.push_back(cycle.cycle_ratio * parts[0]);
+    cycle.cycle_ratio *= parts[1];
     region = beyond(tie.polytope, exit, region);
     edge = exit;
   } while (region != first && region >= 0);
-  return region == first ? std::optional(std::move(lap)) : std::nullopt;
+  return region == first ? std::optional(std::move(cycle)) : std::nullopt;
 }
 
 }  // namespace
 
-double RegionLap::duration() const { return std::accumulate(durations.begin(), durations.end(), 0.0); }
+double RegionCycle::duration() const { return std::accumulate(durations.begin(), durations.end(), 0.0); }
 
-std::optional<RegionLap> region_spiral(const RegionTie& tie) {
+std::optional<RegionCycle> region_spiral(const RegionTie& tie) {
   if (tie.polytope.dimension() != 2) return std::nullopt;
   for (int region = 0; region < tie.polytope.regions(); ++region) {
     const auto edges = edges_at(tie.polytope, region);
     if (!edges) continue;
     for (const std::size_t entry : *edges) {
-      if (auto lap = lap_over(tie, region, entry)) return lap;
+      if (auto cycle = cycle_over(tie, region, entry)) return cycle;
     }
     return std::nullopt;
   }

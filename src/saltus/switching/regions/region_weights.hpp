@@ -9,7 +9,7 @@
 
 namespace saltus::switching {
 
-/// Where n regions meet and g_r - g_i = sum_k y_ik s_k with m < n - 1 independent s_k, the m equations that keep them
+/// Let n regions meet and g_r - g_i = sum_k y_ik s_k with m < n - 1 independent s_k. The m equations that keep them
 /// equal leave a polytope of weights. The weights theta_i ~ exp(-g_i / epsilon) have, for every epsilon,
 ///   theta_i = exp(y_i . v) / sum_j exp(y_j . v),   v = s / epsilon in R^m,
 /// and the limit is the one of these with
@@ -27,7 +27,7 @@ class RegionWeights {
   [[nodiscard]] RegionPolytope& polytope() { return polytope_; }
   [[nodiscard]] const RegionPolytope& polytope() const { return polytope_; }
 
-  /// Newton's method from nearby weights.
+  /// Applies Newton's method from nearby weights.
   /// @param rates  m x n, the r_j as columns
   /// @param theta  n, in: the start, which also says which facets are near; out: the root, outside of the simplex
   ///               behind an exit
@@ -35,16 +35,16 @@ class RegionWeights {
   /// Cost: per iteration n m powers and one linear system of order m; 2 to 4 iterations from nearby.
   [[nodiscard]] bool solve(const Eigen::MatrixXd& rates, double* theta);
 
-  /// Behind solve(): the sum of the weights that are not on a facet: > 0 inside, and 0 where the solution leaves the
-  /// other regions.
+  /// Returns, behind solve(), the sum of the weights that are not on a facet: > 0 inside, and 0 where the solution
+  /// leaves the other regions.
   [[nodiscard]] double excess(std::size_t facet) const { return excess_[facet]; }
-  /// Behind solve(): determinant of the equations, rows over their lengths, which vanishes where two roots coalesce.
-  /// Its sign is (-1)^m where the weights return to the root (m <= 2: only there, if the trace allows).
+  /// Returns, behind solve(), the determinant of the equations, rows over their lengths, which vanishes where two roots
+  /// coalesce. Its sign is (-1)^m where the weights return to the root (m <= 2: only there, if the trace allows).
   [[nodiscard]] double determinant() const { return determinant_; }
-  /// Behind solve(): > 0 while the weights are stable: of a parallelepiped, whose weights are products of selections,
-  /// for some scaling of these, as for that many switching functions (fisher_fuller_margin); of a polygon as they are.
-  /// Passes 0 where that ends, other than by a determinant() of 0. LIMIT: other polytopes of dimension 3 and more
-  /// always have 1. Cost: a product of matrices of order m; allocates for m > 2.
+  /// Returns, behind solve(), a number > 0 while the weights are stable: of a parallelepiped, whose weights are
+  /// products of selections, for some scaling of these, as for that many switching functions (fisher_fuller_margin); of
+  /// a polygon as they are. Passes 0 where that ends, other than by a determinant() of 0. LIMIT: other polytopes of
+  /// dimension 3 and more always have 1. Cost: a product of matrices of order m; allocates for m > 2.
   [[nodiscard]] double stability() const;
 
  private:
@@ -69,7 +69,8 @@ class RegionWeights {
   double determinant_ = 0.0;
 };
 
-/// d (ds/dt) / dv at weights theta: its eigenvalues say whether the weights return, R (diag theta - theta theta^T) Y.
+/// Returns d (ds/dt) / dv at weights theta: its eigenvalues say whether the weights return, R (diag theta - theta
+/// theta^T) Y.
 [[nodiscard]] Eigen::MatrixXd weight_dynamics(const Eigen::MatrixXd& points, const Eigen::MatrixXd& rates,
                                               const Eigen::VectorXd& theta);
 

@@ -8,7 +8,7 @@
 
 namespace saltus::switching {
 
-/// For each hyperplane that columns span: its first basis in lexical order; these in lexical order. Of m points'
+/// Returns for each hyperplane that columns span its first basis in lexical order; these in lexical order. Of m points'
 /// differences e_i - e_j, for instance, 2^(m-1) - 1 hyperplanes, one for each way to part the points.
 /// @param columns  r x q of rank r; of any lengths, since only directions count
 /// @return nothing where some rank has more than `most` flats, or a column is not finite

@@ -7,8 +7,8 @@
 
 namespace saltus::switching {
 
-/// A solution of: lambda in [0, 1]^m, y = w + W lambda, y_i > 0 only where lambda_i = 1, y_i < 0 only where lambda_i =
-/// 0.
+/// Holds a solution of: lambda in [0, 1]^m, y = w + W lambda, y_i > 0 only where lambda_i = 1, y_i < 0 only where
+/// lambda_i = 0.
 struct Complementarity {
   Eigen::VectorXd lambda;
   std::vector<int> mode;         ///< 1, -1 where the surface is left to that side; 0 where it is slid on

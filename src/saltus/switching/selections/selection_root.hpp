@@ -7,9 +7,9 @@
 namespace saltus::switching {
 
 /// Decides a surface with normal component g(alpha), alpha in [0, 1], by following the hidden dynamics alpha' ~
-/// g(alpha) from the side the solution comes from (at the start: from the side the fields point away from; where the
-/// selection was lost: from `lost_at`) in the direction of g to its first zero, which is the sliding selection; if
-/// there is none the solution leaves on that side.
+/// g(alpha). It starts from the side the solution comes from (at the start: from the side the fields point away from;
+/// where the selection was lost: from `lost_at`). It goes in the direction of g to its first zero, which is the sliding
+/// selection. If there is none the solution leaves on that side.
 /// @param situation  g(0), g(1) with their drifts, and the arrival
 /// @param lost_at    selection that ceased to exist, for Arrival::along
 /// Cost: about 300 evaluations of g.

@@ -11,12 +11,13 @@
 
 namespace saltus::switching {
 
-/// G = dg/dalpha of multi-affine g with the entries that `influence` allows (the diagonal among them), by as many
+/// Finds G = dg/dalpha of multi-affine g with the entries that `influence` allows (the diagonal among them), by as many
 /// evaluations as there are colours of selections.
 class SparseEffects {
  public:
   explicit SparseEffects(const Influence& influence);
 
+  /// Finds G at one point.
   /// @param alpha  m selections; changed during the call and put back
   /// @param g      g(alpha), m
   void find(ProjectedField field, double* alpha, const double* g);
@@ -31,14 +32,15 @@ class SparseEffects {
   Eigen::SparseMatrix<double> matrix_;
 };
 
-/// Newton's method for g(alpha) = 0 with a sparse G: SelectionNewton of many surfaces.
+/// Applies Newton's method to g(alpha) = 0 with a sparse G: SelectionNewton of many surfaces.
 class SparseNewton {
  public:
   explicit SparseNewton(const Influence& influence);
 
-  /// As SelectionNewton::solve. Cost: colours + 1 evaluations of g and a sparse factorisation per iteration.
+  /// Does what SelectionNewton::solve does. Cost: colours + 1 evaluations of g and a sparse factorisation per
+  /// iteration.
   bool solve(ProjectedField g, double* alpha);
-  /// G at the last point where it was formed.
+  /// Returns G at the last point where it was formed.
   [[nodiscard]] const Eigen::SparseMatrix<double>& jacobian() const { return effects_.matrix(); }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace saltus::switching {
 
-/// value(alpha) = constant + effects alpha for alpha in [0, 1]^q.
+/// Holds value(alpha) = constant + effects alpha for alpha in [0, 1]^q.
 struct AdditiveMap {
   Eigen::VectorXd constant;  ///< r
   Eigen::MatrixXd effects;   ///< r x q
@@ -19,8 +19,8 @@ struct AdditiveMap {
 /// What depends on q selections: a field, or velocities of switching functions.
 using OfSelections = std::function<void(const std::vector<double>& alpha, Eigen::VectorXd& value)>;
 
-/// Asks at alpha = 0 and at each selection alone, then at corners with ones at every second, third, fourth place, from
-/// each of the first ones on, and everywhere: products of selections show in these.
+/// Asks at alpha = 0 and at each selection alone. Then it asks at corners with ones at every second, third, fourth
+/// place, from each of the first ones on, and everywhere. Products of selections show in these.
 /// @param q  number of selections
 /// @return   nullopt where selections multiply each other; not finite where a value is not. Cost: q + 11 values.
 [[nodiscard]] std::optional<AdditiveMap> additive_map(std::size_t q, const OfSelections& value);

@@ -8,8 +8,8 @@
 
 namespace saltus::switching {
 
-/// The projected fields at a point of m surfaces: side(j, corner) is the normal component on surface j of the field of
-/// `corner`, where bit i of the corner is the selection alpha_i in {0, 1} (2^m corners).
+/// Holds the projected fields at a point of m surfaces: side(j, corner) is the normal component on surface j of the
+/// field of `corner`, where bit i of the corner is the selection alpha_i in {0, 1} (2^m corners).
 struct CornerTable {
   int surfaces = 0;
   std::vector<Arrival> arrival;  ///< m
@@ -37,10 +37,10 @@ struct GroupDecision {
 /// transient would decide, the verdict is `coupled`. Cost: O(m^2 2^m).
 [[nodiscard]] GroupDecision decide_group(const CornerTable& table);
 
-/// Parts of a group whose surfaces influence each other, in an order in which none depends on a later one: numbers in
-/// the table, each part ascending. One part if every surface depends on every other, directly or through others. A
-/// surface depends on a selection that changes its normal component, or where that leads if it is zero. Cost: O(m^2
-/// 2^m).
+/// Returns the parts of a group whose surfaces influence each other, in an order in which none depends on a later one:
+/// numbers in the table, each part ascending. One part if every surface depends on every other, directly or through
+/// others. A surface depends on a selection that changes its normal component, or where that leads if it is zero. Cost:
+/// O(m^2 2^m).
 [[nodiscard]] std::vector<std::vector<int>> parts_by_influence(const CornerTable& table);
 
 }  // namespace saltus::switching

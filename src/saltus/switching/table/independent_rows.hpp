@@ -12,8 +12,8 @@ namespace saltus::switching {
 /// gradients by differences are good to ten digits, and surfaces that touch have gradients that nearly agree.
 inline constexpr double dependent_part = 1e-6;
 
-/// The rows of J (one per condition) that those chosen before them leave more of than `dependent_part`, ascending: a
-/// basis of all rows. Rows of zeros are in none.
+/// Returns the rows of J (one per condition) that those chosen before them leave more of than `dependent_part`,
+/// ascending: a basis of all rows. Rows of zeros are in none.
 /// @param gradients  J, m x n
 /// Cost: m^2 n.
 [[nodiscard]] std::vector<std::size_t> independent_rows(const Eigen::MatrixXd& gradients);

@@ -9,13 +9,13 @@
 
 namespace saltus::switching {
 
-/// `rows` functions of n selections: value(j, corner) at the corner whose bit i is alpha_i. A value; evaluation uses a
-/// workspace inside it and does not allocate.
+/// Holds `rows` functions of n selections: value(j, corner) at the corner whose bit i is alpha_i. A value; evaluation
+/// uses a workspace inside it and does not allocate.
 class MultiAffine {
  public:
   MultiAffine() = default;
   MultiAffine(int rows, int selections);
-  /// The velocities of a table (eq. (2.6) of [guglielmi2022]).
+  /// Takes the velocities of a table (eq. (2.6) of [guglielmi2022]).
   explicit MultiAffine(const CornerTable& table);
   /// Samples g at the 2^m corners: m 2^m numbers.
   MultiAffine(int surfaces, ProjectedField g);
@@ -29,8 +29,8 @@ class MultiAffine {
   [[nodiscard]] double value(int row, std::size_t corner) const { return values_[index(row, corner)]; }
   void set_value(int row, std::size_t corner, double value) { values_[index(row, corner)] = value; }
 
-  /// All functions at alpha (n), which may lie outside the cube: exact at its corners. Successive contraction, about
-  /// 3 rows 2^n operations.
+  /// Evaluates all functions at alpha (n), which may lie outside the cube: exact at its corners. Successive
+  /// contraction, about 3 rows 2^n operations.
   void evaluate(const double* alpha, double* result) const {
     if (selections_ != 2 || rows_ != 2) return contract(alpha, result);
     // Two surfaces: what nearly every evaluation is, in a handful of instructions.
@@ -63,14 +63,15 @@ class MultiAffine {
   mutable std::vector<double> work_;
 };
 
-/// The other end of the difference over alpha_p from `here`: the farther of 0 and 1, at which a multi-affine g gives
-/// the derivative up to rounding; for general g 1e-6 away (errors of 1e-6 and 1e-10 of g from truncation and rounding).
+/// Returns the other end of the difference over alpha_p from `here`: the farther of 0 and 1, at which a multi-affine g
+/// gives the derivative up to rounding; for general g 1e-6 away (errors of 1e-6 and 1e-10 of g from truncation and
+/// rounding).
 [[nodiscard]] constexpr double difference_end(double here, Interpolation interpolation) {
   if (interpolation == Interpolation::multi_affine) return here < 0.5 ? 1.0 : 0.0;
   return here < 0.5 ? here + 1e-6 : here - 1e-6;
 }
 
-/// G_jp = d g_j / d alpha_p at alpha, m x m row by row, from g = g(alpha) and m further evaluations: the
+/// Finds G_jp = d g_j / d alpha_p at alpha, m x m row by row, from g = g(alpha) and m further evaluations: the
 /// differences to difference_end.
 /// @param alpha  m selections; changed during the call and put back
 /// @param shifted  workspace of m doubles

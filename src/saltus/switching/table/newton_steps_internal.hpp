@@ -12,9 +12,9 @@ class NewtonSteps {
     double size = 0.0;   ///< its largest component
     double reach = 0.0;  ///< the largest component of the point behind it
   };
-  /// Whether the search ends with this step: it is of rounding size, or rounding has the last word as steps no longer
-  /// shrink. Towards a double root they halve until they are as long as the distance to its twin, and square from
-  /// there.
+  /// Returns whether the search ends with this step: it is of rounding size, or rounding has the last word as steps no
+  /// longer shrink. Towards a double root they halve until they are as long as the distance to its twin, and square
+  /// from there.
   [[nodiscard]] bool end_with(const Step& step) {
     constexpr double rounding = 4e-16;
     constexpr double settled = 1e-7;  // from here a step squares to rounding level

@@ -9,7 +9,7 @@ namespace saltus::switching {
 /// velocities out. At alpha in {0, 1}^m these are the normal components of the 2^m fields that meet there.
 using ProjectedField = FunctionRef<void(const double* alpha, double* g)>;
 
-/// How the selections enter g. `multi_affine`: affine in each selection (multilinear interpolation, eq. (2.6) of
+/// Says how the selections enter g. `multi_affine`: affine in each selection (multilinear interpolation, eq. (2.6) of
 /// [guglielmi2022]); `general`: smooth (an Aizerman-Pyatnitskii model), so that derivatives are difference quotients.
 enum class Interpolation { multi_affine, general };
 

@@ -7,11 +7,11 @@
 
 namespace saltus::switching {
 
-/// Direction in which psi moves along a field: the sign of its first derivative that does not vanish; `stays` if all
-/// derivatives that were looked at vanish.
+/// Names the direction in which psi moves along a field: the sign of its first derivative that does not vanish; `stays`
+/// if all derivatives that were looked at vanish.
 enum class Drift { down = -1, stays = 0, up = 1 };
 
-/// How the solution reached the surface psi = 0.
+/// Says how the solution reached the surface psi = 0.
 enum class Arrival {
   from_below,  ///< from psi < 0
   from_above,  ///< from psi > 0
@@ -19,7 +19,7 @@ enum class Arrival {
   at_start,    ///< it starts there
 };
 
-/// One surface with every other selection held: normal components of the fields that meet there,
+/// Holds one surface with every other selection held: normal components of the fields that meet there,
 ///   below.velocity = grad psi . f(alpha = 0) + d psi/dt   (valid where psi < 0),   above: alpha = 1.
 /// Unit: unit of psi per unit of time.
 struct Side {
@@ -46,8 +46,8 @@ struct SurfaceDecision {
   std::string_view reason;       ///< which rule decided, in words; of static duration
 };
 
-/// Sliding selection alpha = g- / (g- - g+) from g- = below.velocity >= 0 >= g+ = above.velocity, not both 0
-/// (eq. (4.2) of [guglielmi2022] with lambda = 2 alpha - 1). Adds two numbers of the same sign: no cancellation.
+/// Returns the sliding selection alpha = g- / (g- - g+) from g- = below.velocity >= 0 >= g+ = above.velocity, not both
+/// 0 (eq. (4.2) of [guglielmi2022] with lambda = 2 alpha - 1). Adds two numbers of the same sign: no cancellation.
 [[nodiscard]] double sliding_alpha(double velocity_below, double velocity_above);
 
 /// Decides one surface ([guglielmi2022], Figs. 2 and 3, completed by tangencies and starts).

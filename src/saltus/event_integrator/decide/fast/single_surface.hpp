@@ -29,31 +29,31 @@ class SingleSurface {
   [[nodiscard]] bool decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
                             const std::vector<double>* slope = nullptr);
 
-  /// The same answer where the solution slides on nothing, from the fields of both sides, f(alpha_surface = 0) and
-  /// f(alpha_surface = 1), n_x each, in a model without nesting, regions and discrete states; nullopt where it is not
-  /// as clear. Cost: the gradient of the surface.
+  /// Gives the same answer where the solution slides on nothing, in a model without nesting, regions and discrete
+  /// states. It needs the fields of both sides, f(alpha_surface = 0) and f(alpha_surface = 1), n_x each. Returns
+  /// nullopt where it is not as clear. Cost: the gradient of the surface.
   [[nodiscard]] std::optional<switching::SurfaceDecision> decide(const ModeState& before, int surface, double t,
                                                                  const double* x, const std::vector<double>& below,
                                                                  const std::vector<double>& above);
-  /// Whether the selection of what was slid on lies within its bounds at an exit, to rounding: away from them it may
-  /// have been lost in a two-fold point, where the full decision looks closer.
+  /// Returns whether the selection of what was slid on lies within its bounds at an exit, to rounding: away from them
+  /// it may have been lost in a two-fold point, where the full decision looks closer.
   [[nodiscard]] static bool is_within_bounds(double alpha) {
     constexpr double rounding = 1e-9;
     return alpha >= -rounding && alpha <= 1.0 + rounding;
   }
-  /// A point, and a step of the integrator.
+  /// Holds a point, and a step of the integrator.
   struct Place {
     double t = 0.0;
     const double* x = nullptr;
     double time_scale = 0.0;
   };
-  /// At an exit: normal components of both fields, and the second derivative of psi along the tangent one, if it is
-  /// known.
+  /// Holds, at an exit, normal components of both fields, and the second derivative of psi along the tangent one, if it
+  /// is known.
   struct Motions {
     ExitValues velocities;
     std::optional<double> bend;
   };
-  /// The same at an exit from sliding on this surface alone, where the field of `side` has become tangent to it;
+  /// Does the same at an exit from sliding on this surface alone, where the field of `side` has become tangent to it;
   /// `before` has the selection of that side. Cost: the gradient, and a second derivative that is not known.
   [[nodiscard]] std::optional<switching::SurfaceDecision> decide_exit(const ModeState& before, int surface,
                                                                       const Place& place, const Motions& motions,

@@ -28,19 +28,19 @@ class SurfacePair {
   /// Fills `transition`, whose storage is used again.
   /// @return whether the switching point is of this kind; if not, `transition` is in no particular state.
   [[nodiscard]] bool decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition);
-  /// The same in two parts, so that what lies between can be asked. First: whether the switching point is of this kind,
-  /// as far as the fields tell.
+  /// Does the same in two parts, so that what lies between can be asked. The first part tells whether the switching
+  /// point is of this kind, as far as the fields tell.
   /// @param field  of the mode before, behind an evaluation at the switching point, where it slides on one
-  ///               surface; nullptr if it is not at hand
+  ///               surface; nullptr if it is not known
   /// Cost: four evaluations of f, two with a field.
   [[nodiscard]] bool look(const ModeState& before, const SwitchingPoint& switching_point, const ModeField* field);
-  /// Behind it: where the solution goes on sliding on one surface across the other (switching::pass_across()), their
-  /// selections there, in the order of the switching point; nullopt where it does not, or not as clearly.
+  /// Returns, behind it, where the solution goes on sliding on one surface across the other (switching::pass_across()),
+  /// their selections there, in the order of the switching point; nullopt where it does not, or not as clearly.
   [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before,
                                                             const SwitchingPoint& switching_point) const;
-  /// Second: the transition, by a tree.
+  /// Does the second part: makes the transition, by a tree.
   [[nodiscard]] bool conclude(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition);
-  /// What the last decision was made from.
+  /// Returns what the last decision was made from.
   [[nodiscard]] Meeting meeting(const ModeState& before, const SwitchingPoint& switching_point) const;
 
  private:

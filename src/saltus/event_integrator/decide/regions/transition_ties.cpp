@@ -103,27 +103,29 @@ bool Decider::is_lost(const MeetingRegions& meeting, const switching::RegionSet&
   return std::all_of(change.begin(), change.end(), [](double c) { return std::abs(c) <= near; });
 }
 
-/// No set goes on where the fields of all regions turn around the point: a lap that grows leaves it.
+/// No set goes on where the fields of all regions turn around the point: a cycle that grows leaves it.
 bool Decider::spiral_out(const MeetingRegions& meeting, const evaluation::RegionRange& range) {
   if (!meeting.basis || meeting.basis->base.size() != 2) return false;
-  const auto lap = switching::region_spiral(tie_at(meeting, switching_point_.t, switching_point_.x));
-  if (!lap || !(lap->lap_ratio > 1.0)) return false;
+  const auto cycle = switching::region_spiral(tie_at(meeting, switching_point_.t, switching_point_.x));
+  if (!cycle || !(cycle->cycle_ratio > 1.0)) return false;
   const auto& candidates = meeting.candidates;
   // As around an intersection of two surfaces.
-  double delta = 1e-6 * switching_point_.time_scale / lap->duration();
+  double delta = 1e-6 * switching_point_.time_scale / cycle->duration();
   for (std::size_t k = 1; k < candidates.size(); ++k) {
-    delta = std::max(delta, 1e5 * fields_.noise(candidates[k]) / (lap->lap_ratio - 1.0));
+    delta = std::max(delta, 1e5 * fields_.noise(candidates[k]) / (cycle->cycle_ratio - 1.0));
   }
-  const int first = candidates[at(lap->regions.front())], last = candidates[at(lap->regions.back())];
-  SpiralStart start{
-      delta * lap->duration(), {switching_point_.x, switching_point_.x + s_.kernel.states()}, last, lap->lap_ratio};
+  const int first = candidates[at(cycle->regions.front())], last = candidates[at(cycle->regions.back())];
+  SpiralStart start{delta * cycle->duration(),
+                    {switching_point_.x, switching_point_.x + s_.kernel.states()},
+                    last,
+                    cycle->cycle_ratio};
   std::vector<double> f(start.x.size());
-  for (std::size_t k = 0; k < lap->regions.size(); ++k) {
+  for (std::size_t k = 0; k < cycle->regions.size(); ++k) {
     std::vector<double> alpha = base_.alpha;
     for (const int region : candidates) alpha[at(region)] = 0.0;
-    alpha[at(candidates[at(lap->regions[k])])] = 1.0;
+    alpha[at(candidates[at(cycle->regions[k])])] = 1.0;
     s_.kernel.field(switching_point_.t, switching_point_.x, alpha.data(), f.data());
-    for (std::size_t i = 0; i < f.size(); ++i) start.x[i] += delta * lap->durations[k] * f[i];
+    for (std::size_t i = 0; i < f.size(); ++i) start.x[i] += delta * cycle->durations[k] * f[i];
   }
   transition_.beyond_spiral = std::move(start);
   transition_.unique = false;

@@ -9,10 +9,10 @@
 
 namespace saltus::event_integrator {
 
-/// At a point on the held guards, in the cells of the kernel. Not among them are kinks, and functions nested in others
-/// or around them. The problem is a selection that changes what presses on several guards, or selections that multiply
-/// each other in it: where they are left is then a question of all of them together.
-/// Cost: three projections onto the guards and a few evaluations of f per surface at zero.
+/// Finds them at a point on the held guards, in the cells of the kernel. Not among them are kinks, and functions nested
+/// in others or around them. The problem is a selection that changes what presses on several guards, or selections that
+/// multiply each other in it: where they are left is then a question of all of them together. Cost: three projections
+/// onto the guards and a few evaluations of f per surface at zero.
 [[nodiscard]] RestingSurfaces find_resting_surfaces(const SwitchingContext& switching_context, Holding& holding,
                                                     double t, const std::vector<double>& alpha,
                                                     const std::vector<double>& x);

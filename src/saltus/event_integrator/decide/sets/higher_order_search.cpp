@@ -259,7 +259,7 @@ class SetSearch {
   HigherOrderSet set_;
   std::vector<HeldFunction> open_;            ///< to be looked at
   std::vector<std::vector<double>> fields_;   ///< of all corners at x
-  std::vector<std::vector<double>> corners_;  ///< … of the last velocities()
+  std::vector<std::vector<double>> corners_;  ///< of all corners, in the last velocities()
   std::string problem_;
 };
 
