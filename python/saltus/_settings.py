@@ -110,9 +110,11 @@ def check_together(keywords: typing.Mapping[str, Value]) -> None:
     """What keywords cannot be, or cannot be beside each other."""
     if not isinstance(keywords.get("inputs") or {}, typing.Mapping):
         raise refuse(f"inputs={keywords['inputs']!r}: expected a dict", 'e.g. inputs={"u": "sin(t)"}')
-    grids = [name for name in ("every", "points", "times") if keywords.get(name) is not None]
+    output = keywords.get("output")
+    given = {**(output if isinstance(output, typing.Mapping) else {}), **keywords}
+    grids = [name for name in ("every", "points", "times") if given.get(name) is not None]
     if len(grids) > 1:
-        raise refuse(f"{' and '.join(grids)} say twice when there are rows", "give one of every, points and times")
+        raise refuse(f"{' and '.join(grids)} say twice when there are rows", "leave one of them out")
 
 
 def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], list[Option]]:

@@ -227,7 +227,9 @@ Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::str
   const auto dot = std::min(key.find('.'), key.size());
   const auto table = key.substr(0, dot);
   Expected<void> done;
-  if (key.starts_with(inputs)) {
+  if (table == "simulate" && dot < key.size() && is_table_text(value)) {
+    done = set_table(model, key, value);
+  } else if (key.starts_with(inputs)) {
     done = set_input(model, key.substr(inputs.size()), value);
   } else if (table == "simulate") {
     done = set_option(model, key, value, place_of_setting(key));
