@@ -194,3 +194,14 @@ def test_a_result_without_rows_is_told(slip):
         slip.plot(axes=[1])
     with pytest.raises(TypeError, match="by its name"):
         slip[0]
+
+
+def test_units_of_a_run_of_a_sweep():
+    m = saltus.Model.from_text(
+        '[model]\nname = "m"\n[parameters]\nk = 1\n[states]\nx = { initial = 1, unit = "m", label = "position" }\n'
+        '[dynamics]\nx = "-k*x"\n[simulate]\nuntil = 1\n'
+    )
+    alone = [axis.get_ylabel() for axis in m.simulate().plot()]
+    assert alone == ["position [m]"]
+    of_sweep = m.sweep(k=[1, 2], keep="trajectory").results[1]
+    assert [axis.get_ylabel() for axis in of_sweep.plot()] == alone

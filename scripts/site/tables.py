@@ -106,6 +106,8 @@ Read [Saltus in Python](../python.md) first.
 
 .. autoclass:: saltus.Alternative
 
+.. autoclass:: saltus.Intersection
+
 .. autoclass:: saltus.Final
    :members:
    :special-members: __getitem__
