@@ -46,6 +46,8 @@ def said_by(call, kind=ValueError):
         ({"times": [3, 2]}, "times=[3, 2]"),
         ({"times": [3, 20]}, "output time 20 lies outside the simulation from 0 to 5"),
         ({"points": 5, "every": 1}, "every and points say twice"),
+        ({"output": {"points": 5, "every": 1}}, "every and points say twice"),
+        ({"output": {"points": 5}, "times": [1, 2]}, "points and times say twice"),
         ({"states": ["w"]}, "unknown state 'w'\n  in states"),
         ({"initial_mode": {"slipp": 0}}, "in initial_mode.slipp\n  did you mean 'slip'?"),
         ({"inputs": 3}, "inputs=3: expected a dict"),

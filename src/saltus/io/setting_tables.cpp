@@ -17,11 +17,7 @@ void withdraw_inputs(model::Description& description, const TomlTable& simulate)
   for (const auto& entry : simulate) {
     const auto* inputs = std::get_if<TomlTable>(&entry.value.value);
     if (entry.key != "inputs" || inputs == nullptr) continue;
-    for (const auto& input : *inputs) {
-      const auto same = [&](const auto& other) { return other.name == input.key; };
-      std::erase_if(description.sampled_inputs, same);
-      std::erase_if(description.inputs, same);
-    }
+    for (const auto& input : *inputs) withdraw_input(description, input.key);
   }
 }
 
@@ -39,6 +35,15 @@ Error told_of_setting(Error error, const SourceLocation& place) {
 }
 
 }  // namespace
+
+void withdraw_input(model::Description& description, std::string_view name) {
+  const auto same = [&](const auto& input) { return input.name == name; };
+  std::erase_if(description.sampled_inputs, same);
+  for (auto& input : description.inputs) {
+    if (same(input)) description.replaced.push_back(input.expression);
+  }
+  std::erase_if(description.inputs, same);
+}
 
 bool is_table_text(std::string_view value) {
   const auto first = value.find_first_not_of(' '), last = value.find_last_not_of(' ');

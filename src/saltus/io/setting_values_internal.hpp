@@ -16,6 +16,9 @@ namespace saltus::io {
 [[nodiscard]] tl::unexpected<Error> refused_setting(std::string_view key, ErrorCode code, std::string message,
                                                     std::string remedy);
 
+/// Takes what a control is given away, for something else.
+void withdraw_input(model::Description& description, std::string_view name);
+
 /// Whether the value of a setting is a table, { … }.
 [[nodiscard]] bool is_table_text(std::string_view value);
 
