@@ -143,6 +143,11 @@ class Mistakes(tool.ToolTest):
             self.assertIn(told, err)
             self.assertNotIn("error: \n", err)
 
+    def test_a_rate_that_cannot_be_read_is_not_missing(self):
+        _, err = self.check("[model]\nname = 'm'\n[states]\nx = 1\nv = '2 m/s'\n[dynamics]\nx = 'v'\nv = '-9.81 m/s^2'\n")
+        self.assertIn("2 mistakes", err)
+        self.assertIn("units are no part of expressions", err)
+
     def test_options_that_do_not_fit(self):
         _, err = self.check("[model]\nname = 'm'\n[states]\nx = 1\n[dynamics]\nx = '-x'\n[simulate]\nuntil = -1\n")
         self.assertIn("until (-1) is not after from (0)", err)

@@ -196,6 +196,18 @@ class Words(tool.ToolTest):
         self.assertEqual(self.run_tool("help", "help", code=0), self.run_tool("help", code=0))
         self.assertIn("did you mean 'help'?", self.run_tool("hlep", code=2)[1])
 
+    def test_words_in_the_wrong_place_are_answered(self):
+        self.write("brake.toml", "")
+        for arguments, told in ((["brake.toml"], "did you mean `saltus simulate brake.toml`?"),
+                                (["stick-slip"], "did you mean `saltus simulate stick-slip`?"),
+                                (["simulate", "brak.toml"], "did you mean 'brake.toml'?"),
+                                (["simulate", "stick"], "did you mean 'stick-slip'"),
+                                (["simulate", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`"),
+                                (["check", "stick-slip", "--until", "3"], "--until is an option of `saltus simulate`"),
+                                (["simulate", "stick-slip", "--output", "x.json"], "did you mean '--out'?"),
+                                (["simulate", "stick-slip", "--show", "w"], "known: q, v, slip\n")):
+            self.assertIn(told, self.run_tool(*arguments, code=2)[1])
+
     def test_an_unknown_suffix_is_answered_with_all_that_there_are(self):
         err = self.run_tool("simulate", "stick-slip", "--out", "bb.xyz", code=2)[1]
         self.assertIn(".json or .csv or .events.csv or .npz", err)
