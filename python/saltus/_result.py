@@ -14,7 +14,7 @@ import numpy as np
 from . import _card, _core, _data, _plot
 from ._errors import Stopped
 from ._events import Event, Events
-from ._expression import refuse
+from ._expression import Expression, refuse
 from ._facts import Facts
 from ._outcome import Final, Kept, Sensitivities, Status
 
@@ -258,7 +258,7 @@ class Result(Facts):
         _core.write_file(os.fspath(path), page)
         return None
 
-    def plot(self, names: typing.Sequence[str] | None = None, axes: typing.Any = None) -> typing.Any:
+    def plot(self, names: typing.Sequence[str | Expression] | None = None, axes: typing.Any = None) -> typing.Any:
         """Draws columns over time (matplotlib): all states, controls and outputs, or those of `names`.
 
         Sliding is shaded, events are marked, the two sides of a jump are not joined. Returns the axes, one for every
@@ -270,7 +270,7 @@ class Result(Facts):
         """
         return _plot.plot(self, names, axes)
 
-    def phase(self, x: str, y: str, axis: typing.Any = None) -> typing.Any:
+    def phase(self, x: str | Expression, y: str | Expression, axis: typing.Any = None) -> typing.Any:
         """Draws one column over another (matplotlib); the line is thick where the solution slides. Returns the axes.
 
         >>> saltus.catalogue("stick-slip").simulate(until=10).phase("q", "v").get_xlabel()
@@ -295,6 +295,13 @@ class Result(Facts):
         ('row',)
         """
         return _data.dataset(self)
+
+    if not typing.TYPE_CHECKING:  # for who checks types there are only the attributes above
+
+        def __getattr__(self, name):
+            if name in _OF_OPTIMUM:
+                raise AttributeError(f'{name} is what an optimisation found: r.optimization["{name}"]')
+            raise AttributeError(f"a result has no attribute {name!r}")
 
     def _repr_html_(self) -> str:
         return _card.card(self)
