@@ -328,6 +328,16 @@ def sliding_ball():
                                         Phase({"ground": "stick"})]))
 
 
+def ball_in_space():
+    """The direction of the slip stays: one tangent along it."""
+    along = lambda: [2 / mpmath.sqrt(5), 1 / mpmath.sqrt(5), mpf(0)]
+    ground = Contact("ground", lambda q: q[2], lambda q: [0, 0, 1], along=lambda q: along(), mu=number("0.2"))
+    return ContactProblem("ball-in-space", number("2"), lambda: [0, 0, 1, 2, 1, 0], lambda: [1, 1, 1],
+                          lambda q, v: [Series.lift(0), Series.lift(0), Series.lift(-10)], [ground],
+                          lambda: iter([Phase({}, ("gap", "ground")), Phase({"ground": "+"}, ("slip", "ground")),
+                                        Phase({"ground": "stick"})]))
+
+
 def corner():
     left = Contact("left", lambda q: q[0], lambda q: [1, 0])
     bottom = Contact("bottom", lambda q: q[1], lambda q: [0, 1])
@@ -409,6 +419,7 @@ def problems():
     yield from elastic_balls()
     yield spring_balls()
     yield sliding_ball()
+    yield ball_in_space()
     yield corner()
     yield three_carts()
     yield falling_rod()
