@@ -198,9 +198,11 @@ class Words(tool.ToolTest):
 
     def test_words_in_the_wrong_place_are_answered(self):
         self.write("brake.toml", "")
+        self.write("rows.csv", "t,x\n0,1\n")
         for arguments, told in ((["brake.toml"], "did you mean `saltus simulate brake.toml`?"),
                                 (["stick-slip"], "did you mean `saltus simulate stick-slip`?"),
                                 (["simulate", "brak.toml"], "did you mean 'brake.toml'?"),
+                                (["simulate", "rows.csv"], "a .csv file is no model\n  a model is a .toml file"),
                                 (["simulate", "stick"], "did you mean 'stick-slip'"),
                                 (["simulate", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`"),
                                 (["check", "stick-slip", "--until", "3"], "--until is an option of `saltus simulate`"),

@@ -1,6 +1,7 @@
 #include "saltus/cli/model_input.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -69,6 +70,15 @@ Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
 Expected<ModelText> read_model_text(const std::string& model) {
   const auto path = find_model(model);
   if (!path) return tl::unexpected(path.error());
+  std::error_code ignored;
+  for (const std::string_view written : {".csv", ".npz", ".html", ".svg", ".pdf", ".png"}) {
+    if (path->extension() != written || !std::filesystem::exists(*path, ignored)) continue;
+    return tl::unexpected(Error{ErrorCode::parse_failure,
+                                fmt::format("a {} file is no model", written),
+                                "a model is a .toml file, or a .json that saltus simulate --out has written",
+                                {path->string(), 0, 0},
+                                {}});
+  }
   return io::read_model_text(*path);
 }
 

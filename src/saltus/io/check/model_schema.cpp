@@ -129,13 +129,14 @@ Json problem_schema(std::string_view key) {
   if (key == "initial_guess") return names(expression, "");
   if (key != "least_squares") return expression;
   const Json file = table({{"file", text("rows of t and the references")}}, "measurements", {"file"});
-  return list_of(
-      table({{"of", expressions},
-             {"reference", {{"anyOf", Json::array({expressions, file})}}},
-             {"weight", list_of({{"anyOf", Json::array({expression, expressions})}}, "numbers, or a matrix")},
-             {"at", one_of_words({"intervals", "stages", "end"}, "where they are compared")}},
-            "squares of distances to a reference", {"of"}),
-      "");
+  const Json references = {{"anyOf", Json::array({expressions, file})}};
+  const Json weights = {{"anyOf", Json::array({expression, expressions})}};
+  return list_of(table({{"of", expressions},
+                        {"reference", references},
+                        {"weight", list_of(weights, "numbers, or a matrix")},
+                        {"at", one_of_words({"intervals", "stages", "end"}, "where they are compared")}},
+                       "squares of distances to a reference", {"of"}),
+                 "");
 }
 
 Json optimize_schema() {
