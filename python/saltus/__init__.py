@@ -25,7 +25,7 @@ if _shared.is_dir():
 from ._array import Array, array  # noqa: E402
 from ._builder import Builder  # noqa: E402
 from ._catalogue import catalogue, compare, models, order  # noqa: E402
-from ._events import Alternative, Event, Events  # noqa: E402
+from ._events import Alternative, Event, Events, Intersection  # noqa: E402
 from ._expression import Expression  # noqa: E402
 from ._functions import (  # noqa: E402
     abs,
@@ -69,6 +69,7 @@ __all__ = [
     "Events",
     "Expression",
     "Final",
+    "Intersection",
     "Model",
     "ModelError",
     "ModelWarning",

@@ -7,6 +7,7 @@ import functools
 import numpy as np
 
 from . import _core
+from ._expression import Expression
 from ._outcome import unknown
 
 Array = np.ndarray
@@ -119,14 +120,17 @@ class Columns:
         """
         return list(self._columns)
 
-    def __getitem__(self, name: str) -> Array:
-        """A column by its name: ``"t"``, a state, a control, an output, ``"alpha(slip)"`` or ``"mode(slip)"``.
+    def __getitem__(self, name: str | Expression) -> Array:
+        """A column by its name: ``"t"``, a state, a control, an output, ``"alpha(slip)"`` or ``"mode(slip)"``; also by what
+        a Builder gave for it.
 
         >>> r = saltus.catalogue("stick-slip").simulate(until=4)
         >>> r["v"][0].item(), r["mode(slip)"][-1].item()
         (-0.01, 0)
         """
         columns = self._columns
+        if isinstance(name, Expression):
+            name = name.text
         if not isinstance(name, str):
             raise TypeError(f"r[{name!r}]: a column is taken by its name, e.g. r['t']; a row of all states is r.x[i]")
         if name not in columns:

@@ -14,6 +14,12 @@ class Alternative:
     alpha: Floats
     regions: list[list[str]]
 
+class Intersection:
+    surfaces: list[str]
+    velocities: list[list[float]]
+    alpha_before: list[float] | None
+    alpha_after: list[float]
+
 class Event:
     t: float
     kind: str
@@ -33,6 +39,7 @@ class Event:
     unique: bool | None
     alternatives: list[Alternative]
     reason: str
+    intersection: Intersection | None
     def __repr__(self) -> str: ...
 
 class Run:
@@ -47,6 +54,8 @@ class Run:
     controls: list[str]
     output_names: list[str]
     switching_functions: list[str]
+    contacts: list[str]
+    contact_modes: list[list[str]]
     regions: list[str]
     termination: str
     done: bool
@@ -63,6 +72,7 @@ class Run:
     final: dict[str, typing.Any]
     branches: list[Run]
     sensitivities: dict[str, typing.Any] | None
+    def facts(self) -> str: ...
     def table(self) -> str: ...
     def json(self, surfaces: bool) -> str: ...
     def page(self) -> str: ...

@@ -11,6 +11,7 @@ from . import _core
 
 Event = _core.Event
 Alternative = _core.Alternative
+Intersection = _core.Intersection
 Json = dict[str, typing.Any]
 
 Event.__doc__ = """A change of mode, a jump, an impact, or an event of the user, at time ``t``.
@@ -19,7 +20,8 @@ Event.__doc__ = """A change of mode, a jump, an impact, or an event of the user,
 "contact", "lift_off", "stick", "slip" or "user"; ``name`` of a jump or an event, ``surfaces`` that changed. ``x`` and
 ``x_after`` are the state on both sides, so are ``mode_before`` and ``mode_after``, ``alpha_…``, ``regions_…`` and
 ``contact_modes_…``; ``impulse`` of an impact by contact. ``unique`` says whether the solution goes on in one way only
-(None: not decided), ``alternatives`` how else, ``reason`` why it went on as it did.
+(None: not decided), ``alternatives`` how else, ``reason`` why it went on as it did; ``intersection`` what was decided at
+where two surfaces that influence each other met.
 
 >>> event = saltus.catalogue("bouncing-ball").simulate(until=2).events[0]
 >>> event
@@ -34,8 +36,20 @@ Alternative.__doc__ = """A continuation that was possible at an event: ``mode``,
 (False, [0, 0], [-1, 0])
 """
 
+Intersection.__doc__ = """Where the modes of two ``surfaces`` that influence each other were decided together.
+
+``velocities`` of each of them along the fields of the regions with selections (0, 0), (1, 0), (0, 1), (1, 1);
+``alpha_before`` and ``alpha_after`` are the selections with which the solution comes (None at a start) and goes on.
+
+>>> [met] = [e.intersection for e in saltus.catalogue("slide-and-hide").simulate().events if e.intersection]
+>>> len(met.surfaces), len(met.velocities[0])
+(2, 4)
+"""
+
 _OF_EVENT = "t kind name surfaces mode_before mode_after alpha_before alpha_after x x_after unique reason".split()
 _IF_THERE = "regions_before regions_after contact_modes_before contact_modes_after impulse".split()
+
+_OF_INTERSECTION = "surfaces velocities alpha_before alpha_after".split()
 
 
 class Events(list[_core.Event]):
@@ -94,6 +108,8 @@ def _stored_event(event: _core.Event) -> Json:
         value = getattr(event, name)
         if value:
             entries[name] = _number(value)
+    if event.intersection is not None:
+        entries["intersection"] = {name: getattr(event.intersection, name) for name in _OF_INTERSECTION}
     return entries
 
 

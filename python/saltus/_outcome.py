@@ -35,7 +35,7 @@ class Status(str):
 
 
 class Final:
-    """The end of a run: ``t``, ``x``, ``mode``, ``alpha``, and every value by its name, ``final["v"]``.
+    """The end of a run: ``t``, ``x``, ``mode``, ``alpha``, ``outputs``, ``regions``, ``theta``, ``contact_modes``, and every value by its name, ``final["v"]``.
 
     >>> final = saltus.catalogue("stick-slip").simulate(until=4).final
     >>> final.t, final.mode, round(final["v"], 6)
@@ -50,6 +50,8 @@ class Final:
         self.alpha: Array = values["alpha"]
         self.outputs: Array = values["outputs"]
         self.regions: list[list[str]] = values["regions"]
+        self.theta: Array = values["theta"]
+        self.contact_modes: list[str] = values["contact_modes"]
         self._named = dict(zip(run.output_names, self.outputs.tolist()))
         self._named.update(zip(run.states, self.x.tolist()))
         self._parameters = [parameter for parameter, _ in run.parameters]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import typing
 
 from ._data import need_rows
+from ._expression import Expression
 from ._shape import broken_at_jumps, slides, sliding_spans
 
 if typing.TYPE_CHECKING:
@@ -35,12 +36,14 @@ def _matplotlib() -> typing.Any:
     return needed("matplotlib.pyplot", "plot")
 
 
-def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typing.Any:
+def plot(r: Result, names: typing.Sequence[str | Expression] | None, axes: typing.Any) -> typing.Any:
     """A row of axes for every name; sliding is shaded, every event marked at its value."""
     need_rows(r, 2)
     pyplot = _matplotlib()
-    names = [names] if isinstance(names, str) else names
-    wanted = list(names) if names is not None else [*r.states, *r.controls, *r.output_names]
+    if isinstance(axes, (str, Expression)):
+        raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
+    names = [names] if isinstance(names, (str, Expression)) else names
+    wanted = [str(name) for name in names] if names is not None else [*r.states, *r.controls, *r.output_names]
     columns = {name: r[name] for name in wanted}
     if axes is None:
         _, axes = pyplot.subplots(
@@ -55,14 +58,14 @@ def plot(r: Result, names: typing.Sequence[str] | None, axes: typing.Any) -> typ
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
         axis.plot(*broken_at_jumps(r, r.t, column), color=LINE, linewidth=1.2)
         _mark_events(axis, r, column)
-        axis.set_ylabel(_caption(r, name))
+        axis.set_ylabel(caption_of(r, name))
         axis.margins(x=0)
     axes[0].set_title(r.model)
     axes[-1].set_xlabel("t")
     return axes
 
 
-def _caption(r: Result, name: str) -> str:
+def caption_of(r: Result, name: str) -> str:
     """The label of a column with its unit: "height [m]"."""
     caption = r._captions.get(name, {})
     unit = caption.get("unit", "")
@@ -80,10 +83,11 @@ def _row_before(r: Result, t: float) -> int:
     return int(r.t.searchsorted(t, side="left"))
 
 
-def phase(r: Result, x: str, y: str, axis: typing.Any) -> typing.Any:
+def phase(r: Result, x: str | Expression, y: str | Expression, axis: typing.Any) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
     need_rows(r, 2)
     pyplot = _matplotlib()
+    x, y = str(x), str(y)
     if axis is None:
         _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")
     across, up = broken_at_jumps(r, r[x], r[y])
@@ -97,7 +101,7 @@ def phase(r: Result, x: str, y: str, axis: typing.Any) -> typing.Any:
         if rows:
             axis.plot(r[x][rows], r[y][rows], mark, color=colour, markersize=5, linestyle="none", label=kind)
     axis.plot(r[x][0], r[y][0], "o", color="black", markersize=4)
-    axis.set_xlabel(_caption(r, x))
-    axis.set_ylabel(_caption(r, y))
+    axis.set_xlabel(caption_of(r, x))
+    axis.set_ylabel(caption_of(r, y))
     axis.set_title(r.model)
     return axis

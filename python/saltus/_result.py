@@ -12,10 +12,10 @@ import typing
 import numpy as np
 
 from . import _card, _core, _data, _plot
-from ._columns import Columns
 from ._errors import Stopped
 from ._events import Event, Events
-from ._expression import refuse
+from ._expression import Expression, refuse
+from ._facts import Facts
 from ._outcome import Final, Kept, Sensitivities, Status
 
 Array = np.ndarray
@@ -31,7 +31,7 @@ _OF_OPTIMUM = (
 Again = tuple[typing.Any, list[str], list[tuple[str, str, str]]]
 
 
-class Result(Columns):
+class Result(Facts):
     """What a run computed: rows, events, the end, and why it ended.
 
     Arrays are read-only views of what the library holds. Every event has two rows of one time, before and behind it.
@@ -49,33 +49,6 @@ class Result(Columns):
         self._kept = kept
 
     # What was computed ---------------------------------------------------------------------------------------------
-
-    @property
-    def parameters(self) -> dict[str, float]:
-        """Parameters and the values they had.
-
-        >>> saltus.catalogue("stick-slip").simulate(until=1, set={"belt": 0.3}).parameters
-        {'belt': 0.3}
-        """
-        return dict(self._run.parameters)
-
-    @property
-    def model(self) -> str:
-        """The name of the model.
-
-        >>> saltus.catalogue("stick-slip").simulate(until=1).model
-        'stick-slip'
-        """
-        return self._run.model
-
-    @property
-    def method(self) -> str:
-        """The method that ran.
-
-        >>> saltus.catalogue("stick-slip").simulate(until=1, method="fesd", steps=10).method
-        'fesd'
-        """
-        return self._run.method
 
     @functools.cached_property
     def events(self) -> Events:
@@ -145,14 +118,6 @@ class Result(Columns):
         stored: dict[str, typing.Any] = json.loads(self._run.json(False))
         return stored
 
-    @functools.cached_property
-    def _captions(self) -> dict[str, dict[str, str]]:
-        """`unit` and `label` of columns that have them."""
-        text = self._run.json(False)
-        model, _ = json.JSONDecoder().raw_decode(text, text.index("{", text.index('"model":')))
-        found: dict[str, dict[str, str]] = model.get("captions", {})
-        return found
-
     def to_dict(self) -> dict[str, typing.Any]:
         """Everything, as :meth:`save` writes it (docs/result-file.md).
 
@@ -174,7 +139,7 @@ class Result(Columns):
         """
         if self._run.command != "optimize":
             return None
-        return {key: self._stored[key] for key in _OF_OPTIMUM if key in self._stored}
+        return {key: self._facts[key] for key in _OF_OPTIMUM if key in self._facts}
 
     @property
     def comparison(self) -> dict[str, typing.Any] | None:
@@ -293,7 +258,7 @@ class Result(Columns):
         _core.write_file(os.fspath(path), page)
         return None
 
-    def plot(self, names: typing.Sequence[str] | None = None, axes: typing.Any = None) -> typing.Any:
+    def plot(self, names: typing.Sequence[str | Expression] | None = None, axes: typing.Any = None) -> typing.Any:
         """Draws columns over time (matplotlib): all states, controls and outputs, or those of `names`.
 
         Sliding is shaded, events are marked, the two sides of a jump are not joined. Returns the axes, one for every
@@ -305,7 +270,7 @@ class Result(Columns):
         """
         return _plot.plot(self, names, axes)
 
-    def phase(self, x: str, y: str, axis: typing.Any = None) -> typing.Any:
+    def phase(self, x: str | Expression, y: str | Expression, axis: typing.Any = None) -> typing.Any:
         """Draws one column over another (matplotlib); the line is thick where the solution slides. Returns the axes.
 
         >>> saltus.catalogue("stick-slip").simulate(until=10).phase("q", "v").get_xlabel()
@@ -330,6 +295,13 @@ class Result(Columns):
         ('row',)
         """
         return _data.dataset(self)
+
+    if not typing.TYPE_CHECKING:  # for who checks types there are only the attributes above
+
+        def __getattr__(self, name):
+            if name in _OF_OPTIMUM:
+                raise AttributeError(f'{name} is what an optimisation found: r.optimization["{name}"]')
+            raise AttributeError(f"a result has no attribute {name!r}")
 
     def _repr_html_(self) -> str:
         return _card.card(self)

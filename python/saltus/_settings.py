@@ -22,6 +22,12 @@ _ELSEWHERE = {
     **dict.fromkeys(("abstol", "AbsTol"), "atol=1e-10"),
     **dict.fromkeys(("solver", "alg"), 'integrator="dopri5", or method="fesd"'),
 }
+#: The same of an optimisation.
+_ELSEWHERE_IN_OPTIMIZE = {
+    **dict.fromkeys(("intervals", "N", "n_intervals", "nodes"), "control_intervals=20"),
+    **dict.fromkeys(("until", "T", "t_end", "tf", "duration"), "horizon=2; where it is chosen the model states its bounds"),
+    **dict.fromkeys(("objective", "cost"), "running_cost and terminal_cost in the model"),
+}
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
 Option = tuple[str, str, str]
 _SIMULATE = frozenset(_core.simulate_keys())
@@ -108,11 +114,24 @@ def simulate_options(
 
 def check_together(keywords: typing.Mapping[str, Value]) -> None:
     """What keywords cannot be, or cannot be beside each other."""
-    if not isinstance(keywords.get("inputs") or {}, typing.Mapping):
-        raise refuse(f"inputs={keywords['inputs']!r}: expected a dict", 'e.g. inputs={"u": "sin(t)"}')
-    grids = [name for name in ("every", "points", "times") if keywords.get(name) is not None]
+    _check_inputs(keywords.get("inputs") or {})
+    output = keywords.get("output")
+    given = {**(output if isinstance(output, typing.Mapping) else {}), **keywords}
+    grids = [name for name in ("every", "points", "times") if given.get(name) is not None]
     if len(grids) > 1:
-        raise refuse(f"{' and '.join(grids)} say twice when there are rows", "give one of every, points and times")
+        raise refuse(f"{' and '.join(grids)} say twice when there are rows", "leave one of them out")
+
+
+def _check_inputs(inputs: typing.Any) -> None:
+    if not isinstance(inputs, typing.Mapping):
+        raise refuse(f"inputs={inputs!r}: expected a dict", 'e.g. inputs={"u": "sin(t)"}')
+    for name, value in inputs.items():
+        if isinstance(value, (list, tuple)) or isinstance(value, np.ndarray) and value.ndim > 0:
+            raise refuse(
+                f'inputs={{"{name}": …}}: an input is no list of values',
+                'write an expression of t, "sin(t)", or the file of a table with the columns t and '
+                f'{name}: {{"file": "u.csv"}}',
+            )
 
 
 def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], list[Option]]:
@@ -210,6 +229,8 @@ def parameters_among(options: typing.Mapping[str, Value], known: typing.Containe
 def names_no_keys(options: typing.Mapping[str, Value], known: typing.Container[str]) -> None:
     """Refuses a name of the model among the keywords of an optimisation."""
     for name in options:
+        if name in _ELSEWHERE_IN_OPTIMIZE and name not in known:
+            raise refuse(f"'{name}' is no option of an optimisation", f"write {_ELSEWHERE_IN_OPTIMIZE[name]}")
         if name in known and name not in _OPTIMIZE:
             raise refuse(f"'{name}' is a name of the model, not an option", f'write set={{"{name}": {_shown(options[name])}}}')
 

@@ -8,6 +8,7 @@ import typing
 import numpy as np
 
 from . import _core, _sweep_plot
+from ._expression import Expression
 from ._outcome import Kept, unknown
 from ._result import Result, needed
 from ._settings import text_of
@@ -108,6 +109,8 @@ class Sweep:
         >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)["events"].tolist()
         [1, 2]
         """
+        if isinstance(name, Expression):
+            name = name.text
         if not isinstance(name, str):
             raise TypeError(f"s[{name!r}]: a column is taken by its name, e.g. s['run']; a run is s.results[{name!r}]")
         if name not in self.table:

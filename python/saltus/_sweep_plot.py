@@ -7,6 +7,7 @@ import typing
 import numpy as np
 
 from ._outcome import unknown
+from ._plot import caption_of
 from ._result import needed
 
 if typing.TYPE_CHECKING:
@@ -15,6 +16,7 @@ if typing.TYPE_CHECKING:
 
 def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
     """Lines of a column over what was swept, one for each value of everything else."""
+    name = str(name)
     if len(s["run"]) != len(s) or "events" not in s.table:
         raise ValueError('a line has a value for every run: sweep(…, keep="final"), or s.bifurcation(…) for events')
     column, (x, others) = s[name], _axes(s, over)
@@ -29,8 +31,8 @@ def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
         axis.plot(s[x][runs], column[runs], marker="." if len(runs) < 60 else None, linewidth=1.2, label=label or None)
     if 1 < len(lines) <= 12:
         axis.legend()
-    axis.set_xlabel(x)
-    axis.set_ylabel(name)
+    axis.set_xlabel(_caption(s, x))
+    axis.set_ylabel(_caption(s, name))
     return axis
 
 
@@ -46,8 +48,8 @@ def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str 
     x, _ = _axes(s, over)
     axis = _axis(axis)
     axis.plot(s[x][chosen], s[name][chosen], ".", markersize=2.5, color="#1f5fa8")
-    axis.set_xlabel(x)
-    axis.set_ylabel(name if event is None else f"{name} at {event}")
+    axis.set_xlabel(_caption(s, x))
+    axis.set_ylabel(_caption(s, name) + (f" at {event}" if event is not None else ""))
     return axis
 
 
@@ -63,6 +65,13 @@ def _axes(s: Sweep, over: str | None) -> tuple[str, list[str]]:
         raise ValueError("nothing with numbers was swept")
     x = over if over is not None else max(numbers, key=lambda name: len(np.unique(s[name])))
     return x, [name for name in swept if name != x]
+
+
+def _caption(s: Sweep, name: str) -> str:
+    """With the unit that its runs know; a swept start `v(0)` has that of `v`."""
+    of_state = name.removesuffix("(0)")
+    caption = caption_of(s.results[0], of_state)
+    return caption if caption != of_state else name
 
 
 def _shown(value: typing.Any) -> str:

@@ -8,6 +8,7 @@ namespace saltus::python {
 /// The lock of symbolic expressions is the interpreter's, as it is for the package casadi in the same process.
 void lock_symbols_by_interpreter();
 
+void add_event(nanobind::module_& module);
 void add_result(nanobind::module_& module);
 void add_model(nanobind::module_& module);
 void add_tool(nanobind::module_& module);

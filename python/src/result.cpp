@@ -29,8 +29,6 @@ namespace nb = nanobind;
 namespace saltus::python {
 namespace {
 
-using result::Event;
-
 /// A read-only array that keeps its owner alive.
 template <class T>
 nb::ndarray<nb::numpy, const T> look_at(const T* data, std::size_t rows, nb::handle owner) {
@@ -78,47 +76,8 @@ void add_of_functions(nb::class_<Run>& type, const char* name) {
 }
 
 nb::object array_of(const std::vector<double>& values) { return owned_array(values); }
-nb::object array_of(const std::optional<std::vector<double>>& values) {
-  return values ? array_of(*values) : nb::none();
-}
 
 std::string text_of(std::string_view view) { return std::string(view); }
-
-std::vector<std::string> words_of(const std::vector<result::ContactMode>& modes) {
-  std::vector<std::string> words;
-  for (const auto mode : modes) words.emplace_back(result::name(mode));
-  return words;
-}
-
-void add_event(nb::module_& module) {
-  nb::class_<result::Alternative>(module, "Alternative", "A continuation that was possible at an event.")
-      .def_ro("mode", &result::Alternative::mode)
-      .def_prop_ro("alpha", [](const result::Alternative& self) { return array_of(self.alpha); })
-      .def_ro("regions", &result::Alternative::regions);
-  nb::class_<Event>(module, "Event", "A change of mode, a jump, or an event of the user.")
-      .def_ro("t", &Event::t)
-      .def_prop_ro("kind", [](const Event& self) { return text_of(name(self.kind)); })
-      .def_ro("name", &Event::name)
-      .def_ro("surfaces", &Event::surfaces)
-      .def_ro("mode_before", &Event::mode_before)
-      .def_ro("mode_after", &Event::mode_after)
-      .def_prop_ro("alpha_before", [](const Event& self) { return array_of(self.alpha_before); })
-      .def_prop_ro("alpha_after", [](const Event& self) { return array_of(self.alpha_after); })
-      .def_ro("regions_before", &Event::regions_before)
-      .def_ro("regions_after", &Event::regions_after)
-      .def_prop_ro("contact_modes_before", [](const Event& self) { return words_of(self.contact_modes_before); })
-      .def_prop_ro("contact_modes_after", [](const Event& self) { return words_of(self.contact_modes_after); })
-      .def_ro("impulse", &Event::impulse)
-      .def_prop_ro("x", [](const Event& self) { return array_of(self.x); })
-      .def_prop_ro("x_after", [](const Event& self) { return array_of(self.x_after); })
-      .def_ro("unique", &Event::unique)
-      .def_ro("alternatives", &Event::alternatives)
-      .def_ro("reason", &Event::reason)
-      .def("__repr__", [](const Event& self) {
-        const auto what = self.name ? *self.name : fmt::format("{}", fmt::join(self.surfaces, ", "));
-        return fmt::format("<{} of {} at t = {:.9g}>", name(self.kind), what.empty() ? "the model" : what, self.t);
-      });
-}
 
 /// The surfaces are looked for when the first report or file wants them.
 void want_surfaces(Run& run) {
@@ -157,7 +116,39 @@ nb::dict final_of(const Run& run) {
   entries["alpha"] = array_of(last.alpha);
   entries["outputs"] = array_of(last.outputs);
   entries["regions"] = last.regions;
+  entries["theta"] = array_of(last.theta);
+  entries["contact_modes"] = words_of(last.contact_modes);
   return entries;
+}
+
+/// Per row the mode of every contact.
+nb::list contact_modes(const Run& run) {
+  nb::list rows;
+  const auto& table = run.result->trajectory.contact_modes;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    nb::list words;
+    for (const auto mode : table[row]) words.append(text_of(result::name(mode)));
+    rows.append(std::move(words));
+  }
+  return rows;
+}
+
+/// The stored form of what is no row and no event.
+std::string facts(const Run& run) {
+  const auto& of = *run.result;
+  result::Result about;
+  about.model = of.model;
+  about.command = of.command;
+  about.command_line = of.command_line;
+  about.method = of.method;
+  about.status = of.status;
+  about.statistics = of.statistics;
+  about.optimization = of.optimization;
+  about.options = of.options;
+  about.penetration = of.penetration;
+  about.families = of.families;
+  about.left_at = of.left_at;
+  return io::to_json(about);
 }
 
 std::string page_of(Run& run) {
@@ -197,6 +188,8 @@ void add_names(nb::class_<Run>& type) {
       .def_prop_ro("controls", [](const Run& self) { return self.result->controls; })
       .def_prop_ro("output_names", [](const Run& self) { return self.result->outputs; })
       .def_prop_ro("switching_functions", [](const Run& self) { return self.result->switching_functions; })
+      .def_prop_ro("contacts", [](const Run& self) { return self.result->contacts; })
+      .def_prop_ro("contact_modes", contact_modes)
       .def_prop_ro("regions", [](const Run& self) { return result::region_labels(self.result->region_groups); })
       .def_prop_ro("termination", [](const Run& self) { return text_of(name(self.result->status.termination)); })
       .def_prop_ro("done", [](const Run& self) { return is_done(self.result->status.termination); })
@@ -210,6 +203,12 @@ nb::object owned_array(std::vector<double> values) {
   auto* kept = new std::vector<double>(std::move(values));
   const nb::capsule owner(kept, [](void* memory) noexcept { delete static_cast<std::vector<double>*>(memory); });
   return nb::cast(nb::ndarray<nb::numpy, const double>(kept->data(), {kept->size()}, owner));
+}
+
+std::vector<std::string> words_of(const std::vector<result::ContactMode>& modes) {
+  std::vector<std::string> words;
+  for (const auto mode : modes) words.emplace_back(result::name(mode));
+  return words;
 }
 
 void add_result(nb::module_& module) {
@@ -247,6 +246,7 @@ void add_result(nb::module_& module) {
       .def_prop_ro("final", final_of)
       .def_prop_ro("branches", branches)
       .def_prop_ro("sensitivities", sensitivities)
+      .def("facts", facts)
       .def("table", [](const Run& self) { return report::to_table(*self.result); })
       .def("json",
            [](Run& self, bool surfaces) {

@@ -29,4 +29,6 @@ struct Run {
 /// An array of Python with its own numbers.
 nanobind::object owned_array(std::vector<double> values);
 
+std::vector<std::string> words_of(const std::vector<result::ContactMode>& modes);
+
 }  // namespace saltus::python

@@ -82,6 +82,7 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
   }
   nb::list results;
   for (auto& run : *runs) {
+    run.result.model.captions = input.file.captions;
     results.append(nb::cast(Run{std::make_shared<result::Result>(std::move(run.result)), nullptr, {}, {}, {}}));
   }
   nb::object found = nb::make_tuple(columns, results, plan.names());
@@ -96,7 +97,8 @@ void add_sweep(nb::class_<Model>& type) {
       "sweep",
       [](Model& model, std::vector<std::string> settings, std::vector<Option> options, std::vector<std::string> over,
          bool paired, std::vector<std::string> samples, std::optional<long> runs, std::uint64_t seed, std::string keep,
-         bool yes, std::size_t jobs, std::pair<std::size_t, std::size_t> share, nb::object progress, nb::list warnings) {
+         bool yes, std::size_t jobs, std::pair<std::size_t, std::size_t> share, nb::object progress,
+         nb::list warnings) {
         const Request asked{std::move(settings), std::move(options), cli::RunMethods::chosen};
         const std::size_t threads = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
         const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, yes},

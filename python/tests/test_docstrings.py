@@ -66,7 +66,7 @@ def test_every_public_name_has_an_example_that_runs(name):
 
 
 def test_attributes_of_events_are_told():
-    for kind in (saltus.Event, saltus.Alternative):
+    for kind in (saltus.Event, saltus.Alternative, saltus.Intersection):
         for member in vars(kind):
             if not member.startswith("_"):
                 stem = member.replace("_before", "").replace("_after", "")

@@ -46,10 +46,14 @@ def said_by(call, kind=ValueError):
         ({"times": [3, 2]}, "times=[3, 2]"),
         ({"times": [3, 20]}, "output time 20 lies outside the simulation from 0 to 5"),
         ({"points": 5, "every": 1}, "every and points say twice"),
+        ({"output": {"points": 5, "every": 1}}, "every and points say twice"),
+        ({"output": {"points": 5}, "times": [1, 2]}, "points and times say twice"),
         ({"states": ["w"]}, "unknown state 'w'\n  in states"),
         ({"initial_mode": {"slipp": 0}}, "in initial_mode.slipp\n  did you mean 'slip'?"),
         ({"inputs": 3}, "inputs=3: expected a dict"),
         ({"inputs": {"u": "sin(t)"}}, 'inputs={"u": …}: expected the name of a control'),
+        ({"inputs": {"u": [0, 1]}}, 'inputs={"u": …}: an input is no list'),
+        ({"inputs": {"u": ([0, 1], [[2], [3, 4]])}}, '{"file": "u.csv"}'),
         ({"t_eval": [0, 1]}, "'t_eval' is no option\n  write times=[…]"),
         ({"x0": [0, 1]}, 'set={"name": value}'),
         ({"belt": 0.1}, 'write set={"belt": 0.1}'),
@@ -117,7 +121,13 @@ def test_the_end_is_swept_like_any_option(slip):
 def test_optimisations(block, slip):
     assert "did you mean 'control_intervals'" in said_by(lambda: block.optimize(control_interval=3))
     assert 'set={"q": 0.3}' in said_by(lambda: block.optimize(q=0.3))
+    assert "write control_intervals=20" in said_by(lambda: block.optimize(N=20))
+    assert "write horizon=2" in said_by(lambda: block.optimize(until=3))
     solved = block.optimize(control_intervals=2)
+    with pytest.raises(AttributeError, match=r'r.optimization\["objective"\]'):
+        solved.objective
+    with pytest.raises(AttributeError, match="no attribute 'figure'"):
+        solved.figure
     assert '{"result": "r.json"}' in said_by(lambda: block.simulate(until=1, inputs={"u": solved}))
     assert "u=[… " in said_by(lambda: block.simulate(until=1, set={"u": solved.u}))
     assert "or run m.simulate()" in said_by(lambda: slip.optimize())

@@ -21,12 +21,15 @@ def there_and_back(value):
 def parts(event):
     values = [getattr(event, name) for name in PARTS]
     values += [(other.mode, other.alpha.tolist(), other.regions) for other in event.alternatives]
+    met = event.intersection
+    values.append(met and (met.surfaces, met.velocities, met.alpha_before, met.alpha_after))
     # Of arrays the numbers, of which nan is equal to itself in a text.
     return repr([value.tolist() if isinstance(value, np.ndarray) else value for value in values])
 
 
 #: Sliding, jumps, impulses of contacts, regions, alternatives, names, accumulations.
-NAMES = ["stick-slip", "bouncing-ball", "sliding-ball", "stay-or-leave", "thermostat", "two-belts", "quadrants", "frozen-hysteresis", "three-windings"]
+NAMES = ["stick-slip", "bouncing-ball", "sliding-ball", "stay-or-leave", "thermostat", "two-belts", "quadrants", "frozen-hysteresis", "three-windings",
+         "slide-and-hide"]
 
 
 @pytest.mark.parametrize("name", NAMES)

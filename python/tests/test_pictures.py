@@ -194,3 +194,32 @@ def test_a_result_without_rows_is_told(slip):
         slip.plot(axes=[1])
     with pytest.raises(TypeError, match="by its name"):
         slip[0]
+
+
+def test_what_a_builder_gave_is_a_name():
+    m = saltus.Builder("relay")
+    x = m.state("x", 1)
+    v = m.state("v", 0)
+    m.rate(x, v)
+    m.rate(v, -v - 2 * saltus.sign(x + v))
+    r = m.simulate(until=3)
+    assert r[x].tolist() == r["x"].tolist()
+    assert [axis.get_ylabel() for axis in r.plot([x, v])] == ["x", "v"]
+    assert r.phase(x, v).get_xlabel() == "x"
+    with pytest.raises(TypeError, match=r'r.plot\(\["x", "v"\]\)'):
+        r.plot("x", "v")
+    s = m.sweep({v: [0, 1]}, until=3)
+    assert s.plot(x).get_ylabel() == "x" and s[x].tolist() == s["x"].tolist()
+
+
+def test_units_of_a_run_of_a_sweep():
+    m = saltus.Model.from_text(
+        '[model]\nname = "m"\n[parameters]\nk = 1\n[states]\nx = { initial = 1, unit = "m", label = "position" }\n'
+        '[dynamics]\nx = "-k*x"\n[simulate]\nuntil = 1\n'
+    )
+    alone = [axis.get_ylabel() for axis in m.simulate().plot()]
+    assert alone == ["position [m]"]
+    of_sweep = m.sweep(k=[1, 2], keep="trajectory").results[1]
+    assert [axis.get_ylabel() for axis in of_sweep.plot()] == alone
+    assert m.sweep(k=[1, 2]).plot("x").get_ylabel() == "position [m]"
+    assert m.sweep(x=[1, 2]).plot("x").get_xlabel() == "position [m]"

@@ -162,3 +162,30 @@ def test_rows_with_some_of_the_columns():
     assert model.simulate(until=20, states="q")["q"].tolist() == whole["q"].tolist()
     with pytest.raises(saltus.ModelError, match="unknown state 'w'"):
         model.simulate(until=1, output={"states": ["w"]})
+
+
+#: Of these it is to_dict() that has them: of the file, of pictures, of finite elements.
+IN_THE_FILE = set(
+    "format saltus model command command_line status trajectory surfaces vector_field drawing elements kept_columns region_groups".split()
+)
+RENAMED = {"outputs": "output_names"}
+
+
+@pytest.mark.parametrize("name", ["stick-slip", "slide-and-hide", "falling-rod", "bouncing-ball", "quadrants", "stay-or-leave", "three-windings"])
+def test_what_the_file_has_is_an_attribute(name):
+    r = saltus.catalogue(name).simulate(branches="all")
+    stored = r.to_dict()
+    assert [key for key in stored if key not in IN_THE_FILE and not hasattr(r, RENAMED.get(key, key))] == []
+    assert [key for key in stored["final"] if not hasattr(r.final, key)] == []
+    assert [key for key in stored["trajectory"] if key not in ("regions", "theta") and not hasattr(r, key)] == []
+    for event, told in zip(r.events, stored["events"]):
+        assert [key for key in told if not hasattr(event, key)] == []
+        for other, written in zip(event.alternatives, told["alternatives"]):
+            assert [key for key in written if not hasattr(other, key)] == []
+        assert (event.intersection is not None) == ("intersection" in told)
+        for key, value in told.get("intersection", {}).items():
+            assert list(getattr(event.intersection, key) or []) == (value or [])
+    for key in ("options", "statistics", "contacts", "penetration", "families"):
+        assert getattr(r, key) == stored.get(key, [] if key in ("contacts", "families") else None)
+    assert r.contact_modes.tolist() == stored["trajectory"].get("contact_modes", [])
+    assert [branch.left_at for branch in r.branches] == [branch["left_at"] for branch in stored.get("branches", [])]

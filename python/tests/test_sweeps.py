@@ -1,5 +1,7 @@
 """Sweeps: tables that do not depend on threads, equal to single runs, told what is wrong."""
 
+import json
+import re
 import subprocess
 
 import numpy as np
@@ -12,6 +14,10 @@ def run_tool(tool, folder, *arguments, code=0):
     done = subprocess.run([tool, "sweep", *arguments], cwd=folder, capture_output=True, text=True)
     assert done.returncode == code, done.stdout + done.stderr
     return done.stdout + done.stderr
+
+
+def page_data(page):
+    return json.loads(re.search(r'id="sweep">(.*)</script>', page).group(1))
 
 
 @pytest.fixture(scope="module")
@@ -202,6 +208,27 @@ def test_shares_are_the_whole(tool, tmp_path, keep):
         run_tool(tool, tmp_path, *sweep, "--out", f"whole.{suffix}")
         run_tool(tool, tmp_path, "--join", *files, "--out", f"joined.{suffix}", "--report", "joined.html")
         assert (tmp_path / f"whole.{suffix}").read_bytes() == (tmp_path / f"joined.{suffix}").read_bytes()
+    run_tool(tool, tmp_path, *sweep, "--report", "whole.html")
+    assert (tmp_path / "whole.html").read_text() == (tmp_path / "joined.html").read_text()
+
+
+def test_shares_say_what_the_page_needs(tool, tmp_path):
+    """Names with commas and quotes, pairs instead of a grid; older shares say nothing of it."""
+    text = '[model]\nname = "a, \\"b\\""\n[parameters]\na = 1\nb = 1\n[states]\nx = "a"\n[dynamics]\nx = "-b*x"\n'
+    (tmp_path / "m.toml").write_text(text)
+    files = shares(tool, tmp_path, 2, "m.toml", "--until", "1", "--set", "b=2 + 1", "--over", "a=1,2", "--over", "x=1,2", "--zip")
+    run_tool(tool, tmp_path, "--join", *files, "--report", "new.html")
+    page = (tmp_path / "new.html").read_text()
+    data = page_data(page)
+    assert "<h1>a, &quot;b&quot;</h1>" in page and data["names"] == ["a", "x"] and not data["grid"]
+    assert data["command"] == "saltus simulate m.toml --until 1 --set 'b=2 + 1'"
+    for file in files:
+        share = (tmp_path / file).read_text()
+        heading, rest = re.match(r'"(run \[[^]]*\])(?:[^"]|"")*"(.*)', share, re.DOTALL).groups()
+        (tmp_path / file).write_text(f'"{heading}"{rest}')
+    run_tool(tool, tmp_path, "--join", *files, "--report", "old.html")
+    page = (tmp_path / "old.html").read_text()
+    assert "<h1>Sweep</h1>" in page and page_data(page)["command"] == "" and "do not say their model" in page
 
 
 def test_shares_that_do_not_fit(tool, tmp_path):
@@ -221,12 +248,9 @@ def test_shares_that_do_not_fit(tool, tmp_path):
 
 
 def test_the_page_of_a_sweep(tool, tmp_path):
-    import json
-    import re
-
     run_tool(tool, tmp_path, "stick-slip", "--until", "2", "--over", "belt=0.1,0.2", "--over", "v=0,0.1", "--report", "p.html")
     page = (tmp_path / "p.html").read_text()
-    data = json.loads(re.search(r'id="sweep">(.*)</script>', page).group(1))
+    data = page_data(page)
     assert data["swept"] == ["belt", "v(0)"] and data["names"] == ["belt", "v"] and data["grid"]
     assert data["columns"]["belt"] == [0.1, 0.1, 0.2, 0.2]
     assert data["command"] == "saltus simulate stick-slip --until 2"

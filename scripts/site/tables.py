@@ -53,17 +53,12 @@ def key_rows(name, schema, whole, rows):
             rows.append(f"| `{key}` | {kind_of(value, whole)} | {text} |")
 
 
-# Tables whose keys the schema does not have, and where they are told.
-TOLD = {"time_freezing": "optimal-control.md#with-contacts-and-hysteresis", "mechanics": "model-file.md#mechanics-and-contacts",
-        "contacts": "model-file.md#mechanics-and-contacts", "hysteresis": "model-file.md#hysteresis"}
-
-
 def schema_page(tool):
     schema = json.loads(subprocess.run([tool, "schema"], capture_output=True, text=True, check=True).stdout)
     rows = ["# Every key of a model file", "", "From `saltus schema`, which editors read. What they do: [the model file](../model-file.md); "
             "keys of `[simulate]` and `[optimize]` with their defaults: [options](../options.md).", ""]
     for table, content in schema["properties"].items():
-        if table in ("simulate", "optimize", "sensitivity"):  # the last one is kept for later
+        if table in ("simulate", "optimize"):
             continue
         rows += [f"## {table}", "", content.get("description", "").capitalize() or "", ""]
         head = len(rows)
@@ -71,8 +66,6 @@ def schema_page(tool):
         key_rows(table, content, schema, rows)
         if len(rows) == head + 2:
             del rows[head:]
-            if table in TOLD:
-                rows[-2] = f"[Its keys](../{TOLD[table]})."
     return "\n".join(rows) + "\n"
 
 
@@ -112,6 +105,8 @@ Read [Saltus in Python](../python.md) first.
 .. autoclass:: saltus.Event
 
 .. autoclass:: saltus.Alternative
+
+.. autoclass:: saltus.Intersection
 
 .. autoclass:: saltus.Final
    :members:

@@ -130,6 +130,24 @@ class Mistakes(tool.ToolTest):
         self.assertEqual(places, [["9", "13"], ["10", "9"], ["10", "14"], ["10", "25"], ["11", "10"]], err)
         self.assertEqual(err.count("in [[jumps]]"), 5)
 
+    def test_what_is_missing_does_not_end_the_search(self):
+        head = "[model]\nname = 'm'\n[states]\nx = 1\nv = 0\n"
+        rates = "[dynamics]\nx = 'v'\nv = '-x'\n"
+        for text, told in ((head + rates + "[[events]]\nname = 'a'\n", "no `when`"),
+                           (head + rates + "[[hysteresis]]\nname = 'h'\ninput = 'x'\non = 1\n", "no `off`"),
+                           (head + "[mechanics]\npositions = ['x']\nvelocities = ['v']\n[[contacts]]\nname = 'c'\n", "no `gap`"),
+                           # What follows from a mistake is silent, and stated in no part.
+                           (head + "[switching]\ns = 1970-01-01\n" + rates + "[[modes]]\nwhen = 's > 0'\n"
+                            "dynamics = { x = 1 }\n", "expected a number or an expression")):
+            _, err = self.check(text)
+            self.assertIn(told, err)
+            self.assertNotIn("error: \n", err)
+
+    def test_a_rate_that_cannot_be_read_is_not_missing(self):
+        _, err = self.check("[model]\nname = 'm'\n[states]\nx = 1\nv = '2 m/s'\n[dynamics]\nx = 'v'\nv = '-9.81 m/s^2'\n")
+        self.assertIn("2 mistakes", err)
+        self.assertIn("units are no part of expressions", err)
+
     def test_options_that_do_not_fit(self):
         _, err = self.check("[model]\nname = 'm'\n[states]\nx = 1\n[dynamics]\nx = '-x'\n[simulate]\nuntil = -1\n")
         self.assertIn("until (-1) is not after from (0)", err)

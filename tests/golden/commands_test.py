@@ -130,10 +130,85 @@ class New(tool.ToolTest):
         self.assertEqual(schema.read_text(encoding="utf-8"), "{}")
 
 
+DRIVEN = """[model]
+name = "driven"
+[states]
+x = 1
+[controls]
+u = 0
+[dynamics]
+x = "u - sign(x)"
+[simulate]
+until = 1
+output = { points = 5 }
+inputs = { u = 0.5 }
+"""
+
+
+class TablesAreSet(tool.ToolTest):
+    def rows(self, *settings):
+        arguments = [word for setting in settings for word in ("--set", setting)]
+        self.run_tool("simulate", self.write("m.toml", DRIVEN), *arguments, "--out", "r.json", "--quiet", code=0)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
+    def test_as_in_a_file(self):
+        def times(result):
+            return len(result["trajectory"]["t"])
+        self.assertEqual(times(self.rows("simulate.output={ points = 11, events = false }")), 11)
+        self.assertEqual(times(self.rows("simulate.output={every=0.25,events=false}")), 5)
+        result = self.rows('simulate.event={ integrator = "dop853", max_step = 0.5 }', "simulate.initial_mode={ x = 1 }")
+        self.assertEqual(result["options"]["simulate.event.integrator"], "dop853")
+        self.assertEqual(result["options"]["simulate.event.max_step"], 0.5)
+        self.assertEqual(times(result), times(self.rows()))
+        for setting in ('simulate.inputs={ u = "-t" }', 'simulate.inputs.u={ file = "u.csv" }'):
+            self.write("u.csv", "t,u\n0,0\n1,-1\n")
+            self.assertNotEqual(self.rows(setting)["final"]["x"], self.rows()["final"]["x"])
+        self.run_tool("simulate", "r.json", "--out", "again.json", code=0)  # the setting is stored
+        again = json.loads((self.folder / "again.json").read_text(encoding="utf-8"))
+        self.assertEqual(again["final"], json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["final"])
+
+    def test_of_an_optimisation(self):
+        self.run_tool("optimize", tool.SOURCE / "examples/optimize/block.toml", "--quiet", "--out", "r.json", "--set",
+                      "optimize.mpcc={ tolerance = 1e-7 }", "--set",
+                      "optimize.horizon={ free = true, initial = 1.5, lower = 1, upper = 2 }", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertEqual(result["options"]["optimize.mpcc.tolerance"], 1e-7)
+        self.assertAlmostEqual(result["horizon"], 1.46647, places=4)
+
+    def test_mistakes_are_told(self):
+        self.write("m.toml", DRIVEN)
+        for settings, told in ((["simulate.output={ points = 11, every = 0.1 }"], "`points` and `every` of output say twice"),
+                               (["simulate.output.points=11", "simulate.output.every=0.1"], "say twice when there are rows"),
+                               (["simulate.output={ point = 11 }"], "did you mean 'simulate.output.points'"),
+                               (["simulate.output={ points = 1 }"], "a whole number from 2"),
+                               (["simulate.output={}"], "the table output is empty"),
+                               (["simulate.event={ integrator = taylor }"], "words in quotes"),
+                               (["simulate.output=foo"], "states = [names]"),
+                               (["optimize.mpcc={ tolerance = 1e-7 }"], "no table [optimize]")):
+            arguments = [word for setting in settings for word in ("--set", setting)]
+            err = self.run_tool("simulate", "m.toml", *arguments, code=2)[1]
+            self.assertIn(told, err)
+            self.assertTrue(err.startswith(f"--set {settings[0].partition('=')[0]}: error: ") or len(settings) > 1, err)
+
+
 class Words(tool.ToolTest):
     def test_help_is_a_command(self):
         self.assertEqual(self.run_tool("help", "help", code=0), self.run_tool("help", code=0))
         self.assertIn("did you mean 'help'?", self.run_tool("hlep", code=2)[1])
+
+    def test_words_in_the_wrong_place_are_answered(self):
+        self.write("brake.toml", "")
+        self.write("rows.csv", "t,x\n0,1\n")
+        for arguments, told in ((["brake.toml"], "did you mean `saltus simulate brake.toml`?"),
+                                (["stick-slip"], "did you mean `saltus simulate stick-slip`?"),
+                                (["simulate", "brak.toml"], "did you mean 'brake.toml'?"),
+                                (["simulate", "rows.csv"], "a .csv file is no model\n  a model is a .toml file"),
+                                (["simulate", "stick"], "did you mean 'stick-slip'"),
+                                (["simulate", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`"),
+                                (["check", "stick-slip", "--until", "3"], "--until is an option of `saltus simulate`"),
+                                (["simulate", "stick-slip", "--output", "x.json"], "did you mean '--out'?"),
+                                (["simulate", "stick-slip", "--show", "w"], "known: q, v, slip\n")):
+            self.assertIn(told, self.run_tool(*arguments, code=2)[1])
 
     def test_an_unknown_suffix_is_answered_with_all_that_there_are(self):
         err = self.run_tool("simulate", "stick-slip", "--out", "bb.xyz", code=2)[1]

@@ -89,6 +89,35 @@ class StreamsTest(ToolTest):
                 self.assertIn("cannot write to standard output: No space left on device", done.stderr)
 
 
+class NamesTest(ToolTest):
+    MODEL = """[model]
+name = "m"
+[parameters]
+w = 2
+k = 1
+x0 = 1
+[states]
+x = "x0"
+[controls]
+u = 0
+[dynamics]
+x = "-k*x + u"
+[simulate]
+until = 1
+inputs = { u = "sin(w*t)" }
+"""
+
+    def test_what_a_setting_replaces_uses_its_names(self):
+        self.write("m.toml", self.MODEL)
+        self.write("u.csv", "t,u\n0,0\n1,1\n")
+        for setting in ("simulate.inputs.u.file=u.csv", "simulate.inputs.u=0", 'simulate.inputs={ u = "t" }',
+                        "dynamics.x=-x", "states.x=2", "u=1", "x=2"):
+            self.assertEqual(self.run_tool("simulate", "m.toml", "--quiet", "--set", setting, code=0)[1], "", setting)
+        self.write("m.toml", self.MODEL.replace("k = 1", "k = 1\nunused = 1"))
+        err = self.run_tool("simulate", "m.toml", "--quiet", "--set", "dynamics.x=-x", code=0)[1]
+        self.assertIn("parameter 'unused' is never used", err)
+
+
 class OptionsWithoutEffectTest(ToolTest):
     def warnings(self, command, *arguments):
         self.write("friction.toml", FRICTION + '[simulate.timestepping]\nstep_bounds = 0.5\n[simulate.fesd]\nrho = 2\n')

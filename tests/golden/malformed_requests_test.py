@@ -83,7 +83,8 @@ class Settings(RequestTest):
 class CommandLine(RequestTest):
     CASES = {
         ("simulat", "m.toml"): ["'simulat' is no command of saltus", "did you mean 'simulate'"],
-        ("m.toml",): ["'m.toml' is no command of saltus", "known: help, simulate"],
+        ("m.toml",): ["'m.toml' is no command of saltus", "did you mean `saltus simulate m.toml`?"],
+        ("nonsense",): ["'nonsense' is no command of saltus", "known: help, simulate"],
         ("simulate",): ["MODEL is required", "saltus simulate --help"],
         ("simulate", "m.toml", "m.toml"): ["unexpected argument 'm.toml'"],
         ("simulate", "m.toml", "--untl", "1"): ["unexpected argument '--untl'", "did you mean '--until'"],

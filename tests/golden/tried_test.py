@@ -264,53 +264,6 @@ class Colours(tool.ToolTest):
 
 
 class Editors(tool.ToolTest):
-    def test_the_schema_knows_every_key_of_the_catalogue(self):
-        schema = json.loads(self.run_tool("schema", code=0)[0])
-        import tomllib
-        for path in sorted((tool.SOURCE / "models").glob("*.toml")):
-            self.check(tomllib.loads(path.read_text(encoding="utf-8")), schema, schema, path.stem)
-
-    def check(self, value, schema, root, place):
-        """What of JSON schema the file uses: properties, additionalProperties, items, anyOf, $ref, required, enum."""
-        problems = self.problems(value, schema, root, place)
-        self.assertEqual(problems, [])
-
-    def problems(self, value, schema, root, place):
-        if "$ref" in schema:
-            schema = root["$defs"][schema["$ref"].split("/")[-1]]
-        if "anyOf" in schema:
-            tried = [self.problems(value, option, root, place) for option in schema["anyOf"]]
-            return [] if any(not found for found in tried) else tried[0]
-        types = {"object": dict, "array": list, "string": str, "boolean": bool, "number": (int, float)}
-        wanted = schema.get("type", [])
-        wanted = [wanted] if isinstance(wanted, str) else wanted
-        if wanted and not any(isinstance(value, types[name]) for name in wanted):
-            return [f"{place}: {value!r} is no {wanted}"]
-        if "enum" in schema and value not in schema["enum"]:
-            return [f"{place}: {value!r}"]
-        found = []
-        if isinstance(value, dict) and "properties" in schema or isinstance(value, dict) and "additionalProperties" in schema:
-            for key in schema.get("required", []):
-                if key not in value:
-                    found.append(f"{place}: no {key}")
-            for key, member in value.items():
-                known = schema.get("properties", {}).get(key, schema.get("additionalProperties", True))
-                if known is False:
-                    found.append(f"{place}: unknown {key}")
-                elif known is not True:
-                    found += self.problems(member, known, root, f"{place}.{key}")
-        if isinstance(value, list) and "items" in schema:
-            for i, item in enumerate(value):
-                found += self.problems(item, schema["items"], root, f"{place}[{i}]")
-        return found
-
-    def test_the_schema_refuses_what_the_reader_refuses(self):
-        schema = json.loads(self.run_tool("schema", code=0)[0])
-        for wrong in ({"modle": {}}, {"model": {}}, {"model": {"name": "m"}, "simulate": {"rtoll": 1}},
-                      {"model": {"name": "m"}, "jumps": [{"when": "x"}]},
-                      {"model": {"name": "m"}, "outputs": {"x": {"unit": "m"}}}):
-            self.assertNotEqual(self.problems(wrong, schema, schema, ""), [], wrong)
-
     def test_completion(self):
         import shutil
         import subprocess

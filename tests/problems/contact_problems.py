@@ -328,6 +328,47 @@ def sliding_ball():
                                         Phase({"ground": "stick"})]))
 
 
+def ball_in_space():
+    """The direction of the slip stays: one tangent along it."""
+    along = lambda: [2 / mpmath.sqrt(5), 1 / mpmath.sqrt(5), mpf(0)]
+    ground = Contact("ground", lambda q: q[2], lambda q: [0, 0, 1], along=lambda q: along(), mu=number("0.2"))
+    return ContactProblem("ball-in-space", number("2"), lambda: [0, 0, 1, 2, 1, 0], lambda: [1, 1, 1],
+                          lambda q, v: [Series.lift(0), Series.lift(0), Series.lift(-10)], [ground],
+                          lambda: iter([Phase({}, ("gap", "ground")), Phase({"ground": "+"}, ("slip", "ground")),
+                                        Phase({"ground": "stick"})]))
+
+
+def balls_touch(i, j, radius):
+    """Gap of two balls of a pile, |q_i - q_j|^2 - 4 r^2; positions are (x1, y1, x2, y2, ...)."""
+    apart = lambda q: [q[2 * i + k] - q[2 * j + k] for k in (0, 1)]
+    squared = lambda d: d[0] * d[0] + d[1] * d[1]
+
+    def row(q):
+        result, d = [0] * 8, apart(q)
+        for k in (0, 1):
+            result[2 * i + k], result[2 * j + k] = d[k] * 2, d[k] * -2
+        return result
+
+    return Contact(f"balls{i + 1}{j + 1}", lambda q: squared(apart(q)) - 4 * radius() * radius(), row,
+                   lambda q, v: squared(apart(v)) * 2)
+
+
+def pile_of_balls():
+    """Up to where the thrown ball leaves the lower ones; later two of them touch without a force, and rounding decides."""
+    r = number("0.2")
+    grounds = [Contact(f"ground{i + 1}", lambda q, i=i: q[2 * i + 1] - r(), lambda q, i=i: [int(k == 2 * i + 1) for k in range(8)])
+               for i in range(4)]
+    pairs = [balls_touch(i, j, r) for i, j in itertools.combinations(range(4), 2)]
+    start = lambda: [-1, mpf("0.5"), 0, r(), 2 * r(), r(), r(), r() + mpmath.sqrt(3) * r(), 10, 0, 0, 0, 0, 0, 0, 0]
+    force = lambda q, v: [Series.lift(0), Series.lift(-mpf("9.81"))] * 4
+    lying = {"ground2": "closed", "ground3": "closed"}
+    return ContactProblem("pile-of-balls", number("0.085"), start, lambda: [1] * 8, force, grounds + pairs,
+                          lambda: iter([Phase({**lying, "balls24": "closed", "balls34": "closed"}, ("gap", "balls12"),
+                                              ("ground2", "balls24", "balls34")),
+                                        Phase(lying, ("gap", "balls23")), Phase(lying, ("gap", "balls12"), ("ground2", "balls23")),
+                                        Phase(lying)]), max_step="0.015625")
+
+
 def corner():
     left = Contact("left", lambda q: q[0], lambda q: [1, 0])
     bottom = Contact("bottom", lambda q: q[1], lambda q: [0, 1])
@@ -409,6 +450,8 @@ def problems():
     yield from elastic_balls()
     yield spring_balls()
     yield sliding_ball()
+    yield ball_in_space()
+    yield pile_of_balls()
     yield corner()
     yield three_carts()
     yield falling_rod()

@@ -85,10 +85,13 @@ std::string to_text(const Error& error) {
 
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& known) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
+  std::vector<std::string> longer_or_shorter;
   for (const auto& candidate : known) {
     // A third of the letters may differ: "mu" ~ "mue" is a slip, "mu" ~ "x0" is not.
     const auto [shorter, longer] = std::minmax({name.size(), candidate.size()});
     const std::size_t allowed = std::max<std::size_t>(1, longer / 3);
+    const bool begins_alike = name.starts_with(candidate) || candidate.starts_with(name);
+    if (begins_alike && shorter >= 4 && longer <= 5 * shorter) longer_or_shorter.push_back(candidate);
     if (longer - shorter > allowed) continue;  // so many letters are missing at least; names may be of any length
     const std::size_t distance = edit_distance(name, candidate);
     // Without a letter in common it is another name: "x" suggests nothing about "t".
@@ -97,9 +100,9 @@ std::vector<std::string> nearest_names(const std::string& name, const std::vecto
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> names;
-  for (const auto& [distance, candidate] : ranked) {
-    if (names.size() < 3) names.push_back(candidate);
-  }
+  for (const auto& [distance, candidate] : ranked) names.push_back(candidate);
+  if (names.empty()) names = std::move(longer_or_shorter);
+  names.resize(std::min<std::size_t>(names.size(), 3));
   return names;
 }
 

@@ -46,7 +46,8 @@ using Expected = tl::expected<T, Error>;
 /// "file:line:column: error: message", trail and remedy, a line each; control characters as \xNN, parts <= 2000 bytes.
 [[nodiscard]] std::string to_text(const Error& error);
 
-/// The known names nearest to `name` by edit distance, best first, at most three; for "did you mean" remedies.
+/// The known names nearest to `name` by edit distance, best first, at most three; for "did you mean" remedies. Where none
+/// is near, those that begin with it, or with which it begins.
 [[nodiscard]] std::vector<std::string> nearest_names(const std::string& name,
                                                      const std::vector<std::string>& known);
 

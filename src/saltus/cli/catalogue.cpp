@@ -45,6 +45,24 @@ std::vector<fs::path> plotly_places() {
   return places;
 }
 
+/// A file that is not there, where its folder has one with a name like it, is told with that name.
+Expected<fs::path> path_or_nearest(const fs::path& path) {
+  std::error_code none;
+  if (fs::exists(path, none)) return path;
+  std::vector<std::string> there;
+  const auto folder = path.parent_path();
+  for (fs::directory_iterator file(folder.empty() ? fs::path(".") : folder, none), end; !none && file != end;
+       file.increment(none)) {
+    std::error_code broken;
+    if (file->path().extension() != path.extension() || !fs::exists(file->path(), broken)) continue;
+    there.push_back((folder / file->path().filename()).string());
+  }
+  std::sort(there.begin(), there.end());
+  if (nearest_names(path.string(), there).empty()) return path;
+  return tl::unexpected(
+      Error{ErrorCode::io_failure, "there is no such file", suggest(path.string(), there), {path.string(), 0, 0}, {}});
+}
+
 }  // namespace
 
 void set_shared_folder(const fs::path& folder) { chosen_folder() = folder; }
@@ -72,7 +90,7 @@ Expected<fs::path> find_model(const std::string& model) {
     known.push_back(entry.name);
   }
   const bool is_path = model.find('/') != std::string::npos || path.extension() == ".toml" || fs::exists(path, ignored);
-  if (is_path) return path;
+  if (is_path) return path_or_nearest(path);
   const auto nearest = nearest_names(model, known);
   if (fs::exists(path.string() + ".toml", ignored)) {
     return tl::unexpected(Error{ErrorCode::unknown_name,

@@ -1,6 +1,7 @@
 #include "saltus/cli/model_input.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -21,6 +22,23 @@ std::string target_of(const std::string& setting) {
     if (whole) return name.substr(table.size());
   }
   return name;
+}
+
+/// Of one call; a stored result or a file may have another grid, which is replaced.
+Expected<void> check_grids(const std::vector<std::string>& settings) {
+  std::vector<std::string> grids;
+  for (const auto& setting : settings) {
+    const auto name = target_of(setting);
+    for (const std::string_view grid : {"simulate.output.every", "simulate.output.points", "simulate.output.times"}) {
+      if (name == grid && std::find(grids.begin(), grids.end(), name) == grids.end()) grids.push_back(name);
+    }
+  }
+  if (grids.size() < 2) return {};
+  return tl::unexpected(Error{ErrorCode::invalid_option,
+                              fmt::format("--set {} and --set {} say twice when there are rows", grids[0], grids[1]),
+                              "leave one of them out",
+                              {},
+                              {}});
 }
 
 }  // namespace
@@ -52,6 +70,15 @@ Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
 Expected<ModelText> read_model_text(const std::string& model) {
   const auto path = find_model(model);
   if (!path) return tl::unexpected(path.error());
+  std::error_code ignored;
+  for (const std::string_view written : {".csv", ".npz", ".html", ".svg", ".pdf", ".png"}) {
+    if (path->extension() != written || !std::filesystem::exists(*path, ignored)) continue;
+    return tl::unexpected(Error{ErrorCode::parse_failure,
+                                fmt::format("a {} file is no model", written),
+                                "a model is a .toml file, or a .json that saltus simulate --out has written",
+                                {path->string(), 0, 0},
+                                {}});
+  }
   return io::read_model_text(*path);
 }
 
@@ -64,6 +91,7 @@ Expected<ModelInput> read_input(const std::string& model, const std::vector<std:
 Expected<ModelInput> read_input(const ModelText& text, const std::vector<std::string>& settings) {
   auto file = io::parse_model(text.text, text.name, text.files);
   if (!file) return tl::unexpected(file.error());
+  if (auto once = check_grids(settings); !once) return tl::unexpected(once.error());
   ModelInput input{text.path, std::move(*file), {}, {}, {}};
   // What a stored result was computed with, and is not set anew.
   for (const auto& setting : text.settings) {

@@ -163,11 +163,11 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   const auto runs = pipeline::sweep({count, *keep, *jobs, begin}, state, observers);
   if (!runs) return refuse(io::located(runs.error(), model->file));
   auto table = sweep_table(*plan, *runs, *keep, begin);
-  if (!arguments.task.empty()) {
-    table.front().name = share_heading(*share, sweep_mark(*model, arguments.request, arguments.keep));
-  }
   const bool grid = !arguments.request.paired && arguments.request.samples.empty();
   const SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid};
+  if (!arguments.task.empty()) {
+    table.front().name = share_heading(*share, sweep_mark(*model, arguments.request, arguments.keep), page);
+  }
   if (auto written = write_files(arguments, table, page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
     print(fmt::format("{} runs: {}\n{}\n", runs->size(), statuses(*runs),
@@ -184,19 +184,11 @@ ExitCode run_join(const SweepArguments& arguments) {
         misuse("--join takes the tables of shares, and no model", "saltus sweep --join 1.csv 2.csv --out all.csv"));
   }
   if (auto writable = check_output(arguments, ""); !writable) return refuse(writable.error());
-  const auto table = join_shares(arguments.join);
-  if (!table) return refuse(table.error());
-  // Which columns were changed stands in no share; they are those between the run and its status.
-  const auto status =
-      std::find_if(table->begin(), table->end(), [](const auto& column) { return column.name == "status"; });
-  SweepPage page{"Sweep", "saltus simulate MODEL", {}, true};
-  for (auto column = table->begin() + 1; column < status; ++column) {
-    const auto& name = column->name;
-    page.names.push_back(name.ends_with("(0)") ? name.substr(0, name.size() - 3) : name);
-  }
-  if (auto written = write_files(arguments, *table, page); !written) return refuse(written.error());
+  const auto whole = join_shares(arguments.join);
+  if (!whole) return refuse(whole.error());
+  if (auto written = write_files(arguments, whole->table, whole->page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
-    print(fmt::format("{} shares, {} rows\n{}\n", arguments.join.size(), rows_of(table->front()),
+    print(fmt::format("{} shares, {} rows\n{}\n", arguments.join.size(), rows_of(whole->table.front()),
                       arguments.out.empty() ? arguments.page : arguments.out));
   }
   return ExitCode::done;

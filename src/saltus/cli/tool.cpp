@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/version.hpp"
+#include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/exit_code.hpp"
 #include "saltus/cli/text/terminal.hpp"
@@ -26,6 +28,18 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// The option of this command that was meant, or the command that has it.
+std::string about_option(const std::string& name, const CLI::App& app, const CLI::App& reader) {
+  const auto known = option_names(reader);
+  if (!nearest_names(name, known).empty()) return suggest(name, known);
+  for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    const auto names = option_names(*command);
+    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
+    return fmt::format("{} is an option of `saltus {}`", name, command->get_name());
+  }
+  return suggest(name, known);
+}
+
 /// What CLI11 did not understand, in our words: the first argument nobody expected, and what it may have meant.
 Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
   Error error{ErrorCode::parse_failure, failure.what(), "saltus --help shows how it is used", {}, {}};
@@ -37,7 +51,7 @@ Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
     if (argument == "--") continue;
     const auto name = argument.substr(0, argument.find('='));
     error.message = fmt::format("unexpected argument '{}'", argument);
-    if (name.starts_with("--")) error.remedy = suggest(name, option_names(reader));
+    if (name.starts_with("--")) error.remedy = about_option(name, app, reader);
     break;
   }
   return error;
@@ -50,7 +64,14 @@ Error unknown_command(const std::string& word, const std::vector<Command>& comma
         command.name == "options-page" || command.name == "complete-names" || command.name == "man-page";
     if (!hidden) known.push_back(command.name);
   }
-  return {ErrorCode::unknown_name, fmt::format("'{}' is no command of saltus", word), suggest(word, known), {}, {}};
+  std::error_code unknown;
+  const auto model = find_model(word);
+  const bool is_model = nearest_names(word, known).empty() && model && std::filesystem::exists(*model, unknown);
+  return {ErrorCode::unknown_name,
+          fmt::format("'{}' is no command of saltus", word),
+          is_model ? fmt::format("did you mean `saltus simulate {}`?", word) : suggest(word, known),
+          {},
+          {}};
 }
 
 /// What was typed behind the name of the tool.

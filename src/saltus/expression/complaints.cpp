@@ -135,7 +135,10 @@ std::nullopt_t Complaints::missing_operator(const Token& before, const Token& fo
       if (same) return failure(found, std::move(message), fmt::format("write '{}' in lower case", word));
     }
   }
-  return failure(found, std::move(message), "for a product write " + product_of(before, found));
+  const bool like_unit = before.kind == TokenKind::number && found.kind == TokenKind::name;
+  return failure(found, std::move(message),
+                 fmt::format("for a product write {}{}", product_of(before, found),
+                             like_unit ? "; units are no part of expressions" : ""));
 }
 
 std::nullopt_t Complaints::chained_comparison(const Token& token, const Node& left, const Node& right) {

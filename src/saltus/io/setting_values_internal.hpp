@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "saltus/base/error.hpp"
+#include "saltus/io/toml/toml_model.hpp"
 
 namespace saltus::io {
 
@@ -14,5 +15,16 @@ namespace saltus::io {
 /// An error of --set KEY=VALUE.
 [[nodiscard]] tl::unexpected<Error> refused_setting(std::string_view key, ErrorCode code, std::string message,
                                                     std::string remedy);
+
+/// Takes what a control is given away, for something else.
+void withdraw_input(model::Description& description, std::string_view name);
+
+/// Whether the value of a setting is a table, { … }.
+[[nodiscard]] bool is_table_text(std::string_view value);
+
+/// --set KEY={ … }: what is written there replaces what the model has, and the rest stays. Errors are those of the same
+/// table in a file.
+/// @param key  below [simulate], or a table of [optimize] that read_optimize_key reads; the model has that one
+[[nodiscard]] Expected<void> set_table(ModelFile& model, std::string_view key, std::string_view value);
 
 }  // namespace saltus::io

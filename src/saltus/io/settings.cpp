@@ -35,6 +35,11 @@ expression::NodePtr* place_in(std::vector<Quantity>& list, std::string_view path
   return nullptr;
 }
 
+void put_in_place(model::Description& description, expression::NodePtr& place, expression::NodePtr tree) {
+  if (place) description.replaced.push_back(std::move(place));
+  place = std::move(tree);
+}
+
 template <class Item>
 std::vector<std::string> names_of(const std::vector<Item>& list) {
   std::vector<std::string> names;
@@ -64,7 +69,7 @@ Expected<void> set_expression(model::Description& description, std::string_view 
   }
   auto tree = expression::parse(value, place_of_setting(key), names_of(description.tables));
   if (!tree) return tl::unexpected(tree.error());
-  *place = std::move(*tree);
+  put_in_place(description, *place, std::move(*tree));
   return {};
 }
 
@@ -164,7 +169,7 @@ Expected<void> set_input_expression(model::Description& description, std::string
   if (!tree) return tl::unexpected(tree.error());
   std::erase_if(description.sampled_inputs, [&](const auto& input) { return input.name == name; });
   if (auto* place = place_in(description.inputs, name); place != nullptr) {
-    *place = std::move(*tree);
+    put_in_place(description, *place, std::move(*tree));
   } else {
     description.inputs.push_back(
         {std::string(name), std::move(*tree), place_of_setting(fmt::format("simulate.inputs.{}", name))});
@@ -177,11 +182,8 @@ Expected<void> set_samples(ModelFile& model, std::string_view name, std::string_
   const auto place = place_of_setting(fmt::format("simulate.inputs.{}.{}", name, source));
   auto input = sampled_input(std::string(name), source, std::string(file), place, model.files);
   if (!input) return tl::unexpected(input.error());
-  auto& description = model.description;
-  const auto same = [&](const auto& other) { return other.name == name; };
-  std::erase_if(description.sampled_inputs, same);
-  std::erase_if(description.inputs, same);
-  description.sampled_inputs.push_back(std::move(*input));
+  withdraw_input(model.description, name);
+  model.description.sampled_inputs.push_back(std::move(*input));
   return {};
 }
 
@@ -227,7 +229,9 @@ Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::str
   const auto dot = std::min(key.find('.'), key.size());
   const auto table = key.substr(0, dot);
   Expected<void> done;
-  if (key.starts_with(inputs)) {
+  if (table == "simulate" && dot < key.size() && is_table_text(value)) {
+    done = set_table(model, key, value);
+  } else if (key.starts_with(inputs)) {
     done = set_input(model, key.substr(inputs.size()), value);
   } else if (table == "simulate") {
     done = set_option(model, key, value, place_of_setting(key));

@@ -54,9 +54,9 @@ class Build {
   [[nodiscard]] std::vector<Error> mistakes() {
     std::vector<Error> found;
     scope_.collect_mistakes(found);
-    if (auto error = state()) found.push_back(*error);
+    if (auto error = state()) static_cast<void>(scope_.end_at(std::move(*error)));
     tell_of_still_states(found);
-    if (!found.empty()) return found;
+    if (scope_.has_mistakes()) return found;
     if (auto system = assemble(recognition_, statement_); !system) found.push_back(system.error());
     return found;
   }

@@ -127,6 +127,7 @@ struct Description {
   std::vector<FreeParameterDescription> free_parameters;  ///< their initial values are in `parameters`
   std::optional<OcpDescription> optimize;
   std::optional<ClockDescription> clock;
+  std::vector<expression::NodePtr> replaced;  ///< by settings: the file uses what they name
 };
 
 /// `--set NAME=VALUE`: replaces a parameter, an initial value or a control's constant value; VALUE is an expression of

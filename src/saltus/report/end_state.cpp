@@ -232,8 +232,11 @@ Expected<void> check_names(const std::vector<std::string>& names, const std::vec
                            const std::vector<std::string>& outputs,
                            const std::vector<std::string>& switching_functions) {
   std::vector<std::string> all = states;
-  all.insert(all.end(), outputs.begin(), outputs.end());
-  all.insert(all.end(), switching_functions.begin(), switching_functions.end());
+  for (const auto* more : {&outputs, &switching_functions}) {
+    for (const auto& name : *more) {
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    }
+  }
   const auto found = result::numbers_of(names, all);
   if (found) return {};
   return tl::unexpected(

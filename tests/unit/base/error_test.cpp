@@ -47,6 +47,13 @@ TEST(NearestNames, slips_are_near) {
   EXPECT_EQ(nearest_names("raod", {"road"}), Names{"road"});  // neighbours swapped: one slip, not two
 }
 
+TEST(NearestNames, a_part_of_a_word_is_near_where_no_slip_is) {
+  EXPECT_EQ(nearest_names("--output", {"--out", "--until"}), Names{"--out"});
+  EXPECT_EQ(nearest_names("stick", {"sliding", "stick-slip"}), Names{"stick-slip"});
+  EXPECT_EQ(nearest_names("step", {"steps", "steplength"}), Names{"steps"});
+  EXPECT_TRUE(nearest_names("sti", {"stick-slip"}).empty());
+}
+
 TEST(NearestNames, others_are_not) {
   EXPECT_TRUE(nearest_names("x", {"t", "mu"}).empty());
   EXPECT_TRUE(nearest_names("position", {"velocity"}).empty());

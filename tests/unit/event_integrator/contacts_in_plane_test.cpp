@@ -93,6 +93,29 @@ TEST(ContactsInPlane, AThrownBallMovesAsInThePlane) {
   }
 }
 
+/// The last speed that is resolved lies anywhere above the tolerance.
+TEST(ContactsInPlane, ASlipEndsWhateverItsSpeed) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853}) {
+    for (int k = 0; k < 16; ++k) {
+      SCOPED_TRACE(k);
+      const double speed = std::pow(10.0, k / 16.0);
+      PointInSpace ball({0.0, 0.0, 0.0}, {speed * std::cos(0.4), speed * std::sin(0.4), 0.0});
+      ball.moves();
+      ball.touches(0.3);
+      IntegrationOptions options;
+      options.method = method;
+      options.tolerances = {1e-8, 1e-10};
+      options.until = speed / 3.0 + 0.5;
+      options.max_steps = 2000;
+      const auto run = run_model(ball.model, options);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+      ASSERT_EQ(kinds_of(run), std::vector<EventKind>{EventKind::stick});
+      EXPECT_NEAR(run.events[0].t, speed / 3.0, 1e-9);
+      EXPECT_EQ(run.final.x[3], 0.0);
+    }
+  }
+}
+
 /// A block on an incline, pushed sideways: with gravity a down the plane and friction k the speed is
 /// v = C tan(phi/2)^(k/a) / sin phi over the angle phi to the line of fall, phi' = -a sin phi / v.
 struct Incline {

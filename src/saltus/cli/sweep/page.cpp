@@ -78,7 +78,7 @@ std::string data_of(const std::vector<TableColumn>& table, const DrawnRows& draw
 
 std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& page) {
   const DrawnRows drawn = drawn_rows(table);
-  const auto title = report::escape_html(page.title);
+  const auto title = page.title.empty() ? std::string("Sweep") : report::escape_html(page.title);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   // Nothing may be fetched from anywhere.
   html +=

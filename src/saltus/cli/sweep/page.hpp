@@ -14,8 +14,8 @@ inline constexpr std::size_t rows_of_page = 100'000;
 
 /// What the page says beside the table.
 struct SweepPage {
-  std::string title;
-  std::string command;             ///< that runs one of them, without its values
+  std::string title;               ///< empty: not known
+  std::string command;             ///< that runs one of them, without its values; empty: not known
   std::vector<std::string> names;  ///< what was changed, as --set takes it
   bool grid = true;                ///< of two names every pair is there once
 };

@@ -28,7 +28,7 @@ const eventsOf = (row) => (columns.events ? columns.events[row] : data.rows_of_r
 
 function commandOf(row) {
   const settings = swept.map((name, k) => `--set ${data.names[k]}=${columns[name][row] === null ? "nan" : columns[name][row]}`);
-  return [data.command, ...settings].join(" ");
+  return [data.command || "The shares do not say their model and its other settings. What was changed:", ...settings].join(" ");
 }
 function choose(row) {
   const parts = swept.map((name) => `${name} = ${shown(columns[name][row])}`);

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdio>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -53,20 +54,44 @@ Lines fields_of(const std::string& text) {
 struct ShareTable {
   Share share;
   std::string mark, file;
-  Lines lines;  ///< headings first
+  Lines lines;     ///< headings first
+  SweepPage page;  ///< as its heading says
 };
+
+constexpr std::string_view grid_word = "grid", pairs_word = "pairs";
+
+/// What stands behind the bracket of a share's heading: fields of CSV; nothing in older shares.
+void read_page(const std::string& text, SweepPage& page) {
+  const auto lines = fields_of(text + "\n");
+  if (lines.size() != 1 || lines[0].size() != 3) return;
+  page.title = lines[0][0];
+  page.command = lines[0][1];
+  page.grid = lines[0][2] == grid_word;
+}
+
+/// Those of the columns between the run and its status.
+std::vector<std::string> changed_names(const std::vector<TableColumn>& table) {
+  std::vector<std::string> names;
+  for (std::size_t k = 1; k < table.size() && table[k].name != "status"; ++k) {
+    const auto& name = table[k].name;
+    names.push_back(name.ends_with("(0)") ? name.substr(0, name.size() - 3) : name);
+  }
+  return names;
+}
 
 Expected<ShareTable> read_share(const std::string& file) {
   const auto text = io::read_file(file);
   if (!text) return tl::unexpected(text.error());
-  ShareTable table{{}, "", file, fields_of(*text)};
+  ShareTable table{{}, "", file, fields_of(*text), {}};
   std::array<char, 65> mark{};
+  int used = 0;
   const auto heading = table.lines.empty() || table.lines[0].empty() ? std::string() : table.lines[0][0];
-  if (std::sscanf(heading.c_str(), "run [task %zu of %zu, sweep %64[0-9a-f]]", &table.share.number, &table.share.of,
-                  mark.data()) != 3) {
+  if (std::sscanf(heading.c_str(), "run [task %zu of %zu, sweep %64[0-9a-f]] %n", &table.share.number, &table.share.of,
+                  mark.data(), &used) != 3) {
     return tl::unexpected(no_share(file, "no share of a sweep", "join what `saltus sweep … --task I/N` wrote"));
   }
   table.mark = mark.data();
+  read_page(heading.substr(static_cast<std::size_t>(used)), table.page);
   for (std::size_t i = 0; i < table.lines.size(); ++i) {
     if (table.lines[i].size() == table.lines[0].size()) continue;
     return tl::unexpected(no_share(
@@ -164,11 +189,14 @@ std::string sweep_mark(const ModelInput& model, const SweepRequest& request, con
   return io::sha256(all).substr(0, 16);
 }
 
-std::string share_heading(const Share& share, const std::string& mark) {
-  return fmt::format("run [task {} of {}, sweep {}]", share.number, share.of, mark);
+std::string share_heading(const Share& share, const std::string& mark, const SweepPage& page) {
+  const std::string kind(page.grid ? grid_word : pairs_word);
+  auto fields = to_csv({TableColumn{page.title, {}}, TableColumn{page.command, {}}, TableColumn{kind, {}}});
+  fields.pop_back();  // the end of the line
+  return fmt::format("run [task {} of {}, sweep {}] {}", share.number, share.of, mark, fields);
 }
 
-Expected<std::vector<TableColumn>> join_shares(const std::vector<std::string>& files) {
+Expected<JoinedShares> join_shares(const std::vector<std::string>& files) {
   std::vector<ShareTable> shares;
   for (const auto& file : files) {
     auto share = read_share(file);
@@ -183,9 +211,12 @@ Expected<std::vector<TableColumn>> join_shares(const std::vector<std::string>& f
     return tl::unexpected(no_share(share.file, fmt::format("other columns than {}", shares.front().file),
                                    "a share in which no run began has no states; run it again"));
   }
-  std::vector<TableColumn> table;
-  for (std::size_t k = 0; k < headings.size(); ++k) table.push_back(column_of(k == 0 ? "run" : headings[k], shares, k));
-  return table;
+  JoinedShares whole{{}, shares.front().page};
+  for (std::size_t k = 0; k < headings.size(); ++k) {
+    whole.table.push_back(column_of(k == 0 ? "run" : headings[k], shares, k));
+  }
+  whole.page.names = changed_names(whole.table);
+  return whole;
 }
 
 }  // namespace saltus::cli

@@ -7,6 +7,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/cli/model_input.hpp"
+#include "saltus/cli/sweep/page.hpp"
 #include "saltus/cli/sweep/sweep_plan.hpp"
 #include "saltus/cli/sweep/sweep_table.hpp"
 
@@ -25,11 +26,17 @@ struct Share {
 /// What tells the shares of one sweep from those of another: model, settings, plan and what is kept.
 [[nodiscard]] std::string sweep_mark(const ModelInput& model, const SweepRequest& request, const std::string& keep);
 
-/// The heading of the first column of a share's table, which says whose it is.
-[[nodiscard]] std::string share_heading(const Share& share, const std::string& mark);
+/// The heading of the first column of a share's table, which says whose it is, and what the page of all says.
+[[nodiscard]] std::string share_heading(const Share& share, const std::string& mark, const SweepPage& page);
 
-/// The table of the whole sweep from the files (.csv) of all its shares, in any order: what one run of it would have
-/// written. Fails for a file that is no share, shares of different sweeps, a missing one and one that is there twice.
-[[nodiscard]] Expected<std::vector<TableColumn>> join_shares(const std::vector<std::string>& files);
+struct JoinedShares {
+  std::vector<TableColumn> table;
+  SweepPage page;  ///< without title and command where the shares do not say them (older ones)
+};
+
+/// The table and page of the whole sweep from the files (.csv) of all its shares, in any order: what one run of it
+/// would have written. Fails for a file that is no share, shares of different sweeps, a missing one and one that is
+/// there twice.
+[[nodiscard]] Expected<JoinedShares> join_shares(const std::vector<std::string>& files);
 
 }  // namespace saltus::cli

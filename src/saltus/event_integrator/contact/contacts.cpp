@@ -22,6 +22,10 @@ constexpr double small_velocity =
 /// Of the speed at which a slip in a plane is looked at again: small speeds are located to the rounding of t.
 constexpr double ends_below = 1.1;
 
+/// Of the slowest speed, below which a slip in a plane is none: at twice its tolerance a step runs through the rest
+/// unseen, and comes out on the other side as fast as before.
+constexpr double none_below = 3.0;
+
 }  // namespace
 
 Contacts::Contacts(const evaluation::ModelKernel& kernel, const model::System& system)
@@ -126,7 +130,7 @@ bool Contacts::reaches_a_speed(const ContactMoment& moment, int contact, const C
   const double speed = point.along(point.velocity, contact).norm();
   const auto bounds = at(contacts_[at(contact)].speeds);
   const bool at_bound = speed <= ends_below * std::sqrt(x[bounds]) || ends_below * speed >= std::sqrt(x[bounds + 1]);
-  if (!at_bound || speed <= ends_below * slowest(moment, point, x)) return false;
+  if (!at_bound || speed <= none_below * slowest(moment, point, x)) return false;
   ContactForces forces;
   std::vector<int> closed;
   std::vector<ContactMode> modes;
@@ -182,7 +186,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
   for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
     terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * std::abs(x[at(system_.velocities[k])]);
   }
-  const double small = small_velocity * fastest(moment, point, x), end = ends_below * slowest(moment, point, x);
+  const double small = small_velocity * fastest(moment, point, x), end = none_below * slowest(moment, point, x);
   std::vector<bool> slip_has_ended(at(m), false);
   for (const int i : ended) {
     if (slips(mode_of(i, x)))

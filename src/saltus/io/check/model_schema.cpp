@@ -105,15 +105,47 @@ Json simulate_schema() {
   return json;
 }
 
+/// Of a key of [optimize] that states the problem.
+Json problem_schema(std::string_view key) {
+  const Json expression = reference("expression");
+  const Json expressions = list_of(expression, "expressions");
+  if (key == "horizon") {
+    return or_table(table({{"free", truth("chosen within its bounds")},
+                           {"initial", expression},
+                           {"lower", expression},
+                           {"upper", expression}},
+                          "a length of time", {"initial"}));
+  }
+  if (key == "minimize_time") return {{"anyOf", Json::array({truth("the weight 1, or none"), expression})}};
+  if (key == "path_constraints_at") return one_of_words({"intervals", "elements", "stages"}, "");
+  if (key == "path_constraints" || key == "terminal_constraints") {
+    const Json soft = table({{"constraint", text("a comparison")},
+                             {"penalty", expression},
+                             {"norm", one_of_words({"l1", "l2", "linf"}, "of its violation")}},
+                            "a soft constraint", {"constraint", "penalty"});
+    return list_of({{"anyOf", Json::array({text("a comparison"), soft})}}, "");
+  }
+  if (key == "path_complementarities") return list_of(expressions, "");
+  if (key == "initial_guess") return names(expression, "");
+  if (key != "least_squares") return expression;
+  const Json file = table({{"file", text("rows of t and the references")}}, "measurements", {"file"});
+  const Json references = {{"anyOf", Json::array({expressions, file})}};
+  const Json weights = {{"anyOf", Json::array({expression, expressions})}};
+  return list_of(table({{"of", expressions},
+                        {"reference", references},
+                        {"weight", list_of(weights, "numbers, or a matrix")},
+                        {"at", one_of_words({"intervals", "stages", "end"}, "where they are compared")}},
+                       "squares of distances to a reference", {"of"}),
+                 "");
+}
+
 Json optimize_schema() {
   Json json = table({}, "an optimal control problem");
   for (const auto& field : pipeline::optimize_fields()) {
     put(json, field.key, {{"description", fmt::format("{} ({})", field.doc, field.expects)}});
   }
   for (const auto& key : pipeline::problem_keys()) {
-    const auto first = key.key.substr(0, key.key.find('.'));
-    if (json["properties"].contains(std::string(first))) continue;
-    put(json, first, {{"description", fmt::format("{} ({})", key.doc, key.expects)}});
+    put(json, key.key, described(problem_schema(key.key), fmt::format("{} ({})", key.doc, key.expects)));
   }
   return json;
 }
@@ -142,6 +174,60 @@ Json modes_schema() {
                         {"dynamics", names(reference("expression"), "right-hand sides in this mode")}},
                        "a region with its own equations", {"dynamics"}),
                  "piecewise equations");
+}
+
+Json mechanics_schema() {
+  const Json expression = reference("expression");
+  const Json point = list_of(expression, "two coordinates");
+  return table({{"positions", list_of({{"type", "string"}}, "names of states")},
+                {"velocities", list_of({{"type", "string"}}, "names of states, in the same order")},
+                {"mass", list_of(list_of(expression, "a row"), "a matrix over positions; the identity without")},
+                {"potential", described(expression, "over positions; its gradient is a force")},
+                {"coriolis", one_of_words({"none", "auto"}, "forces that follow from the mass matrix")},
+                {"force", names(expression, "of velocities")},
+                {"draw", list_of(table({{"line", list_of(point, "points")},
+                                        {"point", point},
+                                        {"radius", described(expression, "of a disc around `point`")}},
+                                       "a line or a disc"),
+                                 "what reports show")}},
+               "bodies", {"positions", "velocities"});
+}
+
+Json contacts_schema() {
+  const Json tangent = names(reference("expression"), "a row over the positions");
+  return list_of(table({{"name", text("unique")},
+                        {"gap", described(reference("expression"), "what is not negative, over positions")},
+                        {"tangent", tangent},
+                        {"tangents", list_of(tangent, "two, in space")},
+                        {"friction", described(reference("expression"), "coefficient; 0 without")},
+                        {"restitution", described(reference("expression"), "0 to 1; 0 without")}},
+                       "where two bodies may touch", {"name", "gap"}),
+                 "contacts of the bodies of [mechanics]");
+}
+
+Json hysteresis_schema() {
+  return list_of(table({{"name", text("what is 0 or 1")},
+                        {"input", described(reference("expression"), "over states and parameters")},
+                        {"on", described(reference("expression"), "threshold at which it becomes 1")},
+                        {"off", described(reference("expression"), "threshold at which it becomes 0")},
+                        {"initial", described(reference("expression"), "0 or 1; 0 without")}},
+                       "a relay with two thresholds", {"name", "input", "on", "off"}),
+                 "relays with hysteresis");
+}
+
+Json time_freezing_schema() {
+  const Json expression = reference("expression");
+  return table({{"clock", text("the state that is physical time, where jumps are frozen by hand")},
+                {"speed", table({{"lower", expression}, {"upper", expression}}, "bounds of the speed of time",
+                                {"lower", "upper"})},
+                {"a_n", described(expression, "rate of the auxiliary dynamics")},
+                {"stiffness", described(expression, "of elastic impacts")},
+                {"stabilisation", or_table(table({{"initial", expression}, {"final", expression}},
+                                                 "followed down by the homotopy", {"initial"}))},
+                {"transfer", described(expression, "length of a switch of [[hysteresis]] in numerical time")},
+                {"penetration", described(expression, "largest one; inf for none")},
+                {"correction", described(expression, "of gaps that are held")}},
+               "impacts and hysteresis for finite elements");
 }
 
 Json root_properties() {
@@ -180,9 +266,10 @@ Json root_properties() {
                                "functions by points");
   properties["simulate"] = simulate_schema();
   properties["optimize"] = optimize_schema();
-  for (const auto* open : {"time_freezing", "mechanics", "contacts", "hysteresis", "sensitivity"}) {
-    properties[open] = {{"description", "see the page on model files"}};
-  }
+  properties["time_freezing"] = time_freezing_schema();
+  properties["mechanics"] = mechanics_schema();
+  properties["contacts"] = contacts_schema();
+  properties["hysteresis"] = hysteresis_schema();
   return properties;
 }
 

@@ -1,6 +1,7 @@
 // Reader of [[contacts]].
 #include <fmt/format.h>
 
+#include "saltus/expression/parser.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
 
 namespace saltus::io {
@@ -15,7 +16,10 @@ class ContactReader {
   model::ContactDescription read(const TomlTable& table) {
     for (const auto& entry : table) read_key(entry);
     if (contact_.name.empty()) missing("name", "write name = \"ground\"");
-    if (!contact_.gap) missing("gap", "write gap = \"z\": what must not be negative, over positions, parameters and t");
+    if (!contact_.gap) {
+      missing("gap", "write gap = \"z\": what must not be negative, over positions, parameters and t");
+      contact_.gap = expression::unreadable(contact_.location);
+    }
     return std::move(contact_);
   }
 

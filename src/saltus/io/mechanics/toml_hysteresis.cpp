@@ -1,6 +1,7 @@
 // Reader of [[hysteresis]].
 #include <fmt/format.h>
 
+#include "saltus/expression/parser.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
 
 namespace saltus::io {
@@ -29,11 +30,14 @@ model::HysteresisDescription read_hysteresis_entry(TomlReader& reader, const Tom
   const auto missing = [&](const char* key, const char* remedy) {
     reader.fail(
         {ErrorCode::parse_failure, fmt::format("this hysteresis has no `{}`", key), remedy, hysteresis.location, {}});
+    return expression::unreadable(hysteresis.location);
   };
   if (hysteresis.name.empty()) missing("name", "write name = \"turbo\": what is 0 or 1");
-  if (!hysteresis.input) missing("input", "write input = \"v\": an expression of states and parameters");
-  if (!hysteresis.on) missing("on", "write on = 15: the threshold at which it becomes 1");
-  if (!hysteresis.off) missing("off", "write off = 10: the threshold at which it becomes 0");
+  if (!hysteresis.input) {
+    hysteresis.input = missing("input", "write input = \"v\": an expression of states and parameters");
+  }
+  if (!hysteresis.on) hysteresis.on = missing("on", "write on = 15: the threshold at which it becomes 1");
+  if (!hysteresis.off) hysteresis.off = missing("off", "write off = 10: the threshold at which it becomes 0");
   return hysteresis;
 }
 

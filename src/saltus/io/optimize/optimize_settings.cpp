@@ -93,6 +93,7 @@ Expected<void> set_optimize(ModelFile& model, std::string_view key, std::string_
   const auto place = place_of_setting(key);
   const auto path = key.substr(std::min(optimize_root.size(), key.size()));
   if (!model.optimize) return set_optimize_option(model, key, value, place);
+  if ((path == "horizon" || path == "mpcc") && is_table_text(value)) return set_table(model, key, value);
   if (path == "horizon.free") return set_truth(key, value, model.description.optimize->horizon.free);
   if (path == "initial_guess.result") {
     model.optimize->start_result = std::string(value);

@@ -231,19 +231,21 @@ model::HorizonDescription read_horizon(TomlReader& reader, const TomlEntry& entr
   return horizon;
 }
 
+void read_optimize_key(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  if (entry.key == "mpcc") {
+    read_mpcc(reader, entry, model);
+  } else if (!read_problem_key(reader, entry, model)) {
+    read_option_of_optimize(reader, entry.key, entry, model);
+  }
+}
+
 void read_optimize(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "the table [optimize]");
   if (table == nullptr) return;
   model.optimize.emplace();
   model.description.optimize.emplace();
   model.description.optimize->location = entry.location;
-  for (const auto& field : *table) {
-    if (field.key == "mpcc") {
-      read_mpcc(reader, field, model);
-    } else if (!read_problem_key(reader, field, model)) {
-      read_option_of_optimize(reader, field.key, field, model);
-    }
-  }
+  for (const auto& field : *table) read_optimize_key(reader, field, model);
 }
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();

@@ -24,6 +24,9 @@ enum class ConstraintPlace { path, terminal };
 /// A number or { free = true, initial, lower, upper }.
 [[nodiscard]] model::HorizonDescription read_horizon(TomlReader& reader, const TomlEntry& entry);
 
+/// A key of [optimize], which the model has.
+void read_optimize_key(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
+
 /// What is free has two bounds, and its initial value is within; only numbers are compared, expressions later.
 /// @param what  "the horizon", "'k'"
 void check_free(TomlReader& reader, const std::string& what, const expression::NodePtr& initial,

@@ -134,6 +134,7 @@ void read_event(TomlReader& reader, const TomlValue& value, ModelFile& model) {
                  "write when = \"expression\" (its zeros) or a condition (its edges)",
                  value.location,
                  {}});
+    event.when = expression::unreadable(value.location);
   }
   model.description.events.push_back(std::move(event));
 }

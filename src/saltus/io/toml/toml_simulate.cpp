@@ -79,17 +79,27 @@ void read_option(TomlReader& reader, const std::string& key, const TomlEntry& en
 }
 
 void check_output_table(TomlReader& reader, const TomlEntry& entry, const TomlTable& table) {
+  if (table.empty()) {
+    reader.fail({ErrorCode::invalid_option,
+                 "the table output is empty",
+                 "write e.g. output = { every = 0.01 }",
+                 entry.value.location,
+                 {}});
+  }
   // What the rows have stands beside one of the grids, or alone.
-  const auto grids = std::count_if(table.begin(), table.end(), [](const auto& key) {
-    return key.key != "events" && key.key != "states" && key.key != "surfaces";
-  });
-  if (!table.empty() && grids <= 1) return;
-  reader.fail(
-      {ErrorCode::invalid_option,
-       fmt::format("expected one of every, points and times in output, found {}", table.empty() ? "none" : "several"),
-       "write e.g. output = { every = 0.01 }",
-       table.empty() ? entry.value.location : table[1].location,
-       {}});
+  const TomlEntry* grid = nullptr;
+  for (const auto& key : table) {
+    if (key.key != "every" && key.key != "points" && key.key != "times") continue;
+    if (grid != nullptr) {
+      reader.fail({ErrorCode::invalid_option,
+                   fmt::format("`{}` and `{}` of output say twice when there are rows", grid->key, key.key),
+                   "leave one of them out",
+                   key.location,
+                   {}});
+      return;
+    }
+    grid = &key;
+  }
 }
 
 void read_options(TomlReader& reader, const std::string& prefix, const TomlTable& table, ModelFile& model) {

@@ -73,7 +73,11 @@ bool ModelScope::is_shared(const std::string& name, const Meaning& meaning) cons
 
 std::optional<Error> ModelScope::end_at(Error error) {
   if (found_ == nullptr) return error;
-  if (!error.message.empty()) found_->push_back(std::move(error));
+  if (error.message.empty()) {
+    follows_mistake_ = true;
+  } else {
+    found_->push_back(std::move(error));
+  }
   return std::nullopt;
 }
 

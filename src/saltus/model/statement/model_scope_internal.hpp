@@ -31,7 +31,8 @@ class ModelScope {
   /// What a step says of a mistake: the error, which ends the work, or nothing, as it is in the list. Errors without
   /// message follow from others.
   [[nodiscard]] std::optional<Error> end_at(Error error);
-  [[nodiscard]] bool has_mistakes() const { return found_ != nullptr && !found_->empty(); }
+  /// Also if they follow from others that stand in no list: the statement is not complete.
+  [[nodiscard]] bool has_mistakes() const { return follows_mistake_ || (found_ != nullptr && !found_->empty()); }
   /// What a name means could not be worked out: expressions with it follow suit in silence.
   void give_up(const std::string& name) { given_up_.insert(name); }
   [[nodiscard]] bool is_given_up(const std::string& name) const { return name.empty() || given_up_.contains(name); }
@@ -99,6 +100,7 @@ class ModelScope {
   std::vector<std::shared_ptr<const CellTable>> tables_;  ///< null until used
   std::set<std::string> used_;
   std::vector<Error>* found_ = nullptr;  ///< null: the first mistake ends the work
+  bool follows_mistake_ = false;         ///< some error had no message
   std::set<std::string> given_up_;
 };
 

@@ -66,6 +66,7 @@ void note_names(const Description& description, ModelScope& scope) {
       for (const auto& entry : tangent) scope.note_names(entry.value);
     }
   }
+  note_all(description.replaced, scope);
   if (!description.optimize) return;
   note_names_of(*description.optimize, scope);
   for (const auto& parameter : description.free_parameters) note_all({parameter.lower, parameter.upper}, scope);

@@ -49,7 +49,8 @@ Expected<void> set_output_word(SimulateOptions& options, std::string_view, const
   if (word == nullptr || (*word != "auto" && *word != "steps")) {
     return tl::unexpected(
         out_of_range("\"steps\", \"auto\", { every = a number > 0 }, { points = a whole number >= 2 } or { times = "
-                     "[increasing numbers] }",
+                     "[increasing numbers] }, the tables also with events = false, states = [names], surfaces = "
+                     "[names]",
                      value));
   }
   options.output = *word == "auto" ? OutputGrid(Automatic{}) : OutputGrid(EveryStep{});

@@ -19,7 +19,8 @@ constexpr std::string_view page_head =
 Generated from the option table of the source (`saltus options-page > docs/options.md`; a test compares).
 
 Write them in the model file under `[simulate]` (`[simulate.event]` for those that begin with `event.`, and so on), or on
-the command line as `--set simulate.KEY=VALUE`. `*` stands for the name of a switching function. `output` is one of
+the command line as `--set simulate.KEY=VALUE`, tables as they stand in a file, in quotes of the shell:
+`--set 'simulate.output={ points = 101 }'`. `*` stands for the name of a switching function. `output` is one of
 `"auto"`, `"steps"` (no rows between), `{ every = … }`, `{ points = … }`, `{ times = […] }`; `until` is always a row, and events and end state
 do not depend on it.
 
