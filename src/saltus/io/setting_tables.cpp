@@ -1,4 +1,4 @@
-// --set KEY='{ … }': a table of options as it stands in a model file.
+// Tables of options behind --set, as they stand in a model file: KEY='{ points = 11 }'.
 #include <algorithm>
 #include <string>
 #include <vector>
