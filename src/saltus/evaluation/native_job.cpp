@@ -22,21 +22,22 @@ namespace {
 
 namespace files = std::filesystem;
 
+/// Characters from which a source is straight lines without loops, in many functions. The compiler then takes six
+/// tenths of the time without its search for stores and loads in vain, and the code is as fast (a ladder of 1000
+/// stages, 606 kB: 4.4 s instead of 7.6).
+constexpr std::size_t large_source = 200000;
+
 /// What the machine code depends on besides the source: part of the content that is hashed and compared.
-const std::vector<std::string>& compiler_arguments() {
+std::vector<std::string> compiler_arguments(const std::string& source) {
+  std::vector<std::string> arguments{"-O3"};
+  if (source.size() >= large_source) arguments = {"-O1", "-fno-tree-dse", "-fno-tree-fre"};
   // No contraction and no fast math: the same roundings as the interpreter. Functions of the library call each other
   // without a table. Nothing is read or written two components at a time: the Runge-Kutta steps, which write and read
   // single ones, would wait for that.
-  static const std::vector<std::string> arguments{"-O3",
-                                                  "-march=native",
-                                                  "-ffp-contract=off",
-                                                  "-fno-math-errno",
-                                                  "-fno-tree-slp-vectorize",
-                                                  "-fno-semantic-interposition",
-                                                  "-fPIC",
-                                                  "-shared",
-                                                  "-x",
-                                                  "c"};
+  for (const char* argument : {"-march=native", "-ffp-contract=off", "-fno-math-errno", "-fno-tree-slp-vectorize",
+                               "-fno-semantic-interposition", "-fPIC", "-shared", "-x", "c"}) {
+    arguments.emplace_back(argument);
+  }
   return arguments;
 }
 
@@ -100,7 +101,7 @@ pid_t start_compiler(const std::vector<std::string>& command, const files::path&
 
 std::string native_content(const std::string& source) {
   std::string content = "/* " + compiler();
-  for (const auto& argument : compiler_arguments()) content += " " + argument;
+  for (const auto& argument : compiler_arguments(source)) content += " " + argument;
   return content + "\n   " + processor() + " */\n" + source;
 }
 
@@ -129,7 +130,8 @@ Expected<std::unique_ptr<NativeJob>> NativeJob::start(const std::string& source)
       return tl::unexpected(no_native_code("the cache folder " + folder->string() + " cannot be written"));
   }
   std::vector<std::string> command{compiler()};
-  command.insert(command.end(), compiler_arguments().begin(), compiler_arguments().end());
+  const auto arguments = compiler_arguments(source);
+  command.insert(command.end(), arguments.begin(), arguments.end());
   command.insert(command.end(), {job->c_file_.string(), "-o", job->own_.string(), "-lm"});
   job->child_ = start_compiler(command, job->log_);
   return job;
