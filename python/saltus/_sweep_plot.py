@@ -44,7 +44,7 @@ def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str 
     if event is not None:
         chosen &= (s["name"] == event) | (s["kind"] == event)
         if not np.any((s["name"] == event) | (s["kind"] == event)):
-            raise unknown(event, sorted({*s["name"].tolist(), *s["kind"].tolist()} - {""}), "the events have a name or kind;")
+            raise unknown(event, sorted({*s["name"].tolist(), *s["kind"].tolist()} - {""}), "the list of events")
     x, _ = _axes(s, over)
     axis = _axis(axis)
     axis.plot(s[x][chosen], s[name][chosen], ".", markersize=2.5, color="#1f5fa8")

@@ -41,6 +41,7 @@ def said_by(call, kind=ValueError):
         ({"until": -5}, "until=-5: until (-5) is not after from (0)"),
         ({"until": [1, 2]}, "until=[1, 2]: expected a finite number"),
         ({"method": "euler"}, 'method=\'euler\': expected "event"'),
+        ({"method": "BDF"}, "did you mean the integrator radau5?"),
         ({"method": "fesd", "fesd": {"stage": 2}}, "did you mean 'stages'"),
         ({"method": "fesd", "stages": 20}, "1 to 9 stages, not 20"),
         ({"times": [3, 2]}, "times=[3, 2]"),

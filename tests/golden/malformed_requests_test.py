@@ -97,6 +97,8 @@ class CommandLine(RequestTest):
         ("simulate", "m.toml", "--rtol", "0"): ["--rtol 0: error: expected a finite number > 0, found 0"],
         ("simulate", "m.toml", "--method", "euler"): ['expected "event"', 'found "euler"'],
         ("simulate", "m.toml", "--integrator", "rk4"): ['"dopri5" or "dop853" or "radau5" or "radau9" or "radau13" or "taylor"', 'found "rk4"'],
+        ("simulate", "m.toml", "--integrator", "RK45"): ['found "RK45"', "did you mean the integrator dopri5?"],
+        ("simulate", "m.toml", "--method", "radau5"): ['expected "event"', "did you mean the integrator radau5?"],
         ("simulate", "m.toml", "--quiet=maybe"): ["--quiet"],
         ("check", "m.toml", "--until", "1"): ["unexpected argument '--until'"],
         ("report",): ["RESULT is required"],

@@ -63,7 +63,6 @@ constexpr std::array later_tables{
 std::vector<std::string> known_tables() {
   std::vector<std::string> names;
   for (const auto& section : sections) names.emplace_back(section.name);
-  for (const auto& table : later_tables) names.emplace_back(table.name);
   return names;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -39,6 +40,39 @@ constexpr Choices<Method, 4> methods{{"event", "smoothed", "fesd", "timestepping
 constexpr Choices<Integrator, 6> integrators{{"dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"},
                                              {Integrator::dopri5, Integrator::dop853, Integrator::radau5,
                                               Integrator::radau9, Integrator::radau13, Integrator::taylor}};
+/// What a word of other programs, or one in the wrong place, stands for; empty for others.
+std::string_view integrator_meant(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array<std::array<std::string_view, 2>, 10> elsewhere{{{"rk45", "dopri5"},
+                                                                       {"ode45", "dopri5"},
+                                                                       {"tsit5", "dopri5"},
+                                                                       {"ode89", "dop853"},
+                                                                       {"vern9", "dop853"},
+                                                                       {"radau", "radau5"},
+                                                                       {"bdf", "radau5"},
+                                                                       {"lsoda", "radau5"},
+                                                                       {"ode15s", "radau5"},
+                                                                       {"rodas5", "radau5"}}};
+  for (const auto& [name, integrator] : elsewhere) {
+    if (name == word) return integrator;
+  }
+  const auto* found = std::find(integrators.names.begin(), integrators.names.end(), word);
+  return found == integrators.names.end() ? std::string_view() : *found;
+}
+
+/// Of methods and integrators.
+template <auto access, const auto& choices>
+Expected<void> set_engine(SimulateOptions& options, std::string_view key, const OptionValue& value) {
+  auto done = set_choice<access, choices>(options, key, value);
+  const auto* word = std::get_if<std::string>(&value);
+  if (done || word == nullptr) return done;
+  if (const auto meant = integrator_meant(*word); !meant.empty()) {
+    done.error().remedy = fmt::format("did you mean the integrator {}?", meant);
+  }
+  return done;
+}
+
 constexpr Choices<Native, 3> natives{{"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
 constexpr Choices<Selection, 4> selections{
     {"active_dominant", "passive_dominant", "scaled", "report"},
@@ -214,7 +248,7 @@ constexpr std::array fields{
                 record_number<from_of>},
     OptionField{"method", "event, smoothed, fesd, timestepping",
                 "Event-driven; regularised; finite elements with switch detection; the same without it.",
-                set_choice<method_of, methods>, record_choice<method_of, methods>},
+                set_engine<method_of, methods>, record_choice<method_of, methods>},
     OptionField{"rtol", "a finite number > 0", "Relative error tolerance of a step, per component of the state.",
                 set_number<rtol_of, Range::positive>, record_number<rtol_of>},
     OptionField{"atol", "a finite number >= 0", "Absolute error tolerance of a step, in the units of the states.",
@@ -251,7 +285,7 @@ constexpr std::array fields{
     OptionField{
         "event.integrator", "dopri5, dop853, radau5, radau9, radau13, taylor",
         "Runge-Kutta of order 5, of order 8, of order 5, 9, 13 for stiff models; Taylor series where modes are affine.",
-        set_choice<integrator_of, integrators>, record_choice<integrator_of, integrators>},
+        set_engine<integrator_of, integrators>, record_choice<integrator_of, integrators>},
     OptionField{"event.max_step", "none, or a number > 0", "Longest step.", set_max_step, record_max_step},
     OptionField{"event.local_steps", "true, false",
                 "Of many states only those that a switch moves are integrated anew behind it.",
