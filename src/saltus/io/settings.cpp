@@ -197,6 +197,13 @@ Expected<void> set_input(ModelFile& model, std::string_view path, std::string_vi
                          suggest(std::string(source), {"file", "result"}));
 }
 
+/// A value may stand in quotes, as in a model file: no expression, option or file begins and ends with them.
+std::string_view without_quotes(std::string_view value) {
+  const bool quoted =
+      value.size() > 1 && value.back() == value.front() && (value.front() == '"' || value.front() == '\'');
+  return quoted ? value.substr(1, value.size() - 2) : value;
+}
+
 }  // namespace
 
 Expected<pipeline::SimulateOptions> with_option(pipeline::SimulateOptions options, std::string_view key,
@@ -224,7 +231,8 @@ Expected<void> set_option(ModelFile& model, std::string_view key, std::string_vi
   return {};
 }
 
-Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::string_view value) {
+Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::string_view given) {
+  const std::string_view value = without_quotes(given);
   constexpr std::string_view inputs = "simulate.inputs.";
   const auto dot = std::min(key.find('.'), key.size());
   const auto table = key.substr(0, dot);

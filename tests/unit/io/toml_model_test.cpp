@@ -257,14 +257,14 @@ TEST(Settings, ReachOptionsInputsAndExpressions) {
   auto model = parsed(whole);
   const std::vector<std::pair<std::string, std::string>> settings{{"simulate.rtol", "1e-6"},
                                                                   {"simulate.until", "2*pi"},
-                                                                  {"simulate.event.integrator", "dopri5"},
+                                                                  {"simulate.event.integrator", "\"dopri5\""},
                                                                   {"simulate.output.every", "1/4"},
                                                                   {"simulate.initial_mode.slip", "-1"},
                                                                   {"simulate.event.max_step", "none"},
                                                                   {"simulate.inputs.w", "t^2"},
                                                                   {"simulate.inputs.u", "cos(t)"},
                                                                   {"states.a.lower", "-3"},
-                                                                  {"dynamics.z", "2*a"},
+                                                                  {"dynamics.z", "'2*a'"},
                                                                   {"parameters.mu", "0.5"},
                                                                   {"model.inclusion", "filippov"}};
   for (const auto& [key, value] : settings) {
