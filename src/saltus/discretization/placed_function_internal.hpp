@@ -36,9 +36,6 @@ class PlacedFunction {
   [[nodiscard]] int copies() const { return static_cast<int>(copies_.size()); }
   /// Rows of a copy in the problem: its equations, then G, then H.
   [[nodiscard]] const std::vector<int>& rows_of(int copy) const { return copies_[static_cast<std::size_t>(copy)].rows; }
-  [[nodiscard]] const std::vector<int>& places_of(int copy) const {
-    return copies_[static_cast<std::size_t>(copy)].places;
-  }
   /// The local variables of a copy; overwritten by the next call.
   const std::vector<double>& gather(int copy, mpcc::ConstVectorView w, const Eigen::VectorXd& constants);
   [[nodiscard]] double objective(mpcc::ConstVectorView w, const Eigen::VectorXd& constants,

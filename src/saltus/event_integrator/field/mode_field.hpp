@@ -74,7 +74,6 @@ class ModeField {
     kernel_.prepared_field(t, x, constants_[side == Region::below ? 0 : 1], xdot);
   }
   [[nodiscard]] SlidingSolve solve() const { return solve_; }
-  [[nodiscard]] int codimension() const { return static_cast<int>(sliding_.size()); }
 
   /// Returns, behind an evaluation, the sliding surfaces whose gradients are taken to be independent: all, but for
   /// regions by `indicator` whose weights are those of switching::RegionWeights.

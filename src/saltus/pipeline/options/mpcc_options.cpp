@@ -142,8 +142,4 @@ Expected<void> check_mpcc_options(const SolveOptions& options) {
                               {}});
 }
 
-void record_mpcc_options(const SolveOptions& options, std::string_view prefix, OptionRecord& record) {
-  for (const auto& field : fields_of_mpcc) field.record(options, fmt::format("{}{}", prefix, field.key), record);
-}
-
 }  // namespace saltus::pipeline

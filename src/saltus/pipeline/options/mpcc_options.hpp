@@ -34,7 +34,4 @@ struct MpccField {
 /// What is wrong between options that are fine one by one: sigma_final above sigma_initial.
 [[nodiscard]] Expected<void> check_mpcc_options(const solver::SolveOptions& options);
 
-/// Appends every option with its value in force under `prefix` and its key ("optimize.mpcc.sigma_final").
-void record_mpcc_options(const solver::SolveOptions& options, std::string_view prefix, result::OptionRecord& record);
-
 }  // namespace saltus::pipeline

@@ -107,13 +107,6 @@ std::string_view name(Relaxation relaxation) {
   return {};
 }
 
-std::optional<Relaxation> relaxation_named(std::string_view name_of_one) {
-  for (const Relaxation relaxation : all_relaxations) {
-    if (name(relaxation) == name_of_one) return relaxation;
-  }
-  return std::nullopt;
-}
-
 int inequalities(Relaxation relaxation) { return relaxation == Relaxation::lin_fukushima ? 2 : 1; }
 
 bool is_bilinear(Relaxation relaxation) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string_view>
 
 namespace saltus::solver::homotopy {
@@ -27,8 +26,6 @@ inline constexpr std::array all_relaxations{
 
 /// The name of a relaxation in model files.
 [[nodiscard]] std::string_view name(Relaxation relaxation);
-/// The inverse of name; nullopt if there is none of that name.
-[[nodiscard]] std::optional<Relaxation> relaxation_named(std::string_view name);
 
 /// How many inequalities phi <= 0 the relaxation has: 2 for lin_fukushima, else 1.
 [[nodiscard]] int inequalities(Relaxation relaxation);

@@ -14,11 +14,4 @@ std::string_view name(Steering steering) {
   return {};
 }
 
-std::optional<Steering> steering_named(std::string_view name_of_one) {
-  for (const Steering steering : all_steerings) {
-    if (name(steering) == name_of_one) return steering;
-  }
-  return std::nullopt;
-}
-
 }  // namespace saltus::solver::homotopy

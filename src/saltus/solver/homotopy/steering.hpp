@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <string_view>
 
 namespace saltus::solver::homotopy {
@@ -17,7 +16,5 @@ inline constexpr std::array all_steerings{Steering::direct, Steering::l1, Steeri
 
 /// The name of a steering in model files.
 [[nodiscard]] std::string_view name(Steering steering);
-/// The inverse of name; nullopt if there is none of that name.
-[[nodiscard]] std::optional<Steering> steering_named(std::string_view name);
 
 }  // namespace saltus::solver::homotopy
