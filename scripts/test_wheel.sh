@@ -14,5 +14,6 @@ for python in "${@:2}"; do
   "$python" -m venv "$folder/$tag"
   "$folder/$tag/bin/pip" install --quiet --disable-pip-version-check --constraint "$source_folder/scripts/requirements-python.txt" \
     "$wheel[plot,data]" pytest mypy
-  (cd "$folder/tests" && SALTUS_TEST_WHEEL=1 MPLBACKEND=Agg "$folder/$tag/bin/python" -m pytest -q -p no:cacheprovider .)
+  (cd "$folder/tests" && SALTUS_TEST_WHEEL=1 SALTUS_TEST_TOOL="$folder/$tag/bin/saltus" SALTUS_TEST_SOURCE="$source_folder" \
+    MPLBACKEND=Agg "$folder/$tag/bin/python" -m pytest -q -p no:cacheprovider .)
 done
