@@ -159,7 +159,7 @@ class TablesAreSet(tool.ToolTest):
         result = self.rows('simulate.event={ integrator = "dop853", max_step = 0.5 }', "simulate.initial_mode={ x = 1 }")
         self.assertEqual(result["options"]["simulate.event.integrator"], "dop853")
         self.assertEqual(result["options"]["simulate.event.max_step"], 0.5)
-        self.assertEqual(times(result), times(self.rows()))
+        self.assertEqual(times(result), times(self.rows("simulate.initial_mode.x=1")))
         for setting in ('simulate.inputs={ u = "-t" }', 'simulate.inputs.u={ file = "u.csv" }'):
             self.write("u.csv", "t,u\n0,0\n1,-1\n")
             self.assertNotEqual(self.rows(setting)["final"]["x"], self.rows()["final"]["x"])

@@ -36,6 +36,8 @@ class Schema(tool.ToolTest):
 
     def mistakes(self, wrap, keys):
         """What `saltus check` says of a model with this table."""
+        # What is drawn is read once there is something that moves.
+        wrap = wrap.replace("{ draw = ", '{ positions = ["x"], velocities = ["v"], draw = ')
         content = wrap.replace("@", "{ " + ", ".join(f"{key} = {DATE}" for key in keys) + " }")
         name = "" if content.startswith("{ model") else 'model = { name = "m" }\n'
         within = content[1:-1].strip()  # the outermost braces are those of the file

@@ -98,10 +98,12 @@ class MechanicsReader {
   model::DrawnDescription drawn(const TomlTable& table, const SourceLocation& location) {
     model::DrawnDescription shape;
     shape.location = location;
+    bool is_read = true;
     for (const auto& entry : table) {
       if (entry.key == "line") {
         const auto* points = array(entry.value, "a list of points");
-        if (points == nullptr) return shape;
+        is_read = points != nullptr;
+        if (!is_read) continue;
         for (const auto& point : *points) shape.points.push_back(planar(point));
       } else if (entry.key == "point") {
         shape.points.push_back(planar(entry.value));
@@ -114,7 +116,7 @@ class MechanicsReader {
     // Coordinates that could not be read have their own mistake.
     const bool is_both = table.size() == 2 && shape.radius == nullptr && shape.points.size() > 1;
     const bool is_point = shape.points.size() == 1;
-    if (shape.points.empty() || is_both || is_point != (shape.radius != nullptr)) {
+    if (is_read && (shape.points.empty() || is_both || is_point != (shape.radius != nullptr))) {
       fail("what is drawn is a line or a disc",
            "write { line = [[\"x\", 0], [\"x\", 1]] } or { point = [\"x\", \"z\"], radius = 0.1 }", location);
     }
