@@ -41,7 +41,8 @@ struct Decision {
 /// sliding (every set of active regions) is asked: with the selections of its projected field, do its signs hold just
 /// behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a short
 /// element does, or a longer one where psi is within its rounding behind that. A side that the solution does not get
-/// to, as psi stays at zero, is no other continuation than sliding with the selections of that side. Functions that do
+/// to, as psi stays at zero, is no other continuation than sliding with the selections of that side (which is the one
+/// that is left out where psi does not move on that side). Functions that do
 /// not influence each other are enumerated one by one. Surfaces whose gradients depend on each other, with selections
 /// that enter additively, are not enumerated: a complementarity problem says which are slid on and which are left [ADR
 /// 20]; where it leaves that open, the one just behind the point does. In a system of some size
@@ -103,14 +104,16 @@ class Transition {
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
                                    Continuation& candidate);
-  /// What a short element says of a set: its signs hold behind it, or not, or are within their roundings.
-  enum class Trial { holds, fails, stays, unsolved };
+  /// What a short element says of a set: its signs hold behind it, or not, or are within their roundings, or nothing
+  /// that has a sign moves.
+  enum class Trial { holds, fails, stays, stands, unsolved };
   /// A pattern that may continue the solution.
   struct Option {
     std::vector<int> pattern;
     double margin = 0.0;
     Trial trial = Trial::holds;
-    std::vector<double> selections = {};
+    std::vector<double> selections = {}, motion = {};  ///< if rates do not decide; of all states
+    bool regular = true;                               ///< whether first derivatives determine the selections
   };
   static void put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes);
   [[nodiscard]] std::vector<Option> options_of(const Decision& decision, const Group& group,
@@ -118,7 +121,8 @@ class Transition {
   [[nodiscard]] std::vector<std::vector<int>> admissible_of(const Decision& decision, const Group& group,
                                                             std::vector<Option> options, const std::vector<int>& guess);
   [[nodiscard]] std::optional<Continuation> continuation_in(const Decision& decision, const std::vector<int>& modes);
-  [[nodiscard]] static bool is_sliding_of_another(const Option& option, const std::vector<Option>& others);
+  [[nodiscard]] static bool slides_as(const Option& sliding, const Option& beside);
+  [[nodiscard]] static bool is_another_again(const Option& option, const std::vector<Option>& others);
   [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate,
                                                    double length);
   [[nodiscard]] bool take_from_trial(const Decision& decision, Continuation& candidate);

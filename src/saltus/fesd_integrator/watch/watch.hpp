@@ -46,7 +46,8 @@ class Watch {
   /// Whether a condition of the element last looked at, which holds along its polynomial, may end along the solution
   /// all the same: it comes nearer to zero than twice the error.
   [[nodiscard]] bool may_miss() const { return may_miss_; }
-  /// Value of a condition at the right end of the element last looked at, and its rounding level.
+  /// Value of a condition at both ends of the element last looked at, and its rounding level.
+  [[nodiscard]] double left_value(const ActiveSet& set, const Condition& condition) const;
   [[nodiscard]] double end_value(const ActiveSet& set, const Condition& condition) const;
   [[nodiscard]] double noise(const Condition& condition) const;
 
