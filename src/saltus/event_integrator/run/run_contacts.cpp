@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "saltus/event_integrator/run/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -40,6 +42,15 @@ bool Run::move_contacts() {
   auto problem = contacts_.resolve(contact_moment(), ended, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   return !problem;
+}
+
+/// A mode whose own conditions do not hold would never end.
+bool Run::contact_modes_hold() {
+  const auto ended = contacts_.with_jumps([&](int jump) { return jumps_.holds(jump); });
+  if (ended.empty()) return true;
+  fail(Termination::outside_class,
+       fmt::format("the mode of {} that follows at t = {:.17g} ends where it begins", contacts_.names(ended), here_.t));
+  return false;
 }
 
 /// Behind the limit of a sequence of bounces the gaps are closed.
