@@ -128,7 +128,7 @@ def faults_of_impacts(bodies, run):
         change = bodies.mass @ (after - before)
         # A slip in a plane begins with a speed whose direction is known.
         starts = any(len(rows) == 2 for rows in bodies.tangents)
-        allowed = 1e-9 * (1 + np.abs(push).max() + np.abs(before).max()) + (1e-6 if starts else 0)
+        allowed = 1e-9 * (1 + np.abs(push).max() + np.abs(before).max()) + (2e-6 if starts else 0)
         if np.abs(change - push).max() > allowed:
             found.append(f"an impact at {event.t} is not that of its impulses, by {np.abs(change - push).max():.1e}")
         grown = after @ bodies.mass @ after - before @ bodies.mass @ before

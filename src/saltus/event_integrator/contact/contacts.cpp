@@ -331,7 +331,8 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
   for (int i = 0; i < m; ++i) {
     if (!slips(found.modes[at(i)])) continue;
     const auto& contact = contacts_[at(i)];
-    bool moves = !point.along(point.velocity, i).isZero(0.0);
+    bool moves =
+        !point.along(point.velocity, i).isZero(0.0) || point.along(found.acceleration, i).norm() > 1e-9 * point.terms;
     for (int k = 0; k < contact.tangents(); ++k) moves = moves || is_independent(point.tangent_row(i, k), false);
     // What others hold at rest is at the edge of its cone, and does not slip.
     for (int k = 0; k < contact.tangents() && !(moves && contact.in_plane); ++k) {
