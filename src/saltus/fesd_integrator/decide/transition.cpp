@@ -20,7 +20,7 @@ std::vector<bool> mask_of(const std::vector<int>& members, std::size_t n) {
 
 bool are_near(const std::vector<double>& a, const std::vector<double>& b) {
   constexpr double near = 1e-7;
-  if (a.size() != b.size()) return false;
+  if (a.empty() || a.size() != b.size()) return false;
   double size = 1.0;  // of selections
   for (std::size_t i = 0; i < a.size(); ++i) size = std::max({size, std::abs(a[i]), std::abs(b[i])});
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -31,24 +31,25 @@ bool are_near(const std::vector<double>& a, const std::vector<double>& b) {
 
 }  // namespace
 
-/// Whether one slides on surfaces on a side of which the other one is, with the same selections.
-bool Transition::slides_as(const Option& sliding, const Option& beside) {
-  if (sliding.selections.size() != beside.selections.size() || sliding.pattern == beside.pattern) return false;
+/// Whether one slides on surfaces on a side of which the other one is.
+bool Transition::slides_beside(const Option& sliding, const Option& beside) {
+  if (sliding.pattern == beside.pattern) return false;
   for (std::size_t k = 0; k < sliding.pattern.size(); ++k) {
     if (sliding.pattern[k] != beside.pattern[k] && sliding.pattern[k] != 0) return false;
   }
-  return are_near(sliding.selections, beside.selections);
+  return true;
 }
 
-/// Of a side that psi stays at without leaving zero, and of sliding as that side, one is no other continuation: the
-/// side, or where psi does not move there at all, sliding: nothing may determine its selections a little later. Nor is
-/// one whose selections follow from higher derivatives, where another one moves in the same way and has its own.
-bool Transition::is_another_again(const Option& option, const std::vector<Option>& others) {
-  return std::any_of(others.begin(), others.end(), [&](const Option& other) {
-    return (option.trial == Trial::stays && slides_as(other, option)) ||
-           (other.trial == Trial::stands && slides_as(option, other)) ||
-           (!option.regular && other.regular && are_near(option.motion, other.motion));
-  });
+/// Whether an option is no other continuation than this one: it moves in the same way, and its selections follow from
+/// higher derivatives where this one has its own; or it is a side that psi stays at without leaving zero; or it slides
+/// where psi does not move at all on a side: nothing may determine its selections a little later.
+bool Transition::stands_for(const Option& option, const Option& other) {
+  const bool regular = option.regular && other.regular;
+  if (!(regular ? are_near(option.selections, other.selections) : are_near(option.motion, other.motion))) return false;
+  if (option.regular != other.regular) return option.regular;
+  if (slides_beside(other, option)) return option.trial == Trial::stands && regular;
+  if (!slides_beside(option, other)) return false;
+  return other.trial == Trial::stays || (other.trial == Trial::stands && !regular);
 }
 
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
@@ -90,13 +91,14 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
   if (!projected_.solve(decision.t, decision.x.data(), set, decision.held, candidate.selections.data(), rounding)) {
     return -1.0;
   }
-  if (!take_from_trial(decision, candidate)) return -1.0;
   projected_.rates(rate_);
+  if (!take_from_trial(decision, candidate)) return -1.0;
   if (!set.balances().empty()) {
     DenseMatrices memory;
     margins_.evaluate(set, field_view(projected_.values(), memory), candidate.selections.data());
   }
-  double least = 1.0;
+  // Rates were those at other selections: they may exclude a set, but do not decide for it.
+  double least = follows_from_trial(candidate) ? undecided : 1.0;
   const auto asked = mask_of(group.members, kernel_.selections());
   for (const Condition& condition : set.conditions()) {
     if (!asked[at(condition.selection)]) continue;
@@ -124,12 +126,17 @@ ElementSolver::Outcome Transition::solve_trial(const Decision& decision, const C
   return solver_.solve(left, length, {&candidate.set, 1}, decision.held, ElementSolver::Guess::left_end, trial_);
 }
 
-/// Selections that follow from a higher derivative of their surface are those of a short element.
-bool Transition::take_from_trial(const Decision& decision, Continuation& candidate) {
-  const auto& sliding = candidate.set.sliding();
+/// Whether a selection follows from a higher derivative of its surface only.
+bool Transition::follows_from_trial(const Continuation& candidate) const {
+  if (projected_.regular()) return false;
   bool any = false;
-  for (std::size_t k = 0; k < sliding.size(); ++k) any = any || projected_.in_no_equation(k);
-  if (projected_.regular() || !any) return true;
+  for (std::size_t k = 0; k < candidate.set.sliding().size(); ++k) any = any || projected_.in_no_equation(k);
+  return any;
+}
+
+/// Such selections are those of a short element.
+bool Transition::take_from_trial(const Decision& decision, Continuation& candidate) {
+  if (!follows_from_trial(candidate)) return true;
   if (solve_trial(decision, candidate, decision.trial_length) != ElementSolver::Outcome::solved) return false;
   const std::size_t n = kernel_.selections();
   const double* last = trial_.stage_selections.data() + trial_.stage_selections.size() - n;
@@ -236,7 +243,8 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
   }
   std::vector<std::vector<int>> admissible;
   for (const Option& option : passed) {
-    if (!is_another_again(option, passed)) admissible.push_back(option.pattern);
+    const auto known = [&](const Option& other) { return stands_for(other, option); };
+    if (std::none_of(passed.begin(), passed.end(), known)) admissible.push_back(option.pattern);
   }
   return admissible;
 }

@@ -121,10 +121,11 @@ class Transition {
   [[nodiscard]] std::vector<std::vector<int>> admissible_of(const Decision& decision, const Group& group,
                                                             std::vector<Option> options, const std::vector<int>& guess);
   [[nodiscard]] std::optional<Continuation> continuation_in(const Decision& decision, const std::vector<int>& modes);
-  [[nodiscard]] static bool slides_as(const Option& sliding, const Option& beside);
-  [[nodiscard]] static bool is_another_again(const Option& option, const std::vector<Option>& others);
+  [[nodiscard]] static bool slides_beside(const Option& sliding, const Option& beside);
+  [[nodiscard]] static bool stands_for(const Option& option, const Option& other);
   [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate,
                                                    double length);
+  [[nodiscard]] bool follows_from_trial(const Continuation& candidate) const;
   [[nodiscard]] bool take_from_trial(const Decision& decision, Continuation& candidate);
   [[nodiscard]] Trial try_element(const Decision& decision, const Group& group, const Continuation& candidate,
                                   double length);
