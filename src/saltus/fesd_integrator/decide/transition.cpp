@@ -163,7 +163,7 @@ Transition::Trial Transition::try_element(const Decision& decision, const Group&
     stays = stays || !(value > rounding);
     moves = moves || condition.kind != Condition::Kind::side || value != watch_.left_value(candidate.set, condition);
   }
-  return !stays ? Trial::holds : moves ? Trial::stays : Trial::stands;
+  return !stays ? Trial::holds : moves || decision.before == nullptr ? Trial::stays : Trial::stands;
 }
 
 /// By the shortest element behind which signs are clear of their roundings: psi may leave zero like t^3 or t^4.
