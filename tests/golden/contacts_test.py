@@ -267,6 +267,36 @@ until = 9
         out, _ = self.run_tool("check", self.write("m.toml", BALL), code=0)
         self.assertNotIn("ground.", out)  # modes are no states of the user
 
+    def test_a_wedge_holds_what_falls_into_it(self):
+        """Its friction is not unique: what rests does not slip at the edge of a cone. Work that it holds back stays."""
+        for half, friction, bounce, sideways in ((0.1, 0.5, 0, 0), (0.3, 0.2, 0, 0), (0.3, 1.5, 0.5, 1)):
+            n, t = math.cos(half), math.sin(half)
+            walls = "".join(f"""[[contacts]]
+name = "{name}"
+gap = "{side * n}*x + {t}*z"
+tangent = {{ x = {-t * side}, z = {n} }}
+friction = {friction}
+restitution = {bounce}
+""" for name, side in (("left", 1), ("right", -1)))
+            model = f"""[model]
+name = 'wedge'
+[states]
+x = 0
+z = 1
+vx = {sideways}
+vz = 0
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+force = {{ vz = -9.81 }}
+{walls}[simulate]
+until = 3
+"""
+            result = self.result(model)
+            self.assertEqual(result["final"]["contact_modes"], ["stick", "stick"])
+            self.assertEqual({e["kind"] for e in result["events"]}, {"impact"})
+            self.assertLess(max(map(abs, result["final"]["x"])), 1e-9)
+
     def test_time_stepping_says_no(self):
         _, err = self.run_tool("simulate", self.write("m.toml", BALL), "--method", "timestepping", code=2)
         self.assertIn("does not cover contacts", err)

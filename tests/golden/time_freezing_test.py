@@ -152,6 +152,16 @@ class TimeFreezing(tool.ToolTest):
         self.assertEqual(rows["t"], sorted(rows["t"]))
         self.assertEqual(rows["t"].count(frozen["events"][0]["t"]), 2)
 
+    def test_an_impact_ends_whatever_force_and_steps_are(self):
+        landing = LANDING[:LANDING.index("[optimize]")] + "[simulate]\nuntil = 0.6\n"
+        for force in (1, 9.81, 100):
+            for steps in (10, 20, 40, 100):
+                model = landing.replace("a_n = 20", f"a_n = {force}").replace("u - 9.81", "-9.81")
+                frozen = self.simulated(model, "fesd", "--set", f"simulate.fesd.steps={steps}")
+                self.assertAlmostEqual(frozen["events"][0]["t"], math.sqrt(1 / 9.81), delta=1e-9)
+                self.assertEqual([e["kind"] for e in frozen["events"]], ["impact"])
+                self.assertEqual(frozen["final"]["contact_modes"], ["closed"])
+
     def test_restitution_holds_with_any_mass_and_gap(self):
         _, frozen = self.assert_agree(BOWL, 1e-8, "--set", "simulate.fesd.stages=4")
         hit = frozen["events"][0]

@@ -1,12 +1,15 @@
 """Random bodies with random contacts: nothing passes through, no energy comes from nowhere, every run ends.
 
-usage: random_contacts.py [--runs 10000] [--first 1] [--until 5]
+usage: random_contacts.py [--runs 10000] [--first 1] [--also 683 …] [--until 5] [--rtol 1e-9]
 
 Run number k has 1 to 4 positions in a potential well, a random mass matrix, and 1 to 4 contacts with sloped and curved
 gaps: without friction, with one tangent or with two, mu in [0, 2], e in [0, 1]. The checker shares nothing with the
-engine: it reads the rows of the trajectory.
+engine: it reads the rows of the trajectory and the events.
   gap >= -1e-12 and force >= 0 in every row;
   the energy of no row is above that of an earlier one (the well's forces have a potential), but for the tolerance;
+  open contacts have no force, closed ones no gap, sticking ones no tangential velocity, all friction is in its cone,
+  that of a slip on its edge and against the velocity;
+  an impact changes velocities by its impulses, leaves no approach behind and makes no energy, to rounding;
   a status of its own for what has no solution (jamming, Painleve), never an end of the steps.
 """
 
@@ -32,7 +35,8 @@ class Bodies:
         q = self.q = [model.state(f"q{i}", 0) for i in range(self.count)]
         v = self.v = [model.state(f"v{i}", dice.uniform(-1, 1)) for i in range(self.count)]
         factor = np.array([[dice.uniform(-1, 1) for _ in q] for _ in q])
-        mass = factor @ factor.T + 0.3 * np.eye(self.count)
+        mass = self.mass = factor @ factor.T + 0.3 * np.eye(self.count)
+        self.slopes, self.tangents, self.friction = [], [], []
         pull = [dice.uniform(-1, 1) for _ in q]
         potential = sum(0.5 * p * p + a * p for p, a in zip(q, pull))
         model.mechanics(q, v, mass=mass.tolist(), potential=potential)
@@ -42,7 +46,8 @@ class Bodies:
     def add_contact(self, dice, name):
         """Gap with a slope and a curvature; tangents that are not parallel to the normal where there are as many axes."""
         q = self.q
-        gap = dice.uniform(0.05, 0.5) + 0.1 * q[0] ** 2 + sum(dice.uniform(-1, 1) * p for p in q)
+        distance, slopes = dice.uniform(0.05, 0.5), [dice.uniform(-1, 1) for _ in q]
+        gap = distance + 0.1 * q[0] ** 2 + sum(slope * p for slope, p in zip(slopes, q))
         tangents = min(dice.choice([0, 1, 1, 2]), self.count - 1)
         rows = [[dice.uniform(-1, 1) for _ in q] for _ in range(tangents)]
         friction = dice.uniform(0, 2) if tangents else 0.0
@@ -53,7 +58,83 @@ class Bodies:
             options["tangent"] = dict(zip(q, rows[0]))
         if tangents == 2:
             options["tangents"] = [dict(zip(q, row)) for row in rows]
+        self.slopes.append(slopes)
+        self.tangents.append(np.array(rows).reshape(tangents, self.count))
+        self.friction.append(friction)
         self.model.contact(name, gap=gap, **options)
+
+    def normal(self, k, q):
+        normal = np.array(self.slopes[k])
+        normal[0] += 0.2 * q[0]
+        return normal
+
+
+def along(run, name, tangents):
+    """A tangential vector of a contact in all rows."""
+    return np.array([run[f"{name}[{i + 1}]" if tangents == 2 else name] for i in range(tangents)]).T
+
+
+def faults_of_modes(bodies, run, rows, tolerance):
+    """Between events: whether forces, gaps and velocities are those of the modes."""
+    found = []
+    times = [event.t for event in run.events]
+    t, x = np.asarray(run.t)[:rows], np.asarray(run.x)[:rows]
+    piece = np.searchsorted(times, t)
+    inside = ~np.isin(t, times)
+    for k in range(bodies.contacts):
+        modes = [run.events[0].contact_modes_before if times else ["open"] * bodies.contacts]
+        mode = np.array([m[k] for m in modes + [event.contact_modes_after for event in run.events]])[piece]
+        gap, force = np.asarray(run[f"gap(c{k})"])[:rows], np.asarray(run[f"force(c{k})"])[:rows]
+        size = 1 + np.abs(force)
+        if (np.abs(force) > 0)[inside & (mode == "open")].any():
+            found.append(f"c{k} is open and has a force")
+        if (np.abs(gap) > 1e-12)[inside & (mode != "open")].any():
+            found.append(f"c{k} is closed and has a gap of {np.abs(gap[inside & (mode != 'open')]).max():.1e}")
+        rows_of = bodies.tangents[k]
+        if not len(rows_of):
+            continue
+        v = x[:, bodies.count : 2 * bodies.count]
+        slip, terms = v @ rows_of.T, np.abs(v) @ np.abs(rows_of).T
+        friction = along(run, f"friction(c{k})", len(rows_of))[:rows]
+        limit, strength = bodies.friction[k] * force, np.linalg.norm(friction, axis=1)
+        sticks, slips = inside & (mode == "stick"), inside & (mode == "slip")
+        if (np.abs(slip) > 1e-15 + 1e-14 * terms)[sticks].any():
+            found.append(f"c{k} sticks at {np.abs(slip[sticks]).max():.1e}")
+        if (strength > limit + tolerance * size)[inside].any():
+            found.append(f"friction of c{k} leaves its cone by {(strength - limit)[inside].max():.1e}")
+        if (np.abs(strength - limit) > tolerance * size)[slips].any():
+            found.append(f"c{k} slips with {np.abs(strength - limit)[slips].max():.1e} too much or little friction")
+        if (np.sum(friction * slip, axis=1) > tolerance * size)[slips].any():
+            found.append(f"friction of c{k} drives its slip")
+    return found
+
+
+def faults_of_impacts(bodies, run):
+    """Velocities behind impacts by their impulses, from the mass matrix."""
+    found = []
+    n = bodies.count
+    for event in run.events:
+        if event.kind != "impact":
+            continue
+        q, before, after = event.x[:n], event.x[n : 2 * n], event.x_after[n : 2 * n]
+        push = np.zeros(n)
+        for k, impulse in enumerate(event.impulse):
+            push += impulse[0] * bodies.normal(k, q) + np.array(impulse[1 : 1 + len(bodies.tangents[k])]) @ bodies.tangents[k]
+            if impulse[0] < -1e-12:
+                found.append(f"an impact at {event.t} pulls c{k}")
+            closed = event.contact_modes_after[k] != "open" or impulse[0] > 0
+            if closed and bodies.normal(k, q) @ after < -1e-9 * (1 + np.abs(before).max()):
+                found.append(f"behind an impact at {event.t} c{k} closes at {bodies.normal(k, q) @ after:.1e}")
+        change = bodies.mass @ (after - before)
+        # A slip in a plane begins with a speed whose direction is known.
+        starts = any(len(rows) == 2 for rows in bodies.tangents)
+        allowed = 1e-9 * (1 + np.abs(push).max() + np.abs(before).max()) + (2e-6 if starts else 0)
+        if np.abs(change - push).max() > allowed:
+            found.append(f"an impact at {event.t} is not that of its impulses, by {np.abs(change - push).max():.1e}")
+        grown = after @ bodies.mass @ after - before @ bodies.mass @ before
+        if grown > 1e-11 * (before @ bodies.mass @ before) + allowed**2:
+            found.append(f"energy grows by {grown:.1e} in an impact at {event.t}")
+    return found
 
 
 def faults_of(bodies, run, tolerance=1e-7):
@@ -61,32 +142,39 @@ def faults_of(bodies, run, tolerance=1e-7):
     if not np.isfinite(np.asarray(run.x)).all():
         return ["a state is not finite"]
     found = []
+    has_limits = any(event.kind == "accumulation" for event in run.events)  # which are extrapolated
     rows = len(run.t) - (0 if run.status.done else 1)  # where nothing follows there are no forces
     energy = np.asarray(run["energy"])
     if (np.diff(energy) > tolerance * (1 + np.abs(energy[:-1]))).any():
         found.append(f"energy grows by {np.diff(energy).max():.1e}")
     for k in range(bodies.contacts):
         gap, force = np.asarray(run[f"gap(c{k})"]), np.asarray(run[f"force(c{k})"])[:rows]
-        if gap.min() < -1e-12:
+        if gap.min() < -1e-12 - 1e-10 * has_limits:
             found.append(f"gap of c{k} is {gap.min():.1e}")
         if force.min() < -tolerance:
             found.append(f"force of c{k} is {force.min():.1e}")
-    return found
+    return found + faults_of_modes(bodies, run, rows, tolerance) + faults_of_impacts(bodies, run)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=10000)
     parser.add_argument("--first", type=int, default=1)
+    parser.add_argument("--also", type=int, nargs="*", default=[])
     parser.add_argument("--until", type=float, default=5.0)
+    parser.add_argument("--rtol", type=float)
     arguments = parser.parse_args()
     outcomes = collections.Counter()
     bad = []
     slowest = (0.0, 0)
-    for seed in range(arguments.first, arguments.first + arguments.runs):
+    settings = {"until": arguments.until, "max_steps": 200000}
+    if arguments.rtol:
+        settings["rtol"] = arguments.rtol
+    seeds = [*range(arguments.first, arguments.first + arguments.runs), *arguments.also]
+    for seed in seeds:
         bodies = Bodies(seed)
         begin = time.perf_counter()
-        run = bodies.model.simulate(until=arguments.until, max_steps=200000)
+        run = bodies.model.simulate(**settings)
         slowest = max(slowest, (time.perf_counter() - begin, seed))
         outcomes[str(run.status)] += 1
         faults = faults_of(bodies, run)
@@ -95,7 +183,7 @@ def main():
         if faults:
             bad.append(seed)
             print(f"{seed}: {bodies.count} positions, {bodies.contacts} contacts: {'; '.join(faults)}", flush=True)
-    print(f"{arguments.runs} runs: {dict(outcomes)}; {len(bad)} with faults; slowest {slowest[0]:.2f} s (run {slowest[1]})")
+    print(f"{len(seeds)} runs: {dict(outcomes)}; {len(bad)} with faults; slowest {slowest[0]:.2f} s (run {slowest[1]})")
     return 1 if bad else 0
 
 

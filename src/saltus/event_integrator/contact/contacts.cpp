@@ -19,12 +19,31 @@ using Eigen::VectorXd;
 constexpr double small_velocity =
     1e-9;  ///< relative size of velocities that count as none at an event: location and projection
 
-/// Of the speed at which a slip in a plane is looked at again: small speeds are located to the rounding of t.
-constexpr double ends_below = 1.1;
+/// Rows that do not depend on each other.
+class RowBasis {
+ public:
+  explicit RowBasis(const Eigen::MatrixXd& rows) : rows_(rows) {}
+  [[nodiscard]] bool holds(int row) const { return !part_beside(row); }
+  /// Adds a row unless it depends on those that were taken.
+  bool takes(int row) {
+    const auto part = part_beside(row);
+    if (part) basis_.push_back(part->normalized());
+    return part.has_value();
+  }
 
-/// Of the slowest speed, below which a slip in a plane is none: at twice its tolerance a step runs through the rest
-/// unseen, and comes out on the other side as fast as before.
-constexpr double none_below = 3.0;
+ private:
+  [[nodiscard]] std::optional<VectorXd> part_beside(int row) const {
+    VectorXd e = rows_.row(row).transpose();
+    const double size = e.norm();
+    for (const auto& b : basis_) e -= b.dot(e) * b;
+    for (const auto& b : basis_) e -= b.dot(e) * b;
+    if (!(e.norm() > 1e-9 * size)) return std::nullopt;
+    return e;
+  }
+
+  const Eigen::MatrixXd& rows_;
+  std::vector<VectorXd> basis_;
+};
 
 }  // namespace
 
@@ -109,75 +128,6 @@ bool Contacts::touches(int contact, const std::vector<double>& x, const std::vec
   return std::abs(values_.gap(contact)) <= std::max(64.0 * rounding_unit * terms, 1e-12);  // as at a start
 }
 
-double Contacts::fastest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
-  double speed = moment.time_scale * point.acceleration.cwiseAbs().maxCoeff();
-  for (const int velocity : system_.velocities) speed = std::max(speed, std::abs(x[at(velocity)]));
-  return speed;
-}
-
-/// Below this speed a slip in a plane has no direction: within the tolerances it may as well be at rest.
-double Contacts::slowest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
-  const double speed = fastest(moment, point, x);
-  constexpr double part = 0.01, rounded = 1e-13, least = 1e-40;
-  const double in_time = 256.0 * rounding_unit * std::abs(moment.t) * point.terms;
-  return std::max({moment.tolerances.atol + part * moment.tolerances.rtol * speed, rounded * speed, in_time, least});
-}
-
-/// Whether what ends at a point is not a slip in a plane, but the range of speeds in which it is followed.
-bool Contacts::reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
-                               const std::vector<double>& x) const {
-  if (mode_of(contact, x) != ContactMode::slip) return false;
-  const double speed = point.along(point.velocity, contact).norm();
-  const auto bounds = at(contacts_[at(contact)].speeds);
-  const bool at_bound = speed <= ends_below * std::sqrt(x[bounds]) || ends_below * speed >= std::sqrt(x[bounds + 1]);
-  if (!at_bound || speed <= none_below * slowest(moment, point, x)) return false;
-  ContactForces forces;
-  std::vector<int> closed;
-  std::vector<ContactMode> modes;
-  for (int i = 0; i < point.contacts(); ++i) {
-    modes.push_back(mode_of(i, x));
-    if (modes.back() != ContactMode::open) closed.push_back(i);
-  }
-  constexpr double holds = 1e-9;
-  return forces_in(point, closed, modes, forces) && forces.margin > holds;
-}
-
-/// Of slips in a plane. Where the velocity vanishes the force has no direction, and two functions would have to be 0 at
-/// once: so steps end at ever smaller speeds, down to one that is none.
-void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x) {
-  if (std::none_of(contacts_.begin(), contacts_.end(), [&](const auto& contact) { return contact.in_plane; })) return;
-  const ContactPoint point = point_at(moment.t, moment.alpha, x);
-  constexpr double apart = 10.0;
-  for (int i = 0; i < point.contacts(); ++i) {
-    const auto& contact = contacts_[at(i)];
-    if (!contact.in_plane) continue;
-    const bool slipping = x[at(contact.slip)] != 0.0;
-    const double speed = point.along(point.velocity, i).norm();
-    const double least = std::max(speed / apart, slowest(moment, point, x)), largest = apart * speed;
-    x[at(contact.speeds)] = slipping ? least * least : 1.0;
-    x[at(contact.speeds) + 1] = slipping ? largest * largest : 1.0;
-  }
-}
-
-/// At rest the force of a slip has no direction: it begins with a speed that is none.
-void Contacts::start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction,
-                          std::vector<double>& x) {
-  const ContactPoint point = point_at(moment.t, moment.alpha, x);
-  std::vector<int> rows{point.tangent_row(contact, 0), point.tangent_row(contact, 1)};
-  VectorXd change = 4.0 * slowest(moment, point, x) * direction;
-  if (x[at(contacts_[at(contact)].active)] != 0.0) {
-    rows.push_back(contact);
-    change.conservativeResize(3);
-    change(2) = 0.0;
-  }
-  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
-  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
-  const VectorXd velocities = response * influence.ldlt().solve(change - values_.velocity(rows));
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    x[at(system_.velocities[k])] += velocities(static_cast<Eigen::Index>(k));
-  }
-}
-
 /// Velocities that are 0 by their modes, or to their rounding, are 0; so is that of a slip that ends.
 void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
                      const std::vector<int>& ended) const {
@@ -233,12 +183,26 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   return find_modes(moment, touching, std::move(excluded), point, x);
 }
 
+/// Whether a gap and its rate are 0 within the tolerances: that of another contact in the same impacts.
+bool Contacts::comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
+                             const std::vector<double>& x) const {
+  double terms = 0.0;
+  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
+    terms += std::abs(values_.rows(contact, static_cast<Eigen::Index>(k)) * x[at(system_.positions[k])]);
+  }
+  const auto& [rtol, atol] = moment.tolerances;
+  return std::abs(values_.gap(contact)) <= atol + rtol * terms &&
+         std::abs(point.normal_velocity(contact)) <= 64.0 * slowest(moment, point, x);
+}
+
 std::optional<std::string> Contacts::settle(const ContactMoment& moment, const std::vector<int>& jumps,
                                             std::vector<double>& x) {
   std::vector<int> touching;
+  const ContactPoint limit = point_at(moment.t, moment.alpha, x);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     auto& closed = x[at(contacts_[i].closed)];
-    if (!contains(jumps, contacts_[i].jump) && closed == 0.0) continue;
+    const bool rests = closed != 0.0 || contains(jumps, contacts_[i].jump);
+    if (!rests && !comes_to_rest(moment, static_cast<int>(i), limit, x)) continue;
     touching.push_back(static_cast<int>(i));
     if (closed == 0.0) x[at(contacts_[i].active)] = 1.0;
     closed = 1.0;
@@ -321,12 +285,13 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
   return std::nullopt;
 }
 
-/// Of modes that hold here the one that holds a little later with the largest margin.
+/// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin.
 std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<int>& resting,
                                  const std::vector<ContactForces>& found, const std::vector<double>& x) {
   std::size_t best = 0;
   double largest = -std::numeric_limits<double>::infinity();
   const double h = 1e-3 * moment.time_scale;
+  constexpr double clear = 1e-4;
   for (std::size_t k = 0; k < found.size(); ++k) {
     auto ahead = x;
     const ContactPoint here = point_at(moment.t, moment.alpha, x);
@@ -345,6 +310,8 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<
     ContactForces forces;
     if (!forces_in(later, resting, found[k].modes, forces)) continue;
     const double held = std::min(found[k].margin, forces.margin);
+    // Forces that are not unique, of bodies that rest: those without a slip are the first.
+    if (held > clear) return k;
     if (held > largest) {
       largest = held;
       best = k;
@@ -358,45 +325,48 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<
 void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
                      std::vector<double>& x) {
   const int m = point.contacts();
-  std::vector<Eigen::VectorXd> basis;
-  const auto independent = [&](int row) {
-    Eigen::VectorXd e = values_.rows.row(row).transpose();
-    const double size = e.norm();
-    for (const auto& b : basis) e -= b.dot(e) * b;
-    for (const auto& b : basis) e -= b.dot(e) * b;
-    if (!(e.norm() > 1e-9 * size)) return false;
-    basis.push_back(e.normalized());
-    return true;
-  };
+  RowBasis basis(values_.rows);
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
     const bool closed = found.modes[at(i)] != ContactMode::open;
     x[at(contact.closed)] = closed ? 1.0 : 0.0;
-    x[at(contact.active)] = closed && independent(i) ? 1.0 : 0.0;
+    x[at(contact.active)] = closed && basis.takes(i) ? 1.0 : 0.0;
     std::fill(x.begin() + contact.stick, x.begin() + contact.impulse, 0.0);
   }
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
-    const auto mode = found.modes[at(i)];
     const double limit = point.friction[at(i)] * found.forces(i);
-    for (int k = 0; mode == ContactMode::stick && k < contact.tangents(); ++k) {
+    for (int k = 0; found.modes[at(i)] == ContactMode::stick && k < contact.tangents(); ++k) {
       const int row = point.tangent_row(i, k);
-      if (independent(row)) {
+      if (basis.takes(row)) {
         x[at(contact.stick + k)] = 1.0;
       } else if (limit > 0.0) {
         x[at(contact.share + k)] = std::clamp(-found.forces(row) / limit, -1.0, 1.0);
       }
     }
-    if (mode == ContactMode::slip) {
-      // Before: without a speed the force of a slip has no size either.
-      if (point.along(point.velocity, i).isZero(0.0)) start_slip(moment, i, found.directions[at(i)], x);
-      x[at(contact.slip)] = 1.0;
-    } else if (mode == ContactMode::slip_up || mode == ContactMode::slip_down) {
-      x[at(contact.share)] = mode == ContactMode::slip_up ? 1.0 : -1.0;
-      // Held by another one that sticks: it is at the edge of its cone.
-      x[at(contact.slip)] = 1.0;
-    }
   }
+  for (int i = 0; i < m; ++i) {
+    if (!slips(found.modes[at(i)])) continue;
+    bool is_free = false;
+    for (int k = 0; k < contacts_[at(i)].tangents(); ++k) is_free = is_free || !basis.holds(point.tangent_row(i, k));
+    enter_slip(moment, point, found, i, is_free, x);
+  }
+}
+
+/// What others hold at rest is at the edge of its cone, and does not slip.
+/// @param is_free  what is held does not hold its tangents, too
+void Contacts::enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
+                          bool is_free, std::vector<double>& x) {
+  const auto& contact = contacts_[at(i)];
+  const bool is_still = point.along(point.velocity, i).isZero(0.0);
+  const bool moves = is_free || !is_still || point.along(found.acceleration, i).norm() > 1e-9 * point.terms;
+  for (int k = 0; k < contact.tangents() && !(moves && contact.in_plane); ++k) {
+    x[at(contact.share + k)] = found.directions[at(i)](k);
+  }
+  if (!moves) return;
+  // Before: without a speed the force of a slip has no size either.
+  if (contact.in_plane && is_still) start_slip(moment, i, found.directions[at(i)], x);
+  x[at(contact.slip)] = 1.0;
 }
 
 std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
@@ -463,19 +433,33 @@ bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<d
   return x != before;
 }
 
+std::optional<std::string> Contacts::jam(const ContactMoment& moment, const std::vector<double>& x) {
+  if (none()) return std::nullopt;
+  const ContactPoint point = point_at(moment.t, moment.alpha, x);
+  std::vector<int> closed;
+  std::vector<ContactMode> modes;
+  for (int i = 0; i < point.contacts(); ++i) {
+    modes.push_back(mode_of(i, x));
+    if (modes.back() != ContactMode::open) closed.push_back(i);
+  }
+  ContactForces forces;
+  if (closed.empty() || !forces_in(point, closed, modes, forces)) return std::nullopt;
+  constexpr double without_bound = 1e4;
+  const double largest = without_bound * point.acceleration.cwiseAbs().maxCoeff();
+  std::erase_if(closed, [&](int i) {
+    return point.friction[at(i)] == 0.0 || !slips(modes[at(i)]) || forces.forces(i) * point.influence(i, i) <= largest;
+  });
+  if (closed.empty()) return std::nullopt;
+  return fmt::format(
+      "the normal force of {} grows without bound at t = {:.17g}: its own friction presses it on "
+      "(Painleve's paradox)",
+      names(closed), moment.t);
+}
+
 void Contacts::forget_impulses(std::vector<double>& x) const {
   for (const auto& contact : contacts_) {
     std::fill_n(x.begin() + contact.impulse, 1 + contact.tangents(), 0.0);
   }
-}
-
-bool Contacts::slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const {
-  if (none()) return false;
-  auto expected = x;
-  for (const auto& contact : contacts_) {
-    if (contact.in_plane) std::copy_n(x_after.begin() + contact.speeds, 2, expected.begin() + contact.speeds);
-  }
-  return expected == x_after && x != x_after;
 }
 
 std::optional<int> Contacts::jump_with_impulse(const std::vector<double>& x) const {

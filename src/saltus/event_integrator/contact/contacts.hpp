@@ -57,14 +57,24 @@ class Contacts {
   /// Ends the bounces of these contacts (by their jumps): their gaps close without an impact.
   [[nodiscard]] std::optional<std::string> settle(const ContactMoment& moment, const std::vector<int>& jumps,
                                                   std::vector<double>& x);
+  /// Says what is wrong where steps become ever smaller as a contact slips under a force that grows without bound.
+  [[nodiscard]] std::optional<std::string> jam(const ContactMoment& moment, const std::vector<double>& x);
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
   /// Returns whether a jump of a contact has only bounded the speed of a slip in a plane anew.
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
+  /// Returns their names, for messages.
+  [[nodiscard]] std::string names(const std::vector<int>& contacts) const;
   /// Forgets impulses, which belong to one instant.
   void forget_impulses(std::vector<double>& x) const;
 
  private:
+  /// Of the speed at which a slip in a plane is looked at again: small speeds are located to the rounding of t.
+  static constexpr double ends_below = 1.1;
+  /// Of the slowest speed, below which a slip in a plane is none: at twice its tolerance a step runs through the rest
+  /// unseen, and comes out on the other side as fast as before.
+  static constexpr double none_below = 3.0;
+
   [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
   [[nodiscard]] double force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
                                    const std::vector<double>& x) const;
@@ -78,6 +88,9 @@ class Contacts {
   [[nodiscard]] bool reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
                                      const std::vector<double>& x) const;
   void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
+  [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
+                                   const std::vector<double>& x) const;
+  void set_slip(int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const;
   void start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction, std::vector<double>& x);
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
              const std::vector<int>& ended) const;
@@ -91,10 +104,11 @@ class Contacts {
                                        const std::vector<ContactForces>& found, const std::vector<double>& x);
   void enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
              std::vector<double>& x);
+  void enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
+                  bool is_free, std::vector<double>& x);
   void correct_positions(std::vector<double>& x) const;
   void correct_velocities(std::vector<double>& x) const;
   [[nodiscard]] std::vector<int> held_rows(const std::vector<double>& x) const;
-  [[nodiscard]] std::string names(const std::vector<int>& contacts) const;
 
   const evaluation::ModelKernel& kernel_;
   const model::ContactSystem& system_;

@@ -53,7 +53,11 @@ class Process {
         continue;
       }
       const double length = piece_length();
-      if (!(length <= largest_impulse * size_ / strength_)) return std::nullopt;
+      if (!(length <= largest_impulse * size_ / strength_)) {
+        // Friction that holds everything at rest keeps the work back that is left to give.
+        const bool holds = !closes() && change_.cwiseAbs().maxCoeff() <= process_rounding * strength_;
+        return holds ? std::optional(impulse_) : std::nullopt;
+      }
       advance(length);
     }
     return std::nullopt;

@@ -2,6 +2,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "saltus/base/at.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -40,6 +43,25 @@ bool Run::move_contacts() {
   auto problem = contacts_.resolve(contact_moment(), ended, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   return !problem;
+}
+
+/// A mode whose own conditions clearly do not hold would never end.
+bool Run::contact_modes_hold() {
+  const auto ended = contacts_.with_jumps([&](int jump) { return jumps_.holds(jump); });
+  if (ended.empty()) return true;
+  const auto n = at(kernel_.event_functions());
+  std::vector<double> values(n), magnitude(n), slope(n);
+  kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), values.data());
+  kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), magnitude.data(), slope.data());
+  constexpr double clear = 1e-9;
+  const bool hold = std::none_of(values.begin(), values.end(), [&](const double& value) {
+    const auto function = static_cast<int>(&value - values.data());
+    return contacts_.guards(function) && value > clear * magnitude[at(function)];
+  });
+  if (hold) return true;
+  fail(Termination::outside_class,
+       fmt::format("the mode of {} that follows at t = {:.17g} ends where it begins", contacts_.names(ended), here_.t));
+  return false;
 }
 
 /// Behind the limit of a sequence of bounces the gaps are closed.

@@ -167,6 +167,7 @@ class Run {
   [[nodiscard]] bool only_slips_on() const;
   bool begin_contacts();
   bool move_contacts();
+  bool contact_modes_hold();
   void settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before);
   bool decide_behind_jumps();
   bool hold_resting();

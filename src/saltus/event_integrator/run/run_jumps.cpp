@@ -47,6 +47,7 @@ bool Run::execute_jump() {
   ExecutedJump& executed = cascade_.executed().append();
   executed.x = here_.x;
   executed.jump = jumps_.execute(jump_point(), here_.x);
+  executed.x_after = here_.x;
   if (contacts_.owns(executed.jump) && !move_contacts()) return false;
   executed.x_after = here_.x;
   if (!cells_.empty())
@@ -95,6 +96,7 @@ bool Run::settle_jumps() {
     jumps_.update(jump_point());
     if (jumps_have_problem()) return false;
   } while (jumps_.due(here_.t));
+  if (!contact_modes_hold()) return false;
   if (!cascade_.executed().empty()) cascade_.executed().back().x_after = here_.x;
   return true;
 }

@@ -187,6 +187,10 @@ Run::Step Run::reject(double error) {
   const double h = steps_.stepper().length();
   if (shorten(steps_.rejected(error))) return Step::shortened;
   if (stopped_by_singularity()) return Step::failed;
+  if (auto jam = contacts_.jam(contact_moment(), here_.x)) {
+    fail(Termination::outside_class, std::move(*jam));
+    return Step::failed;
+  }
   fail(Termination::step_size_too_small,
        fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
                    "there, or rtol is below what doubles carry",

@@ -18,21 +18,38 @@ std::vector<bool> mask_of(const std::vector<int>& members, std::size_t n) {
   return mask;
 }
 
+bool are_near(const std::vector<double>& a, const std::vector<double>& b) {
+  constexpr double near = 1e-7;
+  if (a.empty() || a.size() != b.size()) return false;
+  double size = 1.0;  // of selections
+  for (std::size_t i = 0; i < a.size(); ++i) size = std::max({size, std::abs(a[i]), std::abs(b[i])});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!(std::abs(a[i] - b[i]) <= near * size)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
-/// Whether psi does not leave zero on a side, and sliding moves as that side does.
-bool Transition::is_sliding_of_another(const Option& option, const std::vector<Option>& others) {
-  if (option.trial != Trial::stays) return false;
-  return std::any_of(others.begin(), others.end(), [&](const Option& other) {
-    if (other.selections.size() != option.selections.size() || other.pattern == option.pattern) return false;
-    for (std::size_t k = 0; k < option.pattern.size(); ++k) {
-      if (other.pattern[k] != option.pattern[k] && other.pattern[k] != 0) return false;
-    }
-    for (std::size_t j = 0; j < option.selections.size(); ++j) {
-      if (!(std::abs(other.selections[j] - option.selections[j]) <= undecided)) return false;
-    }
-    return true;
-  });
+/// Whether one slides on surfaces on a side of which the other one is.
+bool Transition::slides_beside(const Option& sliding, const Option& beside) {
+  if (sliding.pattern == beside.pattern) return false;
+  for (std::size_t k = 0; k < sliding.pattern.size(); ++k) {
+    if (sliding.pattern[k] != beside.pattern[k] && sliding.pattern[k] != 0) return false;
+  }
+  return true;
+}
+
+/// Whether an option is no other continuation than this one: it moves in the same way, and its selections follow from
+/// higher derivatives where this one has its own; or it is a side that psi stays at without leaving zero; or it slides
+/// where psi does not move at all on a side: nothing may determine its selections a little later.
+bool Transition::stands_for(const Option& option, const Option& other) {
+  const bool regular = option.regular && other.regular;
+  if (!(regular ? are_near(option.selections, other.selections) : are_near(option.motion, other.motion))) return false;
+  if (option.regular != other.regular) return option.regular;
+  if (slides_beside(other, option)) return option.trial == Trial::stands && regular;
+  if (!slides_beside(option, other)) return false;
+  return other.trial == Trial::stays || (other.trial == Trial::stands && !regular);
 }
 
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
@@ -80,7 +97,8 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
     DenseMatrices memory;
     margins_.evaluate(set, field_view(projected_.values(), memory), candidate.selections.data());
   }
-  double least = 1.0;
+  // Rates were those at other selections: they may exclude a set, but do not decide for it.
+  double least = follows_from_trial(candidate) ? undecided : 1.0;
   const auto asked = mask_of(group.members, kernel_.selections());
   for (const Condition& condition : set.conditions()) {
     if (!asked[at(condition.selection)]) continue;
@@ -93,7 +111,9 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
           size = std::max(size, size_[at(j)]);
         }
       }
-      value = size > 0.0 ? value / size : 0.0;
+      // Nor does a rate decide that leaves psi within its rounding: it may be that of a velocity which is 0.
+      const bool leaves = std::abs(value) * decision.trial_length > noise_[at(condition.selection)];
+      value = size > 0.0 && leaves ? value / size : 0.0;
     }
     if (!std::isfinite(value)) return -1.0;
     least = std::min(least, value);
@@ -106,16 +126,22 @@ ElementSolver::Outcome Transition::solve_trial(const Decision& decision, const C
   return solver_.solve(left, length, {&candidate.set, 1}, decision.held, ElementSolver::Guess::left_end, trial_);
 }
 
-/// Selections that follow from a higher derivative of their surface are those of a short element.
-bool Transition::take_from_trial(const Decision& decision, Continuation& candidate) {
-  const auto& sliding = candidate.set.sliding();
+/// Whether a selection follows from a higher derivative of its surface only.
+bool Transition::follows_from_trial(const Continuation& candidate) const {
+  if (projected_.regular()) return false;
   bool any = false;
-  for (std::size_t k = 0; k < sliding.size(); ++k) any = any || projected_.in_no_equation(k);
-  if (projected_.regular() || !any) return true;
+  for (std::size_t k = 0; k < candidate.set.sliding().size(); ++k) any = any || projected_.in_no_equation(k);
+  return any;
+}
+
+/// Such selections are those of a short element.
+bool Transition::take_from_trial(const Decision& decision, Continuation& candidate) {
+  if (!follows_from_trial(candidate)) return true;
   if (solve_trial(decision, candidate, decision.trial_length) != ElementSolver::Outcome::solved) return false;
   const std::size_t n = kernel_.selections();
   const double* last = trial_.stage_selections.data() + trial_.stage_selections.size() - n;
   projected_.take_undetermined(candidate.set, last, candidate.selections.data());
+  projected_.evaluate(decision.t, decision.x.data(), decision.held, candidate.selections.data());
   return true;
 }
 
@@ -129,14 +155,15 @@ Transition::Trial Transition::try_element(const Decision& decision, const Group&
   const auto answer = watch_.look(trial_, candidate.set, decision.held, selections, ignored, members);
   if (answer == Watch::Answer::not_finite) return Trial::unsolved;
   constexpr double clear = 16.0;  // of roundings
-  bool stays = false;
+  bool stays = false, moves = false;
   for (const Condition& condition : candidate.set.conditions()) {
     if (std::find(members.begin(), members.end(), condition.selection) == members.end()) continue;
     const double value = watch_.end_value(candidate.set, condition), rounding = clear * watch_.noise(condition);
     if (value < -rounding) return Trial::fails;
     stays = stays || !(value > rounding);
+    moves = moves || condition.kind != Condition::Kind::side || value != watch_.left_value(candidate.set, condition);
   }
-  return stays ? Trial::stays : Trial::holds;
+  return !stays ? Trial::holds : moves || decision.before == nullptr ? Trial::stays : Trial::stands;
 }
 
 /// By the shortest element behind which signs are clear of their roundings: psi may leave zero like t^3 or t^4.
@@ -153,7 +180,7 @@ Transition::Trial Transition::try_elements(const Decision& decision, const Group
   }
   // The trial length is the 128th part of an element.
   for (const double factor : {8.0, 64.0}) {
-    if (trial != Trial::stays) break;
+    if (trial != Trial::stays && trial != Trial::stands) break;
     const Trial longer = attempt(factor);
     if (longer == Trial::unsolved) break;
     trial = longer;
@@ -205,8 +232,10 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
     Continuation candidate{make_set(decision, trial), {}};
     if (option.margin <= undecided || group.dependent) {
       if (margin(decision, group, candidate) < -undecided) continue;
+      option.regular = projected_.regular();
       option.trial = try_elements(decision, group, candidate);
       if (option.trial == Trial::fails || option.trial == Trial::unsolved) continue;
+      option.motion = projected_.values().f;
     }
     option.selections = std::move(candidate.selections);
     passed.push_back(std::move(option));
@@ -214,7 +243,8 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
   }
   std::vector<std::vector<int>> admissible;
   for (const Option& option : passed) {
-    if (!is_sliding_of_another(option, passed)) admissible.push_back(option.pattern);
+    const auto known = [&](const Option& other) { return stands_for(other, option); };
+    if (std::none_of(passed.begin(), passed.end(), known)) admissible.push_back(option.pattern);
   }
   return admissible;
 }

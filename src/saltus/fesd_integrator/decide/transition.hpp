@@ -41,14 +41,14 @@ struct Decision {
 /// and sliding (every set of active regions) is asked: with the selections of its projected field, do its signs hold
 /// just behind the point? A rate beyond its rounding answers; where one is zero (a tangency, the end of sliding) a
 /// short element does, or a longer one where psi is within its rounding behind that. The solution may not get to a
-/// side, as psi stays at zero. That is no other continuation than sliding with the selections of that side. Functions
-/// that do not influence each other are enumerated one by one. Surfaces whose gradients depend on each other, with
-/// selections that enter additively, are not enumerated: a complementarity problem says which are slid on and which are
-/// left [ADR 20]; where it leaves that open, the one just behind the point does. In a system of some size
-/// (discretization::StagePattern) only functions that influence the one whose sign ended are asked, and those whose
-/// conditions do not clearly hold; the others slide on. Where nothing continues so, all are asked. Of more functions
-/// than are enumerated those slide on that slid before and did not end; whether others continue the solution, too, is
-/// not decided then.
+/// side, as psi stays at zero. That is no other continuation than sliding with the selections of that side; where psi
+/// does not move there, it is the one that is left out. Functions that do not influence each other are enumerated one
+/// by one. Surfaces whose gradients depend on each other, with selections that enter additively, are not enumerated: a
+/// complementarity problem says which are slid on and which are left [ADR 20]; where it leaves that open, the one just
+/// behind the point does. In a system of some size (discretization::StagePattern) only functions that influence the one
+/// whose sign ended are asked, and those whose conditions do not clearly hold; the others slide on. Where nothing
+/// continues so, all are asked. Of more functions than are enumerated those slide on that slid before and did not end;
+/// whether others continue the solution, too, is not decided then.
 ///
 /// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
 /// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
@@ -103,14 +103,16 @@ class Transition {
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
                                    Continuation& candidate);
-  /// What a short element says of a set: its signs hold behind it, or not, or are within their roundings.
-  enum class Trial { holds, fails, stays, unsolved };
+  /// What a short element says of a set: its signs hold behind it, or not, or are within their roundings, or nothing
+  /// that has a sign moves.
+  enum class Trial { holds, fails, stays, stands, unsolved };
   /// A pattern that may continue the solution.
   struct Option {
     std::vector<int> pattern;
     double margin = 0.0;
     Trial trial = Trial::holds;
-    std::vector<double> selections = {};
+    std::vector<double> selections = {}, motion = {};  ///< if rates do not decide; of all states
+    bool regular = true;                               ///< whether first derivatives determine the selections
   };
   static void put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes);
   [[nodiscard]] std::vector<Option> options_of(const Decision& decision, const Group& group,
@@ -118,9 +120,11 @@ class Transition {
   [[nodiscard]] std::vector<std::vector<int>> admissible_of(const Decision& decision, const Group& group,
                                                             std::vector<Option> options, const std::vector<int>& guess);
   [[nodiscard]] std::optional<Continuation> continuation_in(const Decision& decision, const std::vector<int>& modes);
-  [[nodiscard]] static bool is_sliding_of_another(const Option& option, const std::vector<Option>& others);
+  [[nodiscard]] static bool slides_beside(const Option& sliding, const Option& beside);
+  [[nodiscard]] static bool stands_for(const Option& option, const Option& other);
   [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate,
                                                    double length);
+  [[nodiscard]] bool follows_from_trial(const Continuation& candidate) const;
   [[nodiscard]] bool take_from_trial(const Decision& decision, Continuation& candidate);
   [[nodiscard]] Trial try_element(const Decision& decision, const Group& group, const Continuation& candidate,
                                   double length);

@@ -78,6 +78,8 @@ double Watch::noise(const Condition& condition) const {
   return condition.kind == Condition::Kind::side ? noise_[at(condition.selection)] : selection_noise;
 }
 
+double Watch::left_value(const ActiveSet& set, const Condition& condition) const { return value_at(set, condition, 0); }
+
 double Watch::end_value(const ActiveSet& set, const Condition& condition) const {
   return value_at(set, condition, points_ - 1);
 }

@@ -1,0 +1,105 @@
+// Slips in a plane: between which speeds they are followed, how they begin and go on.
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/base/at.hpp"
+#include "saltus/event_integrator/contact/contacts.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using Eigen::VectorXd;
+
+double Contacts::fastest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
+  double speed = moment.time_scale * point.acceleration.cwiseAbs().maxCoeff();
+  for (const int velocity : system_.velocities) speed = std::max(speed, std::abs(x[at(velocity)]));
+  return speed;
+}
+
+/// Below this speed a slip in a plane has no direction: within the tolerances it may as well be at rest.
+double Contacts::slowest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
+  const double speed = fastest(moment, point, x);
+  constexpr double part = 0.01, rounded = 1e-13, least = 1e-40;
+  const double in_time = 256.0 * rounding_unit * std::abs(moment.t) * point.terms;
+  return std::max({moment.tolerances.atol + part * moment.tolerances.rtol * speed, rounded * speed, in_time, least});
+}
+
+/// Whether what ends at a point is not a slip in a plane, but the range of speeds in which it is followed.
+bool Contacts::reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
+                               const std::vector<double>& x) const {
+  if (mode_of(contact, x) != ContactMode::slip) return false;
+  const double speed = point.along(point.velocity, contact).norm();
+  const auto bounds = at(contacts_[at(contact)].speeds);
+  const bool at_bound = speed <= ends_below * std::sqrt(x[bounds]) || ends_below * speed >= std::sqrt(x[bounds + 1]);
+  if (!at_bound || speed <= none_below * slowest(moment, point, x)) return false;
+  ContactForces forces;
+  std::vector<int> closed;
+  std::vector<ContactMode> modes;
+  for (int i = 0; i < point.contacts(); ++i) {
+    modes.push_back(mode_of(i, x));
+    if (modes.back() != ContactMode::open) closed.push_back(i);
+  }
+  constexpr double holds = 1e-9;
+  return forces_in(point, closed, modes, forces) && forces.margin > holds;
+}
+
+/// Of slips in a plane. Where the velocity vanishes the force has no direction, and two functions would have to be 0 at
+/// once: so steps end at ever smaller speeds, down to one that is none.
+void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x) {
+  if (std::none_of(contacts_.begin(), contacts_.end(), [&](const auto& contact) { return contact.in_plane; })) return;
+  const ContactPoint point = point_at(moment.t, moment.alpha, x);
+  constexpr double apart = 10.0;
+  for (int i = 0; i < point.contacts(); ++i) {
+    const auto& contact = contacts_[at(i)];
+    if (!contact.in_plane) continue;
+    const bool slipping = x[at(contact.slip)] != 0.0;
+    const double speed = point.along(point.velocity, i).norm();
+    const double least = std::max(speed / apart, slowest(moment, point, x)), largest = apart * speed;
+    x[at(contact.speeds)] = slipping ? least * least : 1.0;
+    x[at(contact.speeds) + 1] = slipping ? largest * largest : 1.0;
+  }
+}
+
+/// Gives it a slip of this velocity, its gap as it is.
+void Contacts::set_slip(int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const {
+  std::vector<int> rows{static_cast<int>(contacts_.size()) + contact, 2 * static_cast<int>(contacts_.size()) + contact};
+  VectorXd change = velocity;
+  if (x[at(contacts_[at(contact)].active)] != 0.0) {
+    rows.push_back(contact);
+    change.conservativeResize(3);
+    change(2) = 0.0;
+  }
+  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
+  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
+  const VectorXd velocities = response * influence.ldlt().solve(change - values_.velocity(rows));
+  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+    x[at(system_.velocities[k])] += velocities(static_cast<Eigen::Index>(k));
+  }
+}
+
+/// At rest the force of a slip has no direction: it begins with a speed that is none, but one whose direction is known
+/// to more than its rounding. The rounding is that of velocities over the speed: what is enough is between both.
+void Contacts::start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction,
+                          std::vector<double>& x) {
+  constexpr double clear = 4.0;
+  constexpr int most_speeds = 20;
+  double speed = clear * slowest(moment, point_at(moment.t, moment.alpha, x), x);
+  for (int tried = 0; tried < most_speeds; ++tried) {
+    set_slip(contact, speed * direction, x);
+    x[at(contacts_[at(contact)].slip)] = 1.0;
+    const double needed = clear * slowest(moment, point_at(moment.t, moment.alpha, x), x);
+    if (needed <= 2.0 * speed) break;
+    speed = std::sqrt(speed * needed);
+  }
+}
+
+bool Contacts::slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const {
+  if (none()) return false;
+  auto expected = x;
+  for (const auto& contact : contacts_) {
+    if (contact.in_plane) std::copy_n(x_after.begin() + contact.speeds, 2, expected.begin() + contact.speeds);
+  }
+  return expected == x_after && x != x_after;
+}
+
+}  // namespace saltus::event_integrator
