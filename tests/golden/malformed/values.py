@@ -99,7 +99,7 @@ FILES = {
     "initial mode half": (after("initial_mode = { v = 0.5 }\n"), 13, "expected -1, 0 or 1"),
     "integrator": (after("event.integrator = 'dopri'\n"), 13, "did you mean 'dopri5'"),
     "integrator of another tool": (after("event.integrator = 'ode45'\n"), 13, '"dopri5" or "dop853" or "radau5" or "radau9" or "radau13" or "taylor"'),
-    "integrator almost": (after("event.integrator = 'radau'\n"), 13, "radau", "did you mean the integrator radau5?"),
+    "integrator almost": (after("event.integrator = 'radau'\n"), 13, "radau", "did you mean 'radau5' or 'radau9' or 'radau13'?"),
     "native": (after("native = 'never'\n"), 13, "native", 'expected "auto" or "on" or "off"'),
     "native a boolean": (after("native = true\n"), 13, 'expected "auto" or "on" or "off", found true'),
     # later versions

@@ -433,15 +433,19 @@ bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<d
   return x != before;
 }
 
+Contacts::Modes Contacts::modes_at(const std::vector<double>& x) const {
+  Modes found;
+  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+    found.modes.push_back(mode_of(i, x));
+    if (found.modes.back() != ContactMode::open) found.closed.push_back(i);
+  }
+  return found;
+}
+
 std::optional<std::string> Contacts::jam(const ContactMoment& moment, const std::vector<double>& x) {
   if (none()) return std::nullopt;
   const ContactPoint point = point_at(moment.t, moment.alpha, x);
-  std::vector<int> closed;
-  std::vector<ContactMode> modes;
-  for (int i = 0; i < point.contacts(); ++i) {
-    modes.push_back(mode_of(i, x));
-    if (modes.back() != ContactMode::open) closed.push_back(i);
-  }
+  auto [modes, closed] = modes_at(x);
   ContactForces forces;
   if (closed.empty() || !forces_in(point, closed, modes, forces)) return std::nullopt;
   constexpr double without_bound = 1e4;

@@ -81,6 +81,11 @@ class Contacts {
   [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha,
                                           const std::vector<double>& x) const;
   [[nodiscard]] ContactMode mode_of(int contact, const std::vector<double>& x) const;
+  struct Modes {
+    std::vector<ContactMode> modes;  ///< of all contacts
+    std::vector<int> closed;         ///< those that are not open
+  };
+  [[nodiscard]] Modes modes_at(const std::vector<double>& x) const;
   [[nodiscard]] double fastest(const ContactMoment& moment, const ContactPoint& point,
                                const std::vector<double>& x) const;
   [[nodiscard]] double slowest(const ContactMoment& moment, const ContactPoint& point,
@@ -90,7 +95,7 @@ class Contacts {
   void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
   [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
                                    const std::vector<double>& x) const;
-  void set_slip(int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const;
+  void set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const;
   void start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction, std::vector<double>& x);
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
              const std::vector<int>& ended) const;

@@ -32,13 +32,8 @@ bool Contacts::reaches_a_speed(const ContactMoment& moment, int contact, const C
   const auto bounds = at(contacts_[at(contact)].speeds);
   const bool at_bound = speed <= ends_below * std::sqrt(x[bounds]) || ends_below * speed >= std::sqrt(x[bounds + 1]);
   if (!at_bound || speed <= none_below * slowest(moment, point, x)) return false;
+  const auto [modes, closed] = modes_at(x);
   ContactForces forces;
-  std::vector<int> closed;
-  std::vector<ContactMode> modes;
-  for (int i = 0; i < point.contacts(); ++i) {
-    modes.push_back(mode_of(i, x));
-    if (modes.back() != ContactMode::open) closed.push_back(i);
-  }
   constexpr double holds = 1e-9;
   return forces_in(point, closed, modes, forces) && forces.margin > holds;
 }
@@ -61,8 +56,9 @@ void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x)
 }
 
 /// Gives it a slip of this velocity, its gap as it is.
-void Contacts::set_slip(int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const {
-  std::vector<int> rows{static_cast<int>(contacts_.size()) + contact, 2 * static_cast<int>(contacts_.size()) + contact};
+void Contacts::set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity,
+                        std::vector<double>& x) const {
+  std::vector<int> rows{point.tangent_row(contact, 0), point.tangent_row(contact, 1)};
   VectorXd change = velocity;
   if (x[at(contacts_[at(contact)].active)] != 0.0) {
     rows.push_back(contact);
@@ -83,11 +79,13 @@ void Contacts::start_slip(const ContactMoment& moment, int contact, const Eigen:
                           std::vector<double>& x) {
   constexpr double clear = 4.0;
   constexpr int most_speeds = 20;
-  double speed = clear * slowest(moment, point_at(moment.t, moment.alpha, x), x);
+  ContactPoint point = point_at(moment.t, moment.alpha, x);
+  double speed = clear * slowest(moment, point, x);
   for (int tried = 0; tried < most_speeds; ++tried) {
-    set_slip(contact, speed * direction, x);
+    set_slip(point, contact, speed * direction, x);
     x[at(contacts_[at(contact)].slip)] = 1.0;
-    const double needed = clear * slowest(moment, point_at(moment.t, moment.alpha, x), x);
+    point = point_at(moment.t, moment.alpha, x);
+    const double needed = clear * slowest(moment, point, x);
     if (needed <= 2.0 * speed) break;
     speed = std::sqrt(speed * needed);
   }

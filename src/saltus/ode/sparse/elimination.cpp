@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 
 #include "saltus/base/without_repeats.hpp"
+#include "saltus/ode/sparse/pattern_matrix_internal.hpp"
 
 namespace saltus::ode {
 namespace {
@@ -13,17 +13,8 @@ namespace {
 using Neighbours = std::vector<std::vector<std::size_t>>;
 
 std::vector<std::size_t> order_of_least_degree(const JacobianPattern& pattern) {
-  const auto n = static_cast<int>(pattern.columns());
-  std::vector<Eigen::Triplet<double>> triplets;
-  for (std::size_t column = 0; column < pattern.columns(); ++column) {
-    for (std::size_t k = pattern.start[column]; k < pattern.start[column + 1]; ++k) {
-      triplets.emplace_back(static_cast<int>(pattern.row[k]), static_cast<int>(column), 1.0);
-    }
-  }
-  Eigen::SparseMatrix<double> matrix(n, n);
-  matrix.setFromTriplets(triplets.begin(), triplets.end());
   Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(matrix, permutation);
+  Eigen::AMDOrdering<int>()(matrix_of<double>(pattern), permutation);
   return {permutation.indices().begin(), permutation.indices().end()};
 }
 

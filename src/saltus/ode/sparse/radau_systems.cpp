@@ -4,6 +4,7 @@
 #include "saltus/ode/sparse/radau_systems_internal.hpp"
 
 namespace saltus::ode {
+
 bool RadauSystems::use(const JacobianPattern* pattern) {
   if (started_ && pattern == pattern_) return false;
   started_ = true;

@@ -12,6 +12,7 @@
 #include <Eigen/SparseLU>
 
 #include "saltus/ode/sparse/elimination.hpp"
+#include "saltus/ode/sparse/pattern_matrix_internal.hpp"
 
 namespace saltus::ode {
 
@@ -103,19 +104,18 @@ class ShiftedFactors {
   }
 
   [[nodiscard]] bool search(const std::vector<double>& entries, const Scalar& shift) {
-    const bool is_first = searched_ == nullptr;
-    if (is_first) searched_ = std::make_unique<Searched>();
-    std::vector<Eigen::Triplet<Scalar>> triplets;
+    if (searched_ == nullptr) {
+      searched_ = std::make_unique<Searched>();
+      searched_->matrix = matrix_of<Scalar>(*pattern_);
+      searched_->factors.analyzePattern(searched_->matrix);
+    }
+    Scalar* const value = searched_->matrix.valuePtr();
     for (std::size_t column = 0; column < pattern_->columns(); ++column) {
       for (std::size_t k = pattern_->start[column]; k < pattern_->start[column + 1]; ++k) {
         const Scalar own = pattern_->row[k] == column ? shift : Scalar(0.0);
-        triplets.emplace_back(static_cast<int>(pattern_->row[k]), static_cast<int>(column), own - entries[k]);
+        value[k] = own - entries[k];
       }
     }
-    const auto n = static_cast<Eigen::Index>(pattern_->columns());
-    searched_->matrix.resize(n, n);
-    searched_->matrix.setFromTriplets(triplets.begin(), triplets.end());
-    if (is_first) searched_->factors.analyzePattern(searched_->matrix);
     searched_->factors.factorize(searched_->matrix);
     return searched_->factors.info() == Eigen::Success;
   }

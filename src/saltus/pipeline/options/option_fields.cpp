@@ -66,7 +66,7 @@ template <auto access, const auto& choices>
 Expected<void> set_engine(SimulateOptions& options, std::string_view key, const OptionValue& value) {
   auto done = set_choice<access, choices>(options, key, value);
   const auto* word = std::get_if<std::string>(&value);
-  if (done || word == nullptr) return done;
+  if (done || word == nullptr || !done.error().remedy.empty()) return done;
   if (const auto meant = integrator_meant(*word); !meant.empty()) {
     done.error().remedy = fmt::format("did you mean the integrator {}?", meant);
   }
