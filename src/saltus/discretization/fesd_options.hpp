@@ -6,14 +6,14 @@
 
 namespace saltus::discretization {
 
-/// What the unknowns of a Runge-Kutta element are.
+/// Says what the unknowns of a Runge-Kutta element are.
 enum class Representation {
   integral,      ///< the states of the stages
   differential,  ///< their slopes
 };
 
-/// Which multipliers lambda_m' (m' = 0: left end, last: right end) are complementary to which selections a_m of the
-/// same element, componentwise; a = alpha with lambda_n, 1 - alpha with lambda_p, or theta with lambda.
+/// Says which multipliers lambda_m' (m' = 0: left end, last: right end) are complementary to which selections a_m of
+/// the same element, componentwise; a = alpha with lambda_n, 1 - alpha with lambda_p, or theta with lambda.
 enum class CrossComplementarity {
   stage_stage,  ///< lambda_m' _|_ a_m for all m', m: eq. (37) of [nurkanovic2024]
   fe_stage,     ///< lambda_m' _|_ sum_m a_m
@@ -26,8 +26,8 @@ inline constexpr std::array all_cross_complementarities{
     CrossComplementarity::stage_stage, CrossComplementarity::fe_stage, CrossComplementarity::stage_fe,
     CrossComplementarity::fe_fe,       CrossComplementarity::paper,    CrossComplementarity::same_stage};
 
-/// What makes neighbouring elements equally long where no switch separates them. For every pair a _|_ lambda let sB(.)
-/// and sF(.) be sums over the points of the element before and after their boundary,
+/// Says what makes neighbouring elements equally long where no switch separates them. For every pair a _|_ lambda let
+/// sB(.) and sF(.) be sums over the points of the element before and after their boundary,
 ///   nu = sB(a) sF(a) + sB(lambda) sF(lambda),   eta = product of all nu (both pairs of a step selection):
 /// zero exactly where the active set changes.
 enum class StepEquilibration {
@@ -51,7 +51,7 @@ inline constexpr std::array all_step_equilibrations{StepEquilibration::none,
                                                     StepEquilibration::mlcp,
                                                     StepEquilibration::paper};
 
-/// The names in model files.
+/// Returns the names in model files.
 [[nodiscard]] std::string_view name(Representation representation);
 [[nodiscard]] std::string_view name(CrossComplementarity cross_complementarity);
 [[nodiscard]] std::string_view name(StepEquilibration step_equilibration);

@@ -13,7 +13,7 @@ namespace saltus::solver {
 using mpcc::ConstVectorView;
 using mpcc::VectorView;
 
-/// A primal and dual point of min f(w), lower_w <= w <= upper_w, lower_g <= g(w) <= upper_g:
+/// Holds a primal and dual point of min f(w), lower_w <= w <= upper_w, lower_g <= g(w) <= upper_g:
 ///   grad f + (dg/dw)' y - z_lower + z_upper = 0.
 struct NlpPoint {
   Eigen::VectorXd w;
@@ -49,7 +49,7 @@ struct NlpReport {
   std::string message;              ///< the solver's own words; empty if completed
 };
 
-/// A solver of smooth nonlinear programs: mpcc::Problems without pairs.
+/// Solves smooth nonlinear programs: mpcc::Problems without pairs.
 class NlpSolver {
  public:
   NlpSolver() = default;

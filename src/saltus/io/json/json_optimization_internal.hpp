@@ -12,7 +12,7 @@ namespace saltus::io {
 [[nodiscard]] Json homotopy_json(const std::vector<result::HomotopyStep>& steps);
 [[nodiscard]] Json certificate_json(const result::Certificate& certificate);
 [[nodiscard]] Json optimization_statistics_json(const result::OptimizationStatistics& statistics);
-/// Bounds, states at the ends of intervals, and the vectors of the transcription: what another run begins with.
+/// Writes bounds, states at the ends of intervals, and the vectors of the transcription: what another run begins with.
 [[nodiscard]] Json start_values_json(const result::Optimization& optimization);
 /// Adds objective, horizon, controls, multipliers, homotopy, certificate and verification as members.
 void add_optimization(Json& json, const result::Optimization& optimization);

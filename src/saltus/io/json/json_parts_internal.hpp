@@ -17,7 +17,7 @@ template <class Value>
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// An object of numbers by name.
+/// Makes an object of numbers by name.
 [[nodiscard]] Json numbers_json(const std::vector<std::pair<std::string, double>>& numbers);
 [[nodiscard]] Json status_json(const result::Status& status);
 [[nodiscard]] Json statistics_json(const result::Statistics& statistics);
@@ -26,7 +26,7 @@ template <class Value>
 [[nodiscard]] Json comparison_json(const result::Comparison& comparison);
 [[nodiscard]] Json order_json(const result::OrderStudy& order);
 
-/// A count or an index: a whole number from 0.
+/// Reads a count or an index: a whole number from 0.
 [[nodiscard]] std::size_t read_number(JsonReader& reader, const Json& json, const std::string& path, const char* key);
 void read_numbers(JsonReader& reader, const Json& json, const std::string& path,
                   std::vector<std::pair<std::string, double>>& numbers);
