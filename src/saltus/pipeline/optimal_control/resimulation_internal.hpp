@@ -25,8 +25,8 @@ class Resimulation {
     bool is_complete = false;  ///< it came to its end
     bool was_chosen = false;   ///< the mode at the node is that of the solution, and not what the engine takes
   };
-  /// Simulates from node k with the controls of interval k to its end. The solution from there may not be unique. Then the mode
-  /// that the optimised trajectory has is taken if it is one of those that are possible.
+  /// Simulates from node k with the controls of interval k to its end. The solution from there may not be unique. Then
+  /// the mode that the optimised trajectory has is taken if it is one of those that are possible.
   [[nodiscard]] Segment interval(std::size_t k, const std::function<bool()>& is_interrupted);
   /// Simulates from the first node over the whole horizon, likewise.
   [[nodiscard]] Segment open_loop(const std::function<bool()>& is_interrupted);
