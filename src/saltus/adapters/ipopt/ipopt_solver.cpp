@@ -48,14 +48,9 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status) {
       return {Termination::evaluation_failed, "a function of the problem is not finite"};
     case Ipopt::Insufficient_Memory:
       return {Termination::factorization_failed, "Ipopt ran out of memory"};
-    case Ipopt::Invalid_Problem_Definition:
-    case Ipopt::Invalid_Option:
-    case Ipopt::Unrecoverable_Exception:
-    case Ipopt::NonIpopt_Exception_Thrown:
-    case Ipopt::Internal_Error:
-      break;
+    default:
+      return {Termination::not_converged, "Ipopt ended with an internal error"};
   }
-  return {Termination::not_converged, "Ipopt ended with an internal error"};
 }
 
 /// OpenBLAS spins with as many threads as there are cores, which only costs here: fronts are small.

@@ -56,16 +56,15 @@ class JsonReader {
     if (const auto* json = member(object, path, key)) read(*json, path + "/" + key, target);
   }
 
-  /// Reads a word of a fixed set; `named` gives its value, or nullopt where it is no `what`.
-  template <class Named, class Target>
-  void read_word(const Json& object, const std::string& path, const char* key, Named named, const char* what,
-                 Target& target) {
+  /// Reads a word of a fixed set; words.named gives its value, or nullopt where it is no words.what.
+  template <class Words, class Target>
+  void read_word(const Json& json, const std::string& path, const Words& words, Target& target) {
     std::string word;
-    read_member(object, path, key, word);
-    if (const auto value = named(word)) {
+    read(json, path, word);
+    if (const auto value = words.named(word)) {
       target = *value;
     } else {
-      fail(path + "/" + key, fmt::format("'{}' is no {}", word, what));
+      fail(path, fmt::format("'{}' is no {}", word, words.what));
     }
   }
 
