@@ -1,11 +1,11 @@
 // What the parts of one solution share: limits, log, and the branch that has been found.
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "saltus/base/stopwatch.hpp"
 #include "saltus/solver/certificate/classify.hpp"
 #include "saltus/solver/crossover/branch.hpp"
 #include "saltus/solver/solve.hpp"
@@ -24,7 +24,7 @@ class Run {
  public:
   Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpcc_solver, const SolveOptions& wanted);
 
-  [[nodiscard]] double seconds() const;
+  [[nodiscard]] double seconds() const { return stopwatch_.seconds(); }
   /// Returns whether a limit has been reached or the user wants an end; `stopped` says which.
   [[nodiscard]] bool is_over();
   /// Returns the limits of the next problem.
@@ -50,7 +50,7 @@ class Run {
   bool is_infeasible = false;  ///< a relaxed problem was infeasible
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Stopwatch stopwatch_;
 };
 
 /// Makes one attempt at the path: its start, its first sigma, its steering.

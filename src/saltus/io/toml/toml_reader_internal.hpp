@@ -45,6 +45,8 @@ class TomlReader {
 
   /// Reads the value as a table, or null and an error.
   const TomlTable* table(const TomlValue& value, std::string_view expected);
+  /// Reads the value as tables that begin with [[name]], none and an error where it is not.
+  const TomlArray& tables(const TomlValue& value, std::string_view name);
   /// Reads a number or an expression in quotes; after an error expression::unreadable.
   expression::NodePtr expression(const TomlValue& value);
   /// Reads a part of a string as an expression, for texts that are no expression as a whole; as above.
