@@ -150,4 +150,29 @@ def check_docstring_verbs(root, _table):
     return complaints
 
 
-PROSE_CHECKS = {"comment_sentences": check_comment_sentences, "docstring_verbs": check_docstring_verbs}
+NAMED_FILE = re.compile(r"`((?:[\w-]+/)*[\w-]+\.(?:cpp|hpp|py|toml|sh|cmake)|(?:[\w-]+/)+[\w-]+)/?`")
+NOT_OURS = re.compile(r"tl/|_internal\.hpp")
+
+
+def check_named_files(root, _table):
+    """(p) ARCHITECTURE.md and the READMEs of the modules name files and folders that are there, by the end of their path."""
+    there = set()
+    for top in ("src", "tests", "python", "docs", "scripts", "cmake", "benchmarks", "models"):
+        for path in (root / top).rglob("*"):
+            parts = path.relative_to(root).parts
+            stem = path.stem.removesuffix("_internal")
+            there.update("/".join((*parts[k:-1], name)) for k in range(len(parts)) for name in (path.name, path.stem, stem))
+    complaints = []
+    for page in [root / "ARCHITECTURE.md", *sorted((root / "src" / "saltus").rglob("README.md"))]:
+        for number, line in enumerate(lines_of(page) if page.exists() else [], 1):
+            for name in NAMED_FILE.findall(line):
+                if name not in there and not NOT_OURS.match(name):
+                    complaints.append(f"{page.relative_to(root)}:{number}: there is no {name}")
+    return complaints
+
+
+PROSE_CHECKS = {
+    "comment_sentences": check_comment_sentences,
+    "docstring_verbs": check_docstring_verbs,
+    "named_files": check_named_files,
+}

@@ -293,6 +293,13 @@ class SelfTest(unittest.TestCase):
         ):
             self.assert_complains("docstring_verbs", {name: text + "\n"}, "a.hpp:", "no verb")
 
+    def test_pages_name_files_that_are_there(self):
+        good = "`ode/stepper.cpp`, `stepper.cpp`, `ode/stepper`, `io/hidden`, `src/saltus/ode/`, `tl/expected.hpp`, `a / b`\n"
+        changes = {"ARCHITECTURE.md": good, "src/saltus/ode/README.md": "`stepper.cpp`\n"}
+        self.assertEqual(self.complaints("named_files", changes), [])
+        for bad in ("`stepper.py`", "`io/stepper.cpp`", "`ode/steps`"):
+            self.assert_complains("named_files", {"ARCHITECTURE.md": "one\n" + bad + "\n"}, "ARCHITECTURE.md:2", "there is no")
+
 
 if __name__ == "__main__":
     unittest.main()
