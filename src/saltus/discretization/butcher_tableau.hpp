@@ -6,16 +6,9 @@
 #include <Eigen/Core>
 
 #include "saltus/base/error.hpp"
+#include "saltus/discretization/fesd_options.hpp"
 
 namespace saltus::discretization {
-
-enum class TableauFamily {
-  radau_iia,       ///< collocation at the right Radau points, 1 to 9 stages, order 2s - 1; c_s = 1
-  gauss_legendre,  ///< collocation at the Gauss points, 1 to 9 stages, order 2s; c_s < 1
-  lobatto_iiia,    ///< collocation at the Lobatto points, 2 to 5 stages, order 2s - 2; c_1 = 0, c_s = 1
-  lobatto_iiic,    ///< at the Lobatto points with a_i1 = b_1, 2 to 5 stages, order 2s - 2; c_s = 1
-  explicit_rk,     ///< Euler, midpoint, Kutta, classical: 1 to 4 stages, order s
-};
 
 /// Returns the name of a family in model files.
 [[nodiscard]] std::string_view name(TableauFamily family);

@@ -71,7 +71,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   const Stopwatch stopwatch;
   const bool detected = options.method == Method::fesd;
   const ElementOptions& wanted = detected ? options.fesd : options.timestepping;
-  auto tableau = discretization::butcher_tableau(family(wanted.scheme), static_cast<int>(wanted.stages));
+  auto tableau = discretization::butcher_tableau(wanted.scheme, static_cast<int>(wanted.stages));
   if (!tableau) return tl::unexpected(tableau.error());
   const auto dcs = reformulation::reformulate(system, reformulation_options(wanted));
   if (!dcs) return tl::unexpected(dcs.error());

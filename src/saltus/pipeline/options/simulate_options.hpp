@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "saltus/discretization/fesd_options.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::pipeline {
@@ -52,20 +53,11 @@ struct SmoothedOptions {
   double epsilon = 1e-6;  ///< half width of the layer around every surface, in the units of its switching function
 };
 
-enum class Scheme { radau_iia, gauss_legendre, lobatto_iiia, lobatto_iiic, explicit_rk };
-enum class Representation { integral, differential };
+using Scheme = discretization::TableauFamily;
 enum class Reformulation { step, stewart };
-enum class CrossComplementarity { stage_stage, fe_stage, stage_fe, fe_fe, paper };
-enum class StepEquilibration {
-  none,
-  heuristic_mean,
-  heuristic_diff,
-  l2_relaxed,
-  l2_relaxed_scaled,
-  direct,
-  mlcp,
-  paper
-};
+using discretization::CrossComplementarity;
+using discretization::Representation;
+using discretization::StepEquilibration;
 
 /// Holds [simulate.fesd], [simulate.timestepping].
 struct ElementOptions {
