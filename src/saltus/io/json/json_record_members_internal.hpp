@@ -14,21 +14,23 @@
 namespace saltus::io {
 
 template <>
-inline constexpr Words<result::Termination> words<result::Termination>{result::termination_named, "termination"};
+inline constexpr Words<result::Termination> enum_words<result::Termination>{result::termination_named, "termination"};
 template <>
-inline constexpr Words<result::HomotopyPhase> words<result::HomotopyPhase>{result::homotopy_phase_named, "phase"};
+inline constexpr Words<result::HomotopyPhase> enum_words<result::HomotopyPhase>{result::homotopy_phase_named, "phase"};
 template <>
-inline constexpr Words<result::StationarityType> words<result::StationarityType>{result::stationarity_type_named,
-                                                                                 "type of stationarity"};
+inline constexpr Words<result::StationarityType> enum_words<result::StationarityType>{result::stationarity_type_named,
+                                                                                      "type of stationarity"};
 template <>
-inline constexpr Words<result::SelectionForm> words<result::SelectionForm>{result::selection_form_named,
-                                                                           "form of a selection"};
+inline constexpr Words<result::SelectionForm> enum_words<result::SelectionForm>{result::selection_form_named,
+                                                                                "form of a selection"};
 template <>
-inline constexpr Words<result::SurfaceRole> words<result::SurfaceRole>{result::surface_role_named, "role of a surface"};
+inline constexpr Words<result::SurfaceRole> enum_words<result::SurfaceRole>{result::surface_role_named,
+                                                                            "role of a surface"};
 template <>
-inline constexpr Words<result::FamilyKind> words<result::FamilyKind>{result::family_kind_named, "kind of a family"};
+inline constexpr Words<result::FamilyKind> enum_words<result::FamilyKind>{result::family_kind_named,
+                                                                          "kind of a family"};
 template <>
-inline constexpr Words<result::EventKind> words<result::EventKind>{result::event_kind_named, "kind of event"};
+inline constexpr Words<result::EventKind> enum_words<result::EventKind>{result::event_kind_named, "kind of event"};
 
 template <>
 struct Members<result::Caption> {

@@ -63,7 +63,7 @@ struct Words {
   const char* what;
 };
 template <class Enum>
-inline constexpr Words<Enum> words{};
+inline constexpr Words<Enum> enum_words{};
 
 using Numbers = std::vector<std::pair<std::string, double>>;
 
@@ -164,8 +164,8 @@ void read_value(JsonReader& reader, const Json& json, const std::string& path, V
   if constexpr (Listed<Value>) {
     read_record(reader, json, path, value);
   } else if constexpr (std::is_enum_v<Value>) {
-    static_assert(words<Value>.named != nullptr);
-    reader.read_word(json, path, words<Value>, value);
+    static_assert(enum_words<Value>.named != nullptr);
+    reader.read_word(json, path, enum_words<Value>, value);
   } else if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, std::size_t>) {
     read_count(reader, json, path, value);
   } else if constexpr (is_optional<Value>) {

@@ -127,6 +127,24 @@ void record_choice(const Options& options, std::string_view key, OptionRecord& r
   record.emplace_back(key, std::string(choices.names[at(position - choices.values.begin())]));
 }
 
+/// Makes the rows of options of a simulation that are numbers, counts, truths or words.
+template <auto access, Range range>
+constexpr OptionField number_field(std::string_view key, std::string_view expects, std::string_view doc) {
+  return {key, expects, doc, set_number<access, range>, record_number<access>};
+}
+template <auto access>
+constexpr OptionField count_field(std::string_view key, std::string_view expects, std::string_view doc) {
+  return {key, expects, doc, set_count<access>, record_count<access>};
+}
+template <auto access>
+constexpr OptionField truth_field(std::string_view key, std::string_view expects, std::string_view doc) {
+  return {key, expects, doc, set_truth<access>, record_truth<access>};
+}
+template <auto access, const auto& choices>
+constexpr OptionField choice_field(std::string_view key, std::string_view expects, std::string_view doc) {
+  return {key, expects, doc, set_choice<access, choices>, record_choice<access, choices>};
+}
+
 /// Returns the fields of [simulate.fesd] and [simulate.timestepping].
 [[nodiscard]] std::span<const OptionField> element_fields();
 
