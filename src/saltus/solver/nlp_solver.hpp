@@ -41,8 +41,7 @@ struct NlpReport {
   /// completed (also at the acceptable tolerance), infeasible, iteration_limit, time_limit, stopped_by_user,
   /// evaluation_failed, factorization_failed, step_size_too_small, not_converged.
   result::Termination termination = result::Termination::not_converged;
-  bool acceptable_only = false;  ///< completed, but only to the acceptable tolerance
-  bool diverging = false;        ///< not_converged, since the iterates grow without bounds
+  bool diverging = false;  ///< not_converged, since the iterates grow without bounds
   double objective = 0.0;
   int iterations = 0;
   double evaluation_seconds = 0.0;  ///< spent in functions of the problem

@@ -155,7 +155,6 @@ solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point
     outcome = {Termination::not_converged, "its objective is too large"};
   solver::NlpReport report;
   report.termination = outcome.termination;
-  report.acceptable_only = is_exhausted || status == Ipopt::Solved_To_Acceptable_Level;
   report.diverging = status == Ipopt::Diverging_Iterates;
   report.objective = program->objective();
   report.evaluation_seconds = program->evaluation_seconds();

@@ -117,7 +117,7 @@ void read_vector_field(JsonReader& reader, const Json& json, const std::string& 
 std::optional<bool> is_disc_named(std::string_view name) {
   return name == "disc" ? std::optional(true) : name == "line" ? std::optional(false) : std::nullopt;
 }
-constexpr Words<bool> shape_words{is_disc_named, "kind of what is drawn"};
+constexpr EnumWords<bool> shape_words{is_disc_named, "kind of what is drawn"};
 
 result::DrawnShape read_shape(JsonReader& reader, const Json& json, const std::string& path) {
   result::DrawnShape shape;

@@ -14,54 +14,56 @@
 namespace saltus::io {
 
 template <>
-inline constexpr Words<result::Termination> enum_words<result::Termination>{result::termination_named, "termination"};
+inline constexpr EnumWords<result::Termination> enum_words<result::Termination>{result::termination_named,
+                                                                                "termination"};
 template <>
-inline constexpr Words<result::HomotopyPhase> enum_words<result::HomotopyPhase>{result::homotopy_phase_named, "phase"};
+inline constexpr EnumWords<result::HomotopyPhase> enum_words<result::HomotopyPhase>{result::homotopy_phase_named,
+                                                                                    "phase"};
 template <>
-inline constexpr Words<result::StationarityType> enum_words<result::StationarityType>{result::stationarity_type_named,
-                                                                                      "type of stationarity"};
+inline constexpr EnumWords<result::StationarityType> enum_words<result::StationarityType>{
+    result::stationarity_type_named, "type of stationarity"};
 template <>
-inline constexpr Words<result::SelectionForm> enum_words<result::SelectionForm>{result::selection_form_named,
-                                                                                "form of a selection"};
+inline constexpr EnumWords<result::SelectionForm> enum_words<result::SelectionForm>{result::selection_form_named,
+                                                                                    "form of a selection"};
 template <>
-inline constexpr Words<result::SurfaceRole> enum_words<result::SurfaceRole>{result::surface_role_named,
-                                                                            "role of a surface"};
+inline constexpr EnumWords<result::SurfaceRole> enum_words<result::SurfaceRole>{result::surface_role_named,
+                                                                                "role of a surface"};
 template <>
-inline constexpr Words<result::FamilyKind> enum_words<result::FamilyKind>{result::family_kind_named,
-                                                                          "kind of a family"};
+inline constexpr EnumWords<result::FamilyKind> enum_words<result::FamilyKind>{result::family_kind_named,
+                                                                              "kind of a family"};
 template <>
-inline constexpr Words<result::EventKind> enum_words<result::EventKind>{result::event_kind_named, "kind of event"};
+inline constexpr EnumWords<result::EventKind> enum_words<result::EventKind>{result::event_kind_named, "kind of event"};
 
 template <>
-struct Members<result::Caption> {
+struct RecordMembers<result::Caption> {
   using R = result::Caption;
   static constexpr auto list =
       std::make_tuple(field("unit", &R::unit, Presence::later), field("label", &R::label, Presence::later));
 };
 
 template <>
-struct Members<result::NamedFile> {
+struct RecordMembers<result::NamedFile> {
   using R = result::NamedFile;
   static constexpr auto list =
       std::make_tuple(field("name", &R::name), field("sha256", &R::sha256), field("text", &R::text));
 };
 
 template <>
-struct Members<result::StatedEquation> {
+struct RecordMembers<result::StatedEquation> {
   using R = result::StatedEquation;
   static constexpr auto list =
       std::make_tuple(field("left", &R::left), field("right", &R::right), field("where", &R::where, Presence::later));
 };
 
 template <>
-struct Members<result::Status> {
+struct RecordMembers<result::Status> {
   using R = result::Status;
   static constexpr auto list = std::make_tuple(field("termination", &R::termination), field("message", &R::message),
                                                field("time_reached", &R::time_reached));
 };
 
 template <>
-struct Members<result::Statistics> {
+struct RecordMembers<result::Statistics> {
   using R = result::Statistics;
   static constexpr auto list = std::make_tuple(
       field("steps", &R::steps), field("rejected", &R::rejected), field("rhs_evaluations", &R::rhs_evaluations),
@@ -69,13 +71,13 @@ struct Members<result::Statistics> {
 };
 
 template <>
-struct Members<result::RegionGroup> {
+struct RecordMembers<result::RegionGroup> {
   using R = result::RegionGroup;
   static constexpr auto list = std::make_tuple(field("name", &R::name), field("modes", &R::modes));
 };
 
 template <>
-struct Members<result::Final> {
+struct RecordMembers<result::Final> {
   using R = result::Final;
   static constexpr auto list = std::make_tuple(
       field("t", &R::t), field("x", &R::x), field("mode", &R::mode), field("alpha", &R::alpha),
@@ -84,14 +86,14 @@ struct Members<result::Final> {
 };
 
 template <>
-struct Members<result::Alternative> {
+struct RecordMembers<result::Alternative> {
   using R = result::Alternative;
   static constexpr auto list = std::make_tuple(field("mode", &R::mode), field("alpha", &R::alpha),
                                                field("regions", &R::regions, Presence::if_any));
 };
 
 template <>
-struct Members<result::Intersection> {
+struct RecordMembers<result::Intersection> {
   using R = result::Intersection;
   static constexpr auto list =
       std::make_tuple(field("surfaces", &R::surfaces), field("velocities", &R::velocities),
@@ -99,7 +101,7 @@ struct Members<result::Intersection> {
 };
 
 template <>
-struct Members<result::Event> {
+struct RecordMembers<result::Event> {
   using R = result::Event;
   static constexpr auto list = std::make_tuple(
       field("t", &R::t), field("kind", &R::kind), field("name", &R::name), field("surfaces", &R::surfaces),
@@ -115,7 +117,7 @@ struct Members<result::Event> {
 };
 
 template <>
-struct Members<result::Trajectory> {
+struct RecordMembers<result::Trajectory> {
   using R = result::Trajectory;
   static constexpr auto list = std::make_tuple(
       field("t", &R::t), field("x", &R::x), field("u", &R::u), field("alpha", &R::alpha), field("mode", &R::mode),
@@ -124,7 +126,7 @@ struct Members<result::Trajectory> {
 };
 
 template <>
-struct Members<result::Family> {
+struct RecordMembers<result::Family> {
   using R = result::Family;
   static constexpr auto list = std::make_tuple(field("kind", &R::kind), field("event", &R::event),
                                                field("from", &R::from), field("until", &R::until), field("to", &R::to),
@@ -132,20 +134,20 @@ struct Members<result::Family> {
 };
 
 template <>
-struct Members<result::AffineSurface> {
+struct RecordMembers<result::AffineSurface> {
   using R = result::AffineSurface;
   static constexpr auto list =
       std::make_tuple(field("gradient", &R::gradient), field("rate", &R::rate), field("constant", &R::constant));
 };
 
 template <>
-struct Members<result::SurfaceCurve> {
+struct RecordMembers<result::SurfaceCurve> {
   using R = result::SurfaceCurve;
   static constexpr auto list = std::make_tuple(field("t", &R::t), field("coordinates", &R::coordinates));
 };
 
 template <>
-struct Members<result::Surface> {
+struct RecordMembers<result::Surface> {
   using R = result::Surface;
   static constexpr auto list =
       std::make_tuple(field("name", &R::name), field("role", &R::role), field("states", &R::states),
@@ -154,34 +156,34 @@ struct Members<result::Surface> {
 };
 
 template <>
-struct Members<result::Arrows> {
+struct RecordMembers<result::Arrows> {
   using R = result::Arrows;
   static constexpr auto list =
       std::make_tuple(field("x", &R::x), field("y", &R::y), field("dx", &R::dx), field("dy", &R::dy));
 };
 
 template <>
-struct Members<result::VectorField> {
+struct RecordMembers<result::VectorField> {
   using R = result::VectorField;
   static constexpr auto list = std::make_tuple(field("t", &R::t), field("free", &R::free), field("sides", &R::sides),
                                                field("sliding", &R::sliding));
 };
 
 template <>
-struct Members<result::Sensitivities> {
+struct RecordMembers<result::Sensitivities> {
   using R = result::Sensitivities;
   static constexpr auto list =
       std::make_tuple(field("x0", &R::x0), field("p", &R::p), field("parameters", &R::parameters));
 };
 
 template <>
-struct Members<result::ElementSelection> {
+struct RecordMembers<result::ElementSelection> {
   using R = result::ElementSelection;
   static constexpr auto list = std::make_tuple(field("name", &R::name), field("form", &R::form));
 };
 
 template <>
-struct Members<result::Elements> {
+struct RecordMembers<result::Elements> {
   using R = result::Elements;
   static constexpr auto list =
       std::make_tuple(field("points", &R::points), field("selections", &R::selections), field("t", &R::t),
@@ -189,7 +191,7 @@ struct Members<result::Elements> {
 };
 
 template <>
-struct Members<result::ComparedRun> {
+struct RecordMembers<result::ComparedRun> {
   using R = result::ComparedRun;
   static constexpr auto list = std::make_tuple(
       field("method", &R::method), field("variant", &R::variant), field("reason", &R::reason, Presence::if_any),
@@ -199,7 +201,7 @@ struct Members<result::ComparedRun> {
 };
 
 template <>
-struct Members<result::OrderPoint> {
+struct RecordMembers<result::OrderPoint> {
   using R = result::OrderPoint;
   static constexpr auto list =
       std::make_tuple(field("steps", &R::steps), field("mean_step", &R::mean_step), field("error", &R::error),
@@ -208,7 +210,7 @@ struct Members<result::OrderPoint> {
 };
 
 template <>
-struct Members<result::OrderSeries> {
+struct RecordMembers<result::OrderSeries> {
   using R = result::OrderSeries;
   static constexpr auto list =
       std::make_tuple(field("method", &R::method), field("scheme", &R::scheme), field("stages", &R::stages),
@@ -217,14 +219,14 @@ struct Members<result::OrderSeries> {
 };
 
 template <>
-struct Members<result::OrderStudy> {
+struct RecordMembers<result::OrderStudy> {
   using R = result::OrderStudy;
   static constexpr auto list = std::make_tuple(field("reference", &R::reference), field("floor", &R::floor),
                                                field("time_floor", &R::time_floor), field("series", &R::series));
 };
 
 template <>
-struct Members<result::ObjectiveTerms> {
+struct RecordMembers<result::ObjectiveTerms> {
   using R = result::ObjectiveTerms;
   static constexpr auto list = std::make_tuple(field("running", &R::running), field("terminal", &R::terminal),
                                                field("least_squares", &R::least_squares), field("time", &R::time),
@@ -232,14 +234,14 @@ struct Members<result::ObjectiveTerms> {
 };
 
 template <>
-struct Members<result::ConstraintMultiplier> {
+struct RecordMembers<result::ConstraintMultiplier> {
   using R = result::ConstraintMultiplier;
   static constexpr auto list =
       std::make_tuple(field("name", &R::name), field("time", &R::time), field("value", &R::value));
 };
 
 template <>
-struct Members<result::HomotopyStep> {
+struct RecordMembers<result::HomotopyStep> {
   using R = result::HomotopyStep;
   static constexpr auto list = std::make_tuple(
       field("phase", &R::phase), field("solver", &R::solver), field("sigma", &R::sigma),
@@ -250,7 +252,7 @@ struct Members<result::HomotopyStep> {
 };
 
 template <>
-struct Members<result::Certificate> {
+struct RecordMembers<result::Certificate> {
   using R = result::Certificate;
   static constexpr auto list = std::make_tuple(
       field("primal_infeasibility", &R::primal_infeasibility),
@@ -260,7 +262,7 @@ struct Members<result::Certificate> {
 };
 
 template <>
-struct Members<result::OpenLoop> {
+struct RecordMembers<result::OpenLoop> {
   using R = result::OpenLoop;
   static constexpr auto list = std::make_tuple(
       field("end_state_error", &R::end_state_error), field("terminal_violation", &R::terminal_violation),
@@ -269,13 +271,13 @@ struct Members<result::OpenLoop> {
 };
 
 template <>
-struct Members<result::Penetration> {
+struct RecordMembers<result::Penetration> {
   using R = result::Penetration;
   static constexpr auto list = std::make_tuple(field("solution", &R::solution), field("simulation", &R::simulation));
 };
 
 template <>
-struct Members<result::Verification> {
+struct RecordMembers<result::Verification> {
   using R = result::Verification;
   static constexpr auto list = std::make_tuple(
       field("tolerance", &R::tolerance), field("interval_defect", &R::interval_defect),
@@ -287,7 +289,7 @@ struct Members<result::Verification> {
 };
 
 template <>
-struct Members<result::OptimizationStatistics> {
+struct RecordMembers<result::OptimizationStatistics> {
   using R = result::OptimizationStatistics;
   static constexpr auto list = std::make_tuple(
       field("iterations", &R::iterations), field("variables", &R::variables), field("equations", &R::equations),
@@ -297,14 +299,14 @@ struct Members<result::OptimizationStatistics> {
 };
 
 template <>
-struct Members<result::MpccMultipliers> {
+struct RecordMembers<result::MpccMultipliers> {
   using R = result::MpccMultipliers;
   static constexpr auto list = std::make_tuple(field("rows", &R::rows), field("lower", &R::lower),
                                                field("upper", &R::upper), field("G", &R::G), field("H", &R::H));
 };
 
 template <>
-struct Members<result::Optimization> {
+struct RecordMembers<result::Optimization> {
   using R = result::Optimization;
   static constexpr auto list = std::make_tuple(
       field("objective", &R::objective), field("objective_terms", &R::terms), field("horizon", &R::horizon),

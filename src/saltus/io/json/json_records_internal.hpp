@@ -25,25 +25,25 @@ enum class Presence {
 };
 
 template <class Record, class Value>
-struct Member {
+struct RecordMember {
   const char* name;
   Value Record::*place;
   Presence presence;
 };
 
 template <class Record, class Value>
-[[nodiscard]] constexpr Member<Record, Value> field(const char* name, Value Record::*place,
-                                                    Presence presence = Presence::always) {
+[[nodiscard]] constexpr RecordMember<Record, Value> field(const char* name, Value Record::*place,
+                                                          Presence presence = Presence::always) {
   return {name, place, presence};
 }
 
-/// Has the members of a record, in the order of the file, as `list`: a tuple of Member.
+/// Has the members of a record, in the order of the file, as `list`: a tuple of RecordMember.
 template <class Record>
-struct Members;
+struct RecordMembers;
 
 template <class Value>
 concept Listed = requires {
-  Members<Value>::list;
+  RecordMembers<Value>::list;
 };
 
 template <class Value>
@@ -58,12 +58,12 @@ concept ListOfWords = std::is_enum_v<typename List::value_type>;
 
 /// Reads the words of an enum, a value of which messages call `what`.
 template <class Enum>
-struct Words {
+struct EnumWords {
   std::optional<Enum> (*named)(std::string_view word);
   const char* what;
 };
 template <class Enum>
-inline constexpr Words<Enum> enum_words{};
+inline constexpr EnumWords<Enum> enum_words{};
 
 using Numbers = std::vector<std::pair<std::string, double>>;
 
@@ -108,7 +108,7 @@ template <class Value>
 }
 
 template <class Record, class Value>
-void write_member(Json& json, const Record& record, const Member<Record, Value>& member) {
+void write_member(Json& json, const Record& record, const RecordMember<Record, Value>& member) {
   const Value& value = record.*member.place;
   if (member.presence == Presence::if_any && is_empty(value)) return;
   if constexpr (std::is_same_v<Value, int>) {
@@ -128,7 +128,7 @@ template <class Record, class List>
 
 template <class Record>
 Json record_json(const Record& record) {
-  return members_json(record, Members<Record>::list);
+  return members_json(record, RecordMembers<Record>::list);
 }
 
 /// Reads a count or an index: a whole number from 0.
@@ -198,8 +198,8 @@ void read_part_if_there(JsonReader& reader, const Json& json, const std::string&
 }
 
 template <class Record, class Value>
-void read_one_member(JsonReader& reader, const Json& json, const std::string& path, const Member<Record, Value>& member,
-                     Record& record) {
+void read_one_member(JsonReader& reader, const Json& json, const std::string& path,
+                     const RecordMember<Record, Value>& member, Record& record) {
   auto& value = record.*member.place;
   switch (member.presence) {
     case Presence::always:
@@ -222,7 +222,7 @@ void read_members(JsonReader& reader, const Json& json, const std::string& path,
 
 template <class Record>
 void read_record(JsonReader& reader, const Json& json, const std::string& path, Record& record) {
-  read_members(reader, json, path, Members<Record>::list, record);
+  read_members(reader, json, path, RecordMembers<Record>::list, record);
 }
 
 }  // namespace saltus::io

@@ -144,7 +144,6 @@ class RowList {
       upper_.push_back(upper);
       return;
     }
-    reduction_.dead_rows.push_back(row);
   }
   void finish() {
     reduction_.row_bounds.lower = Eigen::Map<const Eigen::VectorXd>(lower_.data(), index(lower_.size()));

@@ -26,7 +26,6 @@ struct Reduction {
   mpcc::Bounds bounds;      ///< of each place
   std::vector<int> rows;    ///< of (g, G, H) that are left
   mpcc::Bounds row_bounds;
-  std::vector<int> dead_rows;  ///< of g and zero sides: without any free variable; they hold or they do not
 
   [[nodiscard]] int variables() const { return static_cast<int>(leader.size()); }
   [[nodiscard]] int equations() const;
