@@ -272,6 +272,34 @@ class SelfTest(unittest.TestCase):
         for prose in ("states, controls, ...", "What it sets …", "… and their values", "{ initial = … }", "if(...)"):
             self.assert_sentences(f"int a;  ///< {prose}\n", "an ellipsis")
 
+    def test_docstrings_begin_with_a_verb(self):
+        name = "src/saltus/ode/a.hpp"
+        for text in (
+            "/// Returns the time.\n[[nodiscard]] double time() const;",
+            "/// A LongName holds states.\nstruct LongName {",
+            "/// The kernel must outlive it.\nexplicit A(const Kernel& kernel);",
+            "/// Cost: n.\ndouble f();\n/// @param n  states\ndouble g(int n);",
+            "/// The number of states.\ninline constexpr int states = 3;\n/// Of any number.\nusing Number = double;",
+            "/// Called often.\nstd::function<void(int)> often;",
+            "class A {\n public:\n  void f();\n\n private:\n  /// The time.\n  double time();\n};",
+        ):
+            self.assertEqual(self.complaints("docstring_verbs", {name: text + "\n"}), [], text)
+        for text in (
+            "/// The time.\n[[nodiscard]] double time() const;",
+            "/// Names of states.\ntemplate <class T> std::vector<T> names();",
+            "/// Where it holds.\nenum class Place { path };",
+            "class A {\n  double a_;\n\n private:\n  void g();\n};\n/// The time.\ndouble time();",
+            "class A {\n private:\n  void g();\n\n public:\n  /// The time.\n  double time();\n};",
+        ):
+            self.assert_complains("docstring_verbs", {name: text + "\n"}, "a.hpp:", "no verb")
+
+    def test_pages_name_files_that_are_there(self):
+        good = "`ode/stepper.cpp`, `stepper.cpp`, `ode/stepper`, `io/hidden`, `src/saltus/ode/`, `tl/expected.hpp`, `a / b`\n"
+        changes = {"ARCHITECTURE.md": good, "src/saltus/ode/README.md": "`stepper.cpp`\n"}
+        self.assertEqual(self.complaints("named_files", changes), [])
+        for bad in ("`stepper.py`", "`io/stepper.cpp`", "`ode/steps`"):
+            self.assert_complains("named_files", {"ARCHITECTURE.md": "one\n" + bad + "\n"}, "ARCHITECTURE.md:2", "there is no")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -6,15 +6,15 @@
 
 namespace saltus {
 
-/// The place i >= 0 in a container, where i is what the model or a matrix counts with: values[at(i)].
-/// Not checked.
+/// Returns the place i >= 0 in a container, where i is what the model or a matrix counts with: values[at(i)]. Not
+/// checked.
 template <std::signed_integral Integer>
 [[nodiscard]] constexpr std::size_t at(Integer i) {
   return static_cast<std::size_t>(i);
 }
 
-/// The number i that a matrix counts with, of the place i in a container: matrix.row(index(i)); an Eigen::Index.
-/// Not checked.
+/// Returns the number i that a matrix counts with, of the place i in a container: matrix.row(index(i)); an
+/// Eigen::Index. Not checked.
 [[nodiscard]] constexpr std::ptrdiff_t index(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
 
 }  // namespace saltus

@@ -8,13 +8,13 @@
 
 namespace saltus {
 
-/// Disjoint sets of 0, 1, ..., n - 1 under union by the smallest member, with paths halved: m operations cost
+/// Holds disjoint sets of 0, 1, ..., n - 1 under union by the smallest member, with paths halved: m operations cost
 /// O((m + n) log n).
 class Components {
  public:
   explicit Components(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
 
-  /// The smallest member of the component of k.
+  /// Returns the smallest member of the component of k.
   [[nodiscard]] std::size_t first(std::size_t k) {
     while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
     return k;
@@ -26,7 +26,7 @@ class Components {
     if (b < a) std::swap(a, b);
     parent_[b] = a;
   }
-  /// All components, by their smallest members; members ascend.
+  /// Returns all components, by their smallest members; members ascend.
   [[nodiscard]] std::vector<std::vector<std::size_t>> lists() {
     std::vector<std::vector<std::size_t>> found;
     std::vector<std::size_t> place(parent_.size());

@@ -9,7 +9,7 @@
 
 namespace saltus {
 
-/// A place in a text file; line and column count from 1, 0 means unknown.
+/// Holds a place in a text file; line and column count from 1, 0 means unknown.
 struct SourceLocation {
   std::string file;
   int line = 0;
@@ -25,7 +25,7 @@ enum class ErrorCode {
   io_failure,        ///< a file that cannot be read or written
 };
 
-/// Bad input (lane 2 of the three error lanes): reported to the user, mapped to exit code 2.
+/// Holds bad input (lane 2 of the three error lanes): reported to the user, mapped to exit code 2.
 struct Error {
   ErrorCode code = ErrorCode::invalid_model;
   std::string message;               ///< what was expected and what was found
@@ -43,15 +43,16 @@ using Expected = tl::expected<T, Error>;
   return error;
 }
 
-/// "file:line:column: error: message", trail and remedy, a line each; control characters as \xNN, parts <= 2000 bytes.
+/// Returns "file:line:column: error: message", trail and remedy, a line each; control characters as \xNN, parts <= 2000
+/// bytes.
 [[nodiscard]] std::string to_text(const Error& error);
 
-/// The known names nearest to `name` by edit distance, best first, at most three; for "did you mean" remedies. Where none
-/// is near, those that begin with it, or with which it begins.
+/// Returns the known names nearest to `name` by edit distance, best first, at most three; for "did you mean" remedies.
+/// Where none is near, those that begin with it, or with which it begins.
 [[nodiscard]] std::vector<std::string> nearest_names(const std::string& name,
                                                      const std::vector<std::string>& known);
 
-/// "did you mean 'a' or 'b'?" or, if nothing is near, "known: a, b, c"; empty if nothing is known.
+/// Returns "did you mean 'a' or 'b'?" or, if nothing is near, "known: a, b, c"; empty if nothing is known.
 [[nodiscard]] std::string suggest(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace saltus

@@ -5,7 +5,7 @@
 
 namespace saltus {
 
-/// Whether both places are known, and the same.
+/// Returns whether both places are known, and the same.
 [[nodiscard]] inline bool same_place(const SourceLocation& a, const SourceLocation& b) {
   return a.line > 0 && a.line == b.line && a.column == b.column && a.file == b.file;
 }

@@ -14,20 +14,20 @@ struct CatalogueEntry {
   std::filesystem::path file;
 };
 
-/// Where models and plotly.min.js are, if not in <executable>/../share/saltus: beside a library that is no program of
-/// its own.
+/// Says where models and plotly.min.js are, if not in <executable>/../share/saltus: beside a library that is no program
+/// of its own.
 void set_shared_folder(const std::filesystem::path& folder);
 
-/// All models of the catalogue by name, from $SALTUS_MODELS, then <executable>/../share/saltus/models, then the source
-/// tree; the first of a name counts.
+/// Returns all models of the catalogue by name, from $SALTUS_MODELS, then <executable>/../share/saltus/models, then the
+/// source tree; the first of a name counts.
 [[nodiscard]] std::vector<CatalogueEntry> catalogue();
 
-/// MODEL of the command line: a path, or the name of a catalogue entry.
+/// Returns the file that MODEL of the command line means: a path, or the name of a catalogue entry.
 /// @return the file, or unknown_name with the nearest names.
 [[nodiscard]] Expected<std::filesystem::path> find_model(const std::string& model);
 
-/// The text of plotly.min.js, from $SALTUS_PLOTLY, then <executable>/../share/saltus, then the virtual environment of
-/// the source tree: the small one, or the one of the wheel.
+/// Returns the text of plotly.min.js, from $SALTUS_PLOTLY, then <executable>/../share/saltus, then the virtual
+/// environment of the source tree: the small one, or the one of the wheel.
 [[nodiscard]] Expected<std::string> plotly_source();
 
 }  // namespace saltus::cli

@@ -32,11 +32,12 @@ struct Command {
 [[nodiscard]] Command add_cite(CLI::App& app);
 [[nodiscard]] Command add_schema(CLI::App& app);
 [[nodiscard]] Command add_completion(CLI::App& app);
-/// Hidden: names of the catalogue, or of a model's values, one a line, for completion; never fails on a broken model.
+/// Is hidden: names of the catalogue, or of a model's values, one a line, for completion; never fails on a broken
+/// model.
 [[nodiscard]] Command add_complete_names(CLI::App& app);
-/// Hidden: saltus(1) for man.
+/// Is hidden: saltus(1) for man.
 [[nodiscard]] Command add_man_page(CLI::App& app);
-/// Hidden: prints docs/options.md.
+/// Is hidden: prints docs/options.md.
 [[nodiscard]] Command add_options_page(CLI::App& app);
 
 }  // namespace saltus::cli

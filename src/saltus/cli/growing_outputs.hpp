@@ -27,9 +27,9 @@ class GrowingOutputs {
       : names_(std::move(names)), format_(std::move(format)), most_(events) {}
 
   [[nodiscard]] bool begun() const { return !files_.empty(); }
-  /// False if something could not be written: a run need not go on.
+  /// Returns false if something could not be written: a run need not go on.
   bool add(const result::Result& part);
-  /// The first and the last events.
+  /// Returns the first and the last events.
   [[nodiscard]] result::Events ends() const;
   /// Writes the rest and puts the files in their places; returns the first failure.
   /// @param watch  called before each piece with the name of the file; false ends the writing, and removes the file

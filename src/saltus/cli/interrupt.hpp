@@ -3,10 +3,10 @@
 
 namespace saltus::cli {
 
-/// From now on the first SIGINT only makes `interrupted` true; the next one ends the process as if nothing was set.
+/// Lets the first SIGINT only make `interrupted` true; the next one ends the process as if nothing was set.
 void catch_interrupt();
 
-/// Whether SIGINT arrived since catch_interrupt.
+/// Returns whether SIGINT arrived since catch_interrupt.
 [[nodiscard]] bool interrupted();
 
 }  // namespace saltus::cli

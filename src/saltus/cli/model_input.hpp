@@ -32,18 +32,18 @@ struct ModelInput {
 [[nodiscard]] Expected<ModelInput> read_input(const std::string& model, const std::vector<std::string>& settings);
 [[nodiscard]] Expected<ModelInput> read_input(const ModelText& text, const std::vector<std::string>& settings);
 
-/// One of these settings, which is noted.
+/// Applies one of these settings, which is noted.
 [[nodiscard]] Expected<void> apply_setting(ModelInput& input, const std::string& setting);
 
-/// Which given options say nothing to the method that runs, as warnings. A file may hold the tables of several methods;
-/// what is typed, and what stands in the table of this one, is meant.
+/// Returns which given options say nothing to the method that runs, as warnings. A file may hold the tables of several
+/// methods; what is typed, and what stands in the table of this one, is meant.
 [[nodiscard]] std::vector<std::string> options_without_effect(const io::ModelFile& file);
 
-/// What a simulation cannot know: what it takes to run it again (text of the model, files, settings, the call), and the
-/// inputs as they were written.
+/// Adds what a simulation cannot know: what it takes to run it again (text of the model, files, settings, the call),
+/// and the inputs as they were written.
 void complete_record(const ModelInput& input, result::Result& result);
 
-/// Arguments as a shell reads them.
+/// Writes arguments as a shell reads them.
 [[nodiscard]] std::string command_line(const std::vector<std::string>& arguments);
 
 }  // namespace saltus::cli

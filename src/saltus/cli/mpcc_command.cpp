@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "saltus/base/stopwatch.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/outputs.hpp"
@@ -149,7 +149,7 @@ ExitCode finish(const MpccArguments& arguments, const result::MpccResult& result
 ExitCode run_mpcc(const MpccArguments& arguments) {
   auto options = options_of(arguments);
   if (!options) return refuse(options.error());
-  const auto began = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const auto text = io::read_file(arguments.file);
   if (!text) return refuse(text.error());
   auto problem = foreign::parse(*text, arguments.file, names_beside(arguments.file));
@@ -165,7 +165,7 @@ ExitCode run_mpcc(const MpccArguments& arguments) {
   if (!arguments.quiet) {
     for (const auto& note : (*problem)->notes()) print_error(fmt::format("note: {}: {}", arguments.file, note));
   }
-  const std::chrono::duration<double> building = std::chrono::steady_clock::now() - began;
+  const double building = stopwatch.seconds();
 
   catch_interrupt();
   options->is_interrupted = interrupted;
@@ -177,7 +177,7 @@ ExitCode run_mpcc(const MpccArguments& arguments) {
   }
   result->file = arguments.file;
   result->sha256 = io::sha256(*text);
-  result->statistics.build_seconds = building.count();
+  result->statistics.build_seconds = building;
   return finish(arguments, *result);
 }
 

@@ -7,10 +7,10 @@
 
 namespace saltus::cli {
 
-/// What the numerical method does not know: complete_record, and the problem as it was written.
+/// Adds what the numerical method does not know: complete_record, and the problem as it was written.
 void complete_optimum(const ModelInput& input, result::Result& result);
 
-/// The surfaces of the model with the parameters that were found.
+/// Adds the surfaces of the model with the parameters that were found.
 void add_surfaces(const model::Ocp& ocp, result::Result& result);
 
 }  // namespace saltus::cli

@@ -19,7 +19,7 @@ enum class Written {
   interrupted,  ///< by Ctrl-C: of the file under way nothing is left, the ones before it are complete
 };
 
-/// What was typed of files.
+/// Holds what was typed of files.
 struct OutputNames {
   std::vector<std::string> files{};        ///< of --out; - is standard output
   std::string format{};                    ///< of --format, for standard output: a suffix without its point
@@ -28,7 +28,7 @@ struct OutputNames {
   std::vector<std::string> suffixes{};     ///< that files of --out may have: .json, .csv, .npz
 };
 
-/// The outputs of one run; exists only if all of them can be written.
+/// Holds the outputs of one run; exists only if all of them can be written.
 class Outputs {
  public:
   /// @param input     file that is read and must not be overwritten
@@ -36,12 +36,12 @@ class Outputs {
   ///         plotly missing.
   [[nodiscard]] static Expected<Outputs> make(const OutputNames& names, const std::string& input);
 
-  /// Whether any of them has the surfaces of the model in it.
+  /// Returns whether any of them has the surfaces of the model in it.
   [[nodiscard]] bool show_surfaces() const;
-  /// Whether standard output has one of them, and nothing else.
+  /// Returns whether standard output has one of them, and nothing else.
   [[nodiscard]] bool fill_standard_output() const;
 
-  /// These outputs as files that grow while a run goes on; nullopt where one of them needs the whole result.
+  /// Returns these outputs as files that grow while a run goes on; nullopt where one of them needs the whole result.
   /// @param events  of the table, at each end
   [[nodiscard]] std::optional<GrowingOutputs> growing(std::size_t events) const;
   /// Ends them as write() does.

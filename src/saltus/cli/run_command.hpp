@@ -24,7 +24,7 @@ class App;
 
 namespace saltus::cli {
 
-/// A flag that is short for --set KEY=VALUE.
+/// Holds a flag that is short for --set KEY=VALUE.
 struct Shortcut {
   const char* flag;
   const char* key;
@@ -46,10 +46,10 @@ inline constexpr std::array simulate_shortcuts{
              "report, all or K: follow other admissible motions, at most K trajectories"},
 };
 
-/// Whether a command runs the method that was chosen, or several.
+/// Says whether a command runs the method that was chosen, or several.
 enum class RunMethods { chosen, several };
 
-/// What was typed behind one of these commands.
+/// Holds what was typed behind one of these commands.
 struct RunArguments {
   std::string model;
   std::vector<std::pair<Shortcut, std::optional<std::string>>> shortcuts;
@@ -65,7 +65,7 @@ struct RunArguments {
 /// @param arguments  filled when the command line is parsed; must stay where it is
 void add_model_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts);
 
-/// The model with the settings and shortcuts applied.
+/// Returns the model with the settings and shortcuts applied.
 [[nodiscard]] Expected<ModelInput> stated_model(const RunArguments& arguments);
 
 /// Adds MODEL, the shortcuts, --set, --out, --report and --quiet to a command.
@@ -74,7 +74,7 @@ void add_model_options(CLI::App& command, RunArguments& arguments, std::span<con
 void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts,
                      const std::vector<std::string>& suffixes, const std::string& out_help);
 
-/// Whether to show a line of progress on a terminal.
+/// Returns whether to show a line of progress on a terminal.
 [[nodiscard]] inline ShowProgress progress_of(const RunArguments& arguments) {
   return arguments.quiet ? ShowProgress::never : ShowProgress::when_terminal;
 }
@@ -82,7 +82,7 @@ void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const
 /// Applies what was typed beside --set, and notes it as settings.
 [[nodiscard]] Expected<void> apply_shortcuts(const RunArguments& arguments, ModelInput& input);
 
-/// The call, without what says where its results go.
+/// Returns the call, without what says where its results go.
 [[nodiscard]] std::string call_of(const char* command, const RunArguments& arguments);
 
 using Compute = FunctionRef<Expected<result::Result>(const model::System&, const pipeline::SimulateOptions&,

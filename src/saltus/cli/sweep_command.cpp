@@ -130,6 +130,18 @@ ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs) {
   return ExitCode::stopped_early;
 }
 
+/// Shows on a terminal how many runs are done.
+pipeline::SweepObservers sweep_observers(const SweepArguments& arguments, std::size_t count) {
+  pipeline::SweepObservers observers;
+  observers.is_interrupted = interrupted;
+  if (arguments.run.quiet || ::isatty(STDERR_FILENO) != 1) return observers;
+  observers.on_run = [count, every = std::max<std::size_t>(1, count / 200)](std::size_t done) {
+    if (done % every == 0) fmt::print(stderr, "\r{} of {} runs", done, count);
+    if (done == count) fmt::print(stderr, "\r{:40}\r", "");
+  };
+  return observers;
+}
+
 ExitCode run_sweep(const SweepArguments& arguments) {
   if (arguments.run.model.empty()) return refuse(misuse("MODEL is missing", "see: saltus help sweep"));
   const auto plan = SweepPlan::make(arguments.request);
@@ -149,16 +161,7 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   if (!share) return refuse(share.error());
   const std::size_t begin = share->begin(plan->runs()), count = share->end(plan->runs()) - begin;
   catch_interrupt();
-  pipeline::SweepObservers observers;
-  observers.is_interrupted = interrupted;
-  const bool shown = !arguments.run.quiet && ::isatty(STDERR_FILENO) == 1;
-  const std::size_t every = std::max<std::size_t>(1, count / 200);
-  if (shown) {
-    observers.on_run = [&](std::size_t done) {
-      if (done % every == 0) fmt::print(stderr, "\r{} of {} runs", done, count);
-      if (done == count) fmt::print(stderr, "\r{:40}\r", "");
-    };
-  }
+  const auto observers = sweep_observers(arguments, count);
   const auto state = [&](std::size_t run) { return state_run(*model, *plan, begin + run); };
   const auto runs = pipeline::sweep({count, *keep, *jobs, begin}, state, observers);
   if (!runs) return refuse(io::located(runs.error(), model->file));

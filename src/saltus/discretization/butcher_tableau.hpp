@@ -6,21 +6,14 @@
 #include <Eigen/Core>
 
 #include "saltus/base/error.hpp"
+#include "saltus/discretization/fesd_options.hpp"
 
 namespace saltus::discretization {
 
-enum class TableauFamily {
-  radau_iia,       ///< collocation at the right Radau points, 1 to 9 stages, order 2s - 1; c_s = 1
-  gauss_legendre,  ///< collocation at the Gauss points, 1 to 9 stages, order 2s; c_s < 1
-  lobatto_iiia,    ///< collocation at the Lobatto points, 2 to 5 stages, order 2s - 2; c_1 = 0, c_s = 1
-  lobatto_iiic,    ///< at the Lobatto points with a_i1 = b_1, 2 to 5 stages, order 2s - 2; c_s = 1
-  explicit_rk,     ///< Euler, midpoint, Kutta, classical: 1 to 4 stages, order s
-};
-
-/// The name of a family in model files.
+/// Returns the name of a family in model files.
 [[nodiscard]] std::string_view name(TableauFamily family);
 
-/// x_1 = x_0 + h sum_i b_i k_i,   k_i = f(t_0 + c_i h, x_0 + h sum_j a_ij k_j)   (eq. (33) of [nurkanovic2024]).
+/// Holds x_1 = x_0 + h sum_i b_i k_i,   k_i = f(t_0 + c_i h, x_0 + h sum_j a_ij k_j)   (eq. (33) of [nurkanovic2024]).
 struct ButcherTableau {
   TableauFamily family = TableauFamily::radau_iia;
   int order = 0;
@@ -29,17 +22,17 @@ struct ButcherTableau {
   Eigen::VectorXd c;  ///< s, ascending
 
   [[nodiscard]] int stages() const { return static_cast<int>(b.size()); }
-  /// Stiffly accurate: the last stage is the end of the step, c_s = 1 and a_sj = b_j.
+  /// Returns whether the method is stiffly accurate: the last stage is the end of the step, c_s = 1 and a_sj = b_j.
   [[nodiscard]] bool ends_at_last_stage() const;
-  /// The stages are values of a polynomial of degree s: all families but Lobatto IIIC and the explicit methods.
+  /// Returns whether the stages are values of a polynomial of degree s: all families but Lobatto IIIC and the explicit
+  /// methods.
   [[nodiscard]] bool is_collocation() const;
 };
 
-/// The tableau of so many stages; coefficients correct to rounding: the nodes are roots of Legendre polynomials and
-/// their relatives by Newton's method in extended precision, A = (integral from 0 to c_i of the j-th Lagrange
-/// polynomial) by a quadrature that is exact for it.
-/// Fails with `invalid_option` for a number of stages that the family does not have. Cost: s^4.
-/// Source: [hairer1996], sections IV.5 and IV.12.
+/// Returns the tableau of so many stages; coefficients correct to rounding: the nodes are roots of Legendre polynomials
+/// and their relatives by Newton's method in extended precision, A = (integral from 0 to c_i of the j-th Lagrange
+/// polynomial) by a quadrature that is exact for it. Fails with `invalid_option` for a number of stages that the family
+/// does not have. Cost: s^4. Source: [hairer1996], sections IV.5 and IV.12.
 [[nodiscard]] Expected<ButcherTableau> butcher_tableau(TableauFamily family, int stages);
 
 }  // namespace saltus::discretization

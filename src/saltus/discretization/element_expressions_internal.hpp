@@ -15,10 +15,10 @@
 
 namespace saltus::discretization {
 
-/// All pairs of a system, in the order of lambda: of step selection j first lambda_n,j, then lambda_p,j.
+/// Returns all pairs of a system, in the order of lambda: of step selection j first lambda_n,j, then lambda_p,j.
 [[nodiscard]] std::vector<SelectionPair> selection_pairs(const reformulation::Dcs& dcs);
 
-/// The variables of one element as matrices with one column per stage or point.
+/// Holds the variables of one element as matrices with one column per stage or point.
 struct ElementVariables {
   casadi::SX h;
   casadi::SX stage;       ///< n_x by n_s
@@ -32,7 +32,7 @@ struct ElementVariables {
 };
 [[nodiscard]] ElementVariables element_variables(const ElementLayout& layout, const casadi::SX& v);
 
-/// The sides of the pairs at the points of an element, columns.
+/// Holds the sides of the pairs at the points of an element, columns.
 struct ElementPairs {
   casadi::SX a;       ///< n_pairs by n_s
   casadi::SX lambda;  ///< n_pairs by 1 + points: the left end first
@@ -40,46 +40,47 @@ struct ElementPairs {
 [[nodiscard]] ElementPairs element_pairs(const std::vector<SelectionPair>& pairs, const ElementVariables& variables,
                                          const casadi::SX& left_lambda);
 
-/// The complementarities within an element; for `paper` those of the same stage.
+/// Adds the complementarities within an element; for `paper` those of the same stage.
 void add_cross_complementarities(CrossComplementarity mode, const ElementPairs& pairs, LocalExpressions& expressions);
 
-/// Both elements of a boundary.
+/// Holds both elements of a boundary.
 struct Boundary {
   ElementPairs before, after;
   casadi::SX h_before, h_after;
   casadi::SX own;  ///< variables of the boundary itself
 };
 
-/// eq. (38): products of all components and different points of both elements.
+/// Adds eq. (38): products of all components and different points of both elements.
 void add_paper_cross_complementarity(const Boundary& boundary, LocalExpressions& expressions);
 
-/// eta with the indicator of each pair (StepEquilibration).
+/// Returns eta with the indicator of each pair (StepEquilibration).
 [[nodiscard]] casadi::SX switch_indicator(const Boundary& boundary);
-/// eta as printed in section 4.4 of [nurkanovic2024]; of Stewart's form, where theta takes part, as in the other modes.
+/// Returns eta as printed in section 4.4 of [nurkanovic2024]; of Stewart's form, where theta takes part, as in the
+/// other modes.
 [[nodiscard]] casadi::SX printed_switch_indicator(const std::vector<SelectionPair>& kinds, const Boundary& boundary);
 
-/// How many variables a boundary has, with their bounds.
+/// Returns how many variables a boundary has, with their bounds.
 [[nodiscard]] mpcc::Bounds boundary_bounds(StepEquilibration mode, int pairs);
 
-/// Values of these variables with which the rows of mode mlcp hold: from the first sides of its pairs where the
+/// Returns values of these variables with which the rows of mode mlcp hold: from the first sides of its pairs where the
 /// variables are zero, and h_n - h_(n-1).
 [[nodiscard]] Eigen::VectorXd boundary_values(const Eigen::VectorXd& first_sides, double difference);
 void add_step_equilibration(const FesdOptions& options, const std::vector<SelectionPair>& kinds,
                             const Boundary& boundary, LocalExpressions& expressions);
 
-/// What elements share in an optimal control problem.
+/// Holds what elements share in an optimal control problem.
 struct SharedInputs {
   casadi::SX symbols;        ///< local inputs of every element: controls, free parameters, horizon and the like
   casadi::SX length_factor;  ///< h = length_factor times the element's variable
   bool needs_time = false;   ///< whether something else than the dynamics depends on time
 };
 
-/// Time, state and selections at a stage or at the right end, over the inputs of the element.
+/// Holds the time, state and selections at a stage or at the right end, over the inputs of the element.
 struct ElementPoint {
   casadi::SX t, x, selection;
 };
 
-/// All symbols and expressions of the kernel.
+/// Holds all symbols and expressions of the kernel.
 struct ElementExpressions {
   ElementLayout layout;
   std::vector<SelectionPair> pairs;

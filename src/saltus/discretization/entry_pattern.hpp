@@ -8,7 +8,7 @@
 
 namespace saltus::discretization {
 
-/// Entries of a matrix by columns, rows ascending, and where those of a row are among them.
+/// Holds entries of a matrix by columns, rows ascending, and where those of a row are among them.
 struct EntryPattern {
   int rows = 0, columns = 0;
   std::vector<int> start, row;                ///< by columns: columns + 1, one per entry
@@ -17,20 +17,20 @@ struct EntryPattern {
   [[nodiscard]] std::size_t size() const { return row.size(); }
 };
 
-/// Of the derivatives of StageValues.
+/// Holds the patterns of the derivatives of StageValues.
 struct StagePattern {
   EntryPattern f_x, f_selection, indicator_x;
   /// Whether only those that can be other than 0 are kept, and linear systems are solved by their entries.
   bool is_sparse = false;
 };
 
-/// visit(row, value) for the entries of a column, rows ascending.
+/// Calls visit(row, value) for the entries of a column, rows ascending.
 template <class Visit>
 void visit_column(const EntryPattern& pattern, const std::vector<double>& values, std::size_t column, Visit&& visit) {
   for (int e = pattern.start[column]; e < pattern.start[column + 1]; ++e) visit(at(pattern.row[at(e)]), values[at(e)]);
 }
 
-/// visit(column, value) for the entries of a row, columns ascending.
+/// Calls visit(column, value) for the entries of a row, columns ascending.
 template <class Visit>
 void visit_row(const EntryPattern& pattern, const std::vector<double>& values, std::size_t row, Visit&& visit) {
   for (int e = pattern.row_start[row]; e < pattern.row_start[row + 1]; ++e) {

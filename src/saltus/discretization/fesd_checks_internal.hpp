@@ -9,10 +9,10 @@
 
 namespace saltus::discretization {
 
-/// invalid_option for weights and gamma_h outside their ranges.
+/// Refuses (invalid_option) weights and gamma_h outside their ranges.
 [[nodiscard]] Expected<void> check(const FesdOptions& options);
 
-/// An error about [optimize]. Built member by member: g++ 12 takes the aggregate for uninitialised.
+/// Returns an error about [optimize]. Built member by member: g++ 12 takes the aggregate for uninitialised.
 [[nodiscard]] inline Error ocp_refusal(ErrorCode code, std::string message, std::string remedy) {
   Error error;
   error.code = code;

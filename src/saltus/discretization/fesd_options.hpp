@@ -6,14 +6,22 @@
 
 namespace saltus::discretization {
 
-/// What the unknowns of a Runge-Kutta element are.
+enum class TableauFamily {
+  radau_iia,       ///< collocation at the right Radau points, 1 to 9 stages, order 2s - 1; c_s = 1
+  gauss_legendre,  ///< collocation at the Gauss points, 1 to 9 stages, order 2s; c_s < 1
+  lobatto_iiia,    ///< collocation at the Lobatto points, 2 to 5 stages, order 2s - 2; c_1 = 0, c_s = 1
+  lobatto_iiic,    ///< at the Lobatto points with a_i1 = b_1, 2 to 5 stages, order 2s - 2; c_s = 1
+  explicit_rk,     ///< Euler, midpoint, Kutta, classical: 1 to 4 stages, order s
+};
+
+/// Says what the unknowns of a Runge-Kutta element are.
 enum class Representation {
   integral,      ///< the states of the stages
   differential,  ///< their slopes
 };
 
-/// Which multipliers lambda_m' (m' = 0: left end, last: right end) are complementary to which selections a_m of the
-/// same element, componentwise; a = alpha with lambda_n, 1 - alpha with lambda_p, or theta with lambda.
+/// Says which multipliers lambda_m' (m' = 0: left end, last: right end) are complementary to which selections a_m of
+/// the same element, componentwise; a = alpha with lambda_n, 1 - alpha with lambda_p, or theta with lambda.
 enum class CrossComplementarity {
   stage_stage,  ///< lambda_m' _|_ a_m for all m', m: eq. (37) of [nurkanovic2024]
   fe_stage,     ///< lambda_m' _|_ sum_m a_m
@@ -26,8 +34,8 @@ inline constexpr std::array all_cross_complementarities{
     CrossComplementarity::stage_stage, CrossComplementarity::fe_stage, CrossComplementarity::stage_fe,
     CrossComplementarity::fe_fe,       CrossComplementarity::paper,    CrossComplementarity::same_stage};
 
-/// What makes neighbouring elements equally long where no switch separates them. For every pair a _|_ lambda let sB(.)
-/// and sF(.) be sums over the points of the element before and after their boundary,
+/// Says what makes neighbouring elements equally long where no switch separates them. For every pair a _|_ lambda let
+/// sB(.) and sF(.) be sums over the points of the element before and after their boundary,
 ///   nu = sB(a) sF(a) + sB(lambda) sF(lambda),   eta = product of all nu (both pairs of a step selection):
 /// zero exactly where the active set changes.
 enum class StepEquilibration {
@@ -51,7 +59,7 @@ inline constexpr std::array all_step_equilibrations{StepEquilibration::none,
                                                     StepEquilibration::mlcp,
                                                     StepEquilibration::paper};
 
-/// The names in model files.
+/// Returns the names in model files.
 [[nodiscard]] std::string_view name(Representation representation);
 [[nodiscard]] std::string_view name(CrossComplementarity cross_complementarity);
 [[nodiscard]] std::string_view name(StepEquilibration step_equilibration);

@@ -19,16 +19,16 @@ struct Dcs;
 
 namespace saltus::discretization {
 
-/// One complementarity of the system, a _|_ lambda: alpha_j with lambda_n,j; 1 - alpha_j with lambda_p,j; theta_i with
-/// lambda_i.
+/// Holds one complementarity of the system, a _|_ lambda: alpha_j with lambda_n,j; 1 - alpha_j with lambda_p,j; theta_i
+/// with lambda_i.
 struct SelectionPair {
   int selection = 0;
   bool complement = false;  ///< a = 1 - alpha_j
   bool is_region = false;   ///< a = theta_i
 };
 
-/// One element and the boundary between two, compiled: symbolic work and derivatives are done here, once, whatever the
-/// number of elements.
+/// Holds one element and the boundary between two, compiled: symbolic work and derivatives are done here, once,
+/// whatever the number of elements.
 class FesdKernel {
  public:
   /// Fails in these ways:
@@ -45,10 +45,10 @@ class FesdKernel {
   ~FesdKernel();
 
   [[nodiscard]] const FesdOptions& options() const;
-  /// All pairs, in the order of lambda: of step selection j first lambda_n,j, then lambda_p,j.
+  /// Returns all pairs, in the order of lambda: of step selection j first lambda_n,j, then lambda_p,j.
   [[nodiscard]] const std::vector<SelectionPair>& pairs() const;
-  /// Elementary operations of one evaluation of everything in an element and a boundary: it depends on the model and
-  /// the scheme only.
+  /// Returns the number of elementary operations of one evaluation of everything in an element and a boundary: it
+  /// depends on the model and the scheme only.
   [[nodiscard]] long operations() const;
 
  private:
@@ -58,7 +58,7 @@ class FesdKernel {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Where a simulation step begins and what is constant in it.
+/// Says where a simulation step begins and what is constant in it.
 struct StepData {
   double t = 0.0;
   double length = 0.0;       ///< T > 0
@@ -66,7 +66,7 @@ struct StepData {
   std::vector<double> held;  ///< values of Dcs::held
 };
 
-/// One element of a solution. Columns are stages.
+/// Holds one element of a solution. Columns are stages.
 struct SolvedElement {
   double t = 0.0;  ///< left end
   double h = 0.0;
@@ -76,10 +76,10 @@ struct SolvedElement {
   Eigen::VectorXd end;         ///< n_x
 };
 
-/// Equations (47) of [nurkanovic2024] for N elements, T = sum h_n, as min f, g = 0, 0 <= G _|_ H >= 0: Runge-Kutta
-/// equations, indicators, cross complementarities and step equilibration as the options of the kernel say. State and
-/// lambda_(0,0) at the left end are constants, eq. (17). The objective is the method's own (step equilibration) and
-/// nothing of a user's.
+/// States equations (47) of [nurkanovic2024] for N elements, T = sum h_n, as min f, g = 0, 0 <= G _|_ H >= 0:
+/// Runge-Kutta equations, indicators, cross complementarities and step equilibration as the options of the kernel say.
+/// State and lambda_(0,0) at the left end are constants, eq. (17). The objective is the method's own (step
+/// equilibration) and nothing of a user's.
 ///
 /// Building costs one pass over the entries of the sparse matrices. One problem per kernel and thread at a time:
 /// problems use the work space of the kernel.
@@ -89,13 +89,14 @@ class FesdProblem final : public mpcc::Problem {
   ~FesdProblem() override;
 
   void set_step(const StepData& step);
-  /// The state at the left end everywhere, selections in the middle, lambda as at the left end but not zero.
+  /// Returns the state at the left end everywhere, selections in the middle, lambda as at the left end but not zero.
   [[nodiscard]] Eigen::VectorXd first_guess() const;
   [[nodiscard]] std::vector<SolvedElement> read(mpcc::ConstVectorView w) const;
   [[nodiscard]] const VariableLayout& layout() const;
-  /// eta of each inner boundary, from the sums over every pair (StepEquilibration), whatever the mode: n - 1 values.
+  /// Returns eta of each inner boundary, from the sums over every pair (StepEquilibration), whatever the mode: n - 1
+  /// values.
   [[nodiscard]] Eigen::VectorXd switch_indicators(mpcc::ConstVectorView w) const;
-  /// The same with the printed nu of section 4.4.
+  /// Returns the same with the printed nu of section 4.4.
   [[nodiscard]] Eigen::VectorXd printed_switch_indicators(mpcc::ConstVectorView w) const;
 
   [[nodiscard]] int variables() const override;

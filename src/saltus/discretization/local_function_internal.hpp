@@ -12,7 +12,7 @@
 
 namespace saltus::discretization {
 
-/// What an element, or the boundary between two, adds to a problem: an objective and rows (g, G, H) over local
+/// Holds what an element, or the boundary between two, adds to a problem: an objective and rows (g, G, H) over local
 /// variables z and parameters. All of g are equations g = 0.
 struct LocalExpressions {
   casadi::SX objective = 0.0;
@@ -25,9 +25,9 @@ struct LocalExpressions {
   void equation(const casadi::SX& rows) {
     for (casadi_int i = 0; i < rows.numel(); ++i) g.push_back(rows(i));
   }
-  /// These expressions, then the other's.
+  /// Appends the other's expressions to these.
   [[nodiscard]] LocalExpressions joined(const LocalExpressions& other) const;
-  /// Both sides sums of variables with lower bound 0.
+  /// Adds a pair whose sides are both sums of variables with lower bound 0.
   void pair(const casadi::SX& a, const casadi::SX& b, mpcc::Sign sign = mpcc::Sign::implied) {
     G.push_back(a);
     H.push_back(b);
@@ -49,7 +49,7 @@ class LocalFunction {
   [[nodiscard]] int pairs() const { return pairs_; }
   [[nodiscard]] const std::vector<mpcc::Sign>& signs() const { return signs_; }  ///< of G, then of H
   [[nodiscard]] bool has_objective() const { return has_objective_; }
-  /// Patterns over rows (g, G, H) and local variables; of the Hessian the lower triangle.
+  /// Returns patterns over rows (g, G, H) and local variables; of the Hessian the lower triangle.
   [[nodiscard]] const mpcc::Pattern& jacobian_pattern() const { return jacobian_pattern_; }
   [[nodiscard]] const mpcc::Pattern& hessian_pattern() const { return hessian_pattern_; }
 
@@ -57,7 +57,7 @@ class LocalFunction {
   void gradient(const double* z, const double* parameters, double* gradient);  ///< of the objective, dense
   void jacobian(const double* z, const double* parameters, double* values);
   void hessian(const double* z, const double* parameters, double factor, const double* y, double* values);
-  /// Elementary operations of one evaluation of everything.
+  /// Returns the number of elementary operations of one evaluation of everything.
   [[nodiscard]] long operations() const;
 
  private:

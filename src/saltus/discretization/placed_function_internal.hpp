@@ -9,13 +9,13 @@
 
 namespace saltus::discretization {
 
-/// Places of local variables: >= 0 a variable of the problem, else the constant constant_place() was made of.
+/// Gives places of local variables: >= 0 a variable of the problem, else the constant constant_place() was made of.
 [[nodiscard]] constexpr int constant_place(int constant) { return -1 - constant; }
 [[nodiscard]] inline double value_at(int place, mpcc::ConstVectorView w, const Eigen::VectorXd& constants) {
   return place >= 0 ? w[place] : constants[-1 - place];
 }
 
-/// First rows of a copy, and the sizes of the problem that turn a pair into rows of G and H.
+/// Holds the first rows of a copy, and the sizes of the problem that turn a pair into rows of G and H.
 struct RowPlace {
   int first_equation = 0;
   int first_pair = 0;
@@ -23,7 +23,7 @@ struct RowPlace {
   int pairs = 0;
 };
 
-/// Copies of one LocalFunction with their variables and rows; entries with respect to constants are left out.
+/// Holds copies of one LocalFunction with their variables and rows; entries with respect to constants are left out.
 class PlacedFunction {
  public:
   explicit PlacedFunction(LocalFunction& function);
@@ -34,9 +34,9 @@ class PlacedFunction {
   void add_patterns(mpcc::Pattern& jacobian, mpcc::Pattern& hessian) const;
 
   [[nodiscard]] int copies() const { return static_cast<int>(copies_.size()); }
-  /// Rows of a copy in the problem: its equations, then G, then H.
+  /// Returns rows of a copy in the problem: its equations, then G, then H.
   [[nodiscard]] const std::vector<int>& rows_of(int copy) const { return copies_[static_cast<std::size_t>(copy)].rows; }
-  /// The local variables of a copy; overwritten by the next call.
+  /// Returns the local variables of a copy; overwritten by the next call.
   const std::vector<double>& gather(int copy, mpcc::ConstVectorView w, const Eigen::VectorXd& constants);
   [[nodiscard]] double objective(mpcc::ConstVectorView w, const Eigen::VectorXd& constants,
                                  const Eigen::VectorXd& parameters);
@@ -45,7 +45,7 @@ class PlacedFunction {
                     mpcc::VectorView gradient, double factor = 1.0);
   void rows(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
             mpcc::VectorView c);
-  /// Values in the order of add_patterns from `next` on; returns what follows them.
+  /// Returns values in the order of add_patterns from `next` on; returns what follows them.
   double* jacobian(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
                    double* next);
   double* hessian(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,

@@ -15,7 +15,7 @@ struct Dcs;
 
 namespace saltus::discretization {
 
-/// Plain functions of doubles, as in StageKernel.
+/// Evaluates plain functions of doubles, as in StageKernel.
 class PointFunctions {
  public:
   [[nodiscard]] static Expected<PointFunctions> compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
@@ -24,15 +24,15 @@ class PointFunctions {
   PointFunctions& operator=(PointFunctions&&) noexcept;
   ~PointFunctions();
 
-  /// Selections of the System's switching functions.
+  /// Evaluates selections of the System's switching functions.
   void alpha(const double* selection, const double* held, double* alpha) const;
   void outputs(double t, const double* x, const double* selection, const double* held, double* values) const;
   void inputs(double t, const double* held, double* values) const;
-  /// Arguments of the held symbols; each depends on the values of those before it.
+  /// Evaluates arguments of the held symbols; each depends on the values of those before it.
   void held_arguments(double t, const double* x, const double* held, double* arguments) const;
 
-  /// Functions whose zeros are user events: the expressions, then the guards of the conditions, in the order of the
-  /// events; and the truth of the condition of an event from the steps of its own guards.
+  /// Returns the number of functions whose zeros are user events: the expressions, then the guards of the conditions,
+  /// in the order of the events; and the truth of the condition of an event from the steps of its own guards.
   [[nodiscard]] std::size_t event_functions() const;
   void event_values(double t, const double* x, const double* selection, const double* held, double* values) const;
   [[nodiscard]] bool condition(std::size_t event, double t, const double* x, const double* selection,

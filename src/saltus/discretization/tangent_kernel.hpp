@@ -15,7 +15,7 @@ struct Dcs;
 
 namespace saltus::discretization {
 
-/// Values at one point and their derivatives; matrices by columns, rows first in the names' order. n columns of
+/// Holds values at one point and their derivatives; matrices by columns, rows first in the names' order. n columns of
 /// selections, n_p of parameters.
 struct TangentValues {
   std::vector<double> f, f_t, f_x, f_selection, f_p;                     ///< n_x rows
@@ -23,24 +23,23 @@ struct TangentValues {
   std::vector<double> rate_t, rate_x, rate_selection, rate_p;            ///< n rows: of indicator_x f + indicator_t
 };
 
-/// The direction f_selection v of a projection along selections v, and its derivatives; n_x rows.
+/// Holds the direction f_selection v of a projection along selections v, and its derivatives; n_x rows.
 struct DirectionValues {
   std::vector<double> f_selection, by_t, by_x, by_selection, by_p;
 };
 
-/// Derivatives of the arguments of what is held within a simulation step, one row each; each argument depends on the
-/// values of those before it.
+/// Holds derivatives of the arguments of what is held within a simulation step, one row each; each argument depends on
+/// the values of those before it.
 struct HeldTangent {
   std::vector<double> by_t, by_x, by_held, by_p;
 };
 
-/// One kernel per thread: the work space is inside.
+/// Is one kernel per thread: the work space is inside.
 class TangentKernel {
  public:
-  /// `parameters` are the values of Dcs::p. Controls are replaced by their inputs, lifted variables by their products.
-  /// Fails (invalid_model) if the symbolic layer refuses an expression, (not_available) if native code is insisted on
-  /// and cannot be had.
-  /// Cost: that of the second derivatives of the indicators.
+  /// Takes `parameters`, the values of Dcs::p. Controls are replaced by their inputs, lifted variables by their
+  /// products. Fails (invalid_model) if the symbolic layer refuses an expression, (not_available) if native code is
+  /// insisted on and cannot be had. Cost: that of the second derivatives of the indicators.
   [[nodiscard]] static Expected<TangentKernel> compile(const reformulation::Dcs& dcs, std::vector<double> parameters,
                                                        evaluation::NativeCode native = evaluation::NativeCode::off);
   TangentKernel(TangentKernel&&) noexcept;
@@ -50,16 +49,16 @@ class TangentKernel {
   [[nodiscard]] std::size_t states() const;
   [[nodiscard]] std::size_t selections() const;
   [[nodiscard]] std::size_t parameters() const;
-  /// Number of symbols that are held within a simulation step.
+  /// Returns the number of symbols that are held within a simulation step.
   [[nodiscard]] std::size_t held() const;
 
   /// Makes `values` as large as evaluate() needs it.
   void size(TangentValues& values) const;
   void evaluate(double t, const double* x, const double* selection, const double* held, TangentValues& values) const;
-  /// `along`: changes of the selections, v. Makes `values` as large as needed.
+  /// Evaluates the direction of a projection: changes of the selections, v. Makes `values` as large as needed.
   void direction(double t, const double* x, const double* selection, const double* held, const double* along,
                  DirectionValues& values) const;
-  /// How the times move at which something held changes: argument(t, x, p) = the bound that it reaches.
+  /// Evaluates how the times move at which something held changes: argument(t, x, p) = the bound that it reaches.
   void held_tangent(double t, const double* x, const double* held, HeldTangent& values) const;
 
  private:

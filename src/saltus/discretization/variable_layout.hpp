@@ -6,7 +6,7 @@
 
 namespace saltus::discretization {
 
-/// Consecutive variables of an element: `count` groups of `size`.
+/// Holds consecutive variables of an element: `count` groups of `size`.
 struct VariableBlock {
   int first = 0;
   int count = 0;
@@ -16,10 +16,10 @@ struct VariableBlock {
   [[nodiscard]] int at(int group, int component = 0) const { return first + group * size + component; }
 };
 
-/// The variables of one element, all elements alike, from the left: h; stages (states or slopes, selections, lifted
-/// variables, mu of each simplex); multipliers lambda at the stages and at the right end if that is no stage; state at
-/// the right end if that is no stage, or always if the stages are slopes; time at the right end of systems that depend
-/// on time; the correction of the right end, positive and negative part.
+/// Holds the variables of one element, all elements alike, from the left: h; stages (states or slopes, selections,
+/// lifted variables, mu of each simplex); multipliers lambda at the stages and at the right end if that is no stage;
+/// state at the right end if that is no stage, or always if the stages are slopes; time at the right end of systems
+/// that depend on time; the correction of the right end, positive and negative part.
 struct ElementLayout {
   int stages = 0;
   bool has_end_point = false;  ///< the right end is no stage: c_s != 1
@@ -34,25 +34,25 @@ struct ElementLayout {
   VariableBlock correction;  ///< 0 or 2 groups of one per selection
   int size = 0;              ///< of an element
 
-  /// Groups of lambda, the last of which belongs to the right end.
+  /// Returns the number of groups of lambda, the last of which belongs to the right end.
   [[nodiscard]] int points() const { return stages + (has_end_point ? 1 : 0); }
-  /// Where the state at the right end stands.
+  /// Returns where the state at the right end stands.
   [[nodiscard]] int right_state() const { return end_state.count > 0 ? end_state.first : stage.at(stages - 1); }
 };
 
-/// A chain: elements one after the other, then what the boundaries between them need.
+/// Holds a chain: elements one after the other, then what the boundaries between them need.
 struct VariableLayout {
   ElementLayout element;
   int elements = 0;
   int boundary_size = 0;  ///< variables per boundary
 
   [[nodiscard]] int first_of_element(int n) const { return n * element.size; }
-  /// Of the boundary before element n >= 1.
+  /// Returns the first variable of the boundary before element n >= 1.
   [[nodiscard]] int first_of_boundary(int n) const { return elements * element.size + (n - 1) * boundary_size; }
   [[nodiscard]] int size() const {
     return elements * element.size + (elements > 1 ? (elements - 1) * boundary_size : 0);
   }
-  /// "h[2]", "x[2,1](0)": element, stage and component count from 0.
+  /// Returns "h[2]", "x[2,1](0)": element, stage and component count from 0.
   [[nodiscard]] std::string name(int variable) const;
 };
 

@@ -15,18 +15,18 @@ namespace saltus::evaluation {
 
 using model::ModelFunction;
 
-/// For every entry of `expression` whether it is affine in t and x (`fixed` >= 0: but for this component, a constant),
-/// by the operations it is made of. Sufficient, not necessary: x * x / x is not.
+/// Returns for every entry of `expression` whether it is affine in t and x (`fixed` >= 0: but for this component, a
+/// constant), by the operations it is made of. Sufficient, not necessary: x * x / x is not.
 [[nodiscard]] std::vector<bool> affine_entries(const casadi::SX& expression, const ModelSymbols& symbols,
                                                int fixed = -1);
 
-/// Rows of the affine entries of a vector of functions.
+/// Holds rows of the affine entries of a vector of functions.
 class AffineRowFunctions {
  public:
   AffineRowFunctions() = default;
   AffineRowFunctions(const casadi::SX& functions, const ModelSymbols& symbols, const std::vector<bool>& affine);
   void fill(const double* p, const double* alpha, AffineRows& rows);
-  /// Coefficients, rates, offsets. Valid as long as this does not move.
+  /// Evaluates coefficients, rates, offsets. Valid as long as this does not move.
   [[nodiscard]] ModelFunction& function() { return values_; }
 
  private:
@@ -35,7 +35,7 @@ class AffineRowFunctions {
   std::vector<std::size_t> start_, column_;
 };
 
-/// One function as a row, if it is affine in what is not fixed.
+/// Holds one function as a row, if it is affine in what is not fixed.
 class AffineRowFunction {
  public:
   AffineRowFunction() = default;
@@ -50,12 +50,12 @@ class AffineRowFunction {
   std::vector<double> origin_, p_, alpha_;
 };
 
-/// The linear part of a right-hand side, if it is affine.
+/// Holds the linear part of a right-hand side, if it is affine.
 class LinearFieldFunction {
  public:
   LinearFieldFunction(const casadi::SX& f, const ModelSymbols& symbols);
   [[nodiscard]] bool is_affine() const { return !values_.is_null(); }
-  /// Whether it is the same for all selections.
+  /// Returns whether it is the same for all selections.
   [[nodiscard]] bool is_constant() const { return constant_; }
   void fill(const double* p, const double* alpha, ode::LinearField& field);
 

@@ -19,9 +19,9 @@ class CellFunctions {
   /// Appends constants, upper and lower ends of all cells to the symbols `p` and their values `parameters`.
   CellFunctions(const model::System& system, casadi::SX& p, std::vector<double>& parameters);
 
-  /// Rows argument - upper end, argument - lower end, cell by cell.
+  /// Returns rows argument - upper end, argument - lower end, cell by cell.
   [[nodiscard]] std::vector<casadi::SX> rows(const model::System& system) const;
-  /// The arguments as functions of t, x, p, alpha, the inputs put in for the controls.
+  /// Compiles the arguments as functions of t, x, p, alpha, the inputs put in for the controls.
   void compile(const std::vector<casadi::SX>& variables, const model::System& system, const casadi::SX& input);
 
   [[nodiscard]] int size() const { return static_cast<int>(places_.size()); }
@@ -29,7 +29,7 @@ class CellFunctions {
   [[nodiscard]] long index(int cell) const { return place(cell).index; }
   void move(int cell, long target, std::vector<double>& parameters);
   [[nodiscard]] double argument(int cell, const std::array<const double*, 4>& here);
-  /// For every row of `expression`, the cells whose constants it holds.
+  /// Returns for every row of `expression` the cells whose constants it holds.
   [[nodiscard]] std::vector<std::vector<bool>> dependencies(const std::vector<std::vector<int>>& on_parameters) const;
 
  private:

@@ -5,7 +5,7 @@
 
 namespace saltus::evaluation {
 
-/// Of m contacts with r rows and n velocities; see model::ContactSystem.
+/// Holds values of m contacts with r rows and n velocities; see model::ContactSystem.
 struct ContactValues {
   using Rows = Eigen::MatrixXd;
   Eigen::VectorXd gap;                    ///< m

@@ -20,13 +20,13 @@ class FieldParts {
     std::size_t number = 0;           ///< of its function
   };
 
-  /// Of the free motion. Cost: the patterns of f.
+  /// Takes those of the free motion. Cost: the patterns of f.
   explicit FieldParts(CompiledModel& model);
   FieldParts(FieldParts&&) noexcept;
   ~FieldParts();
 
-  /// The rows that hold alpha_selection, and `rings` times what these move. Null where that is more than a quarter of
-  /// all states, or none. Stays where it is. Cost: that of the part, the first time.
+  /// Returns the rows that hold alpha_selection, and `rings` times what these move. Null where that is more than a
+  /// quarter of all states, or none. Stays where it is. Cost: that of the part, the first time.
   [[nodiscard]] const Part* of(int selection, int rings);
   /// Writes these rows of xdot (n_x). Reads `rows` and `inputs` of x (n_x) only.
   void operator()(const Part& part, double t, const double* x, const FieldConstants& constants, double* xdot);

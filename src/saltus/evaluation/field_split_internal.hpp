@@ -7,15 +7,15 @@
 
 namespace saltus::evaluation {
 
-/// f(t, x, p, alpha) = varying(t, x, constants(p, alpha)), operation by operation the same as f.
+/// Holds f(t, x, p, alpha) = varying(t, x, constants(p, alpha)), operation by operation the same as f.
 struct FieldSplit {
   casadi::SX constants;  ///< over p and alpha
   casadi::SX symbols;    ///< that stand for them
   casadi::SX varying;    ///< over t, x and the symbols
 };
 
-/// In a mode the selections do not change: the constants are computed once per mode, however many switching functions
-/// they sum up.
+/// Splits f by what changes in a mode, where the selections do not: the constants are computed once per mode, however
+/// many switching functions they sum up.
 [[nodiscard]] FieldSplit split_field(const casadi::SX& f, const ModelSymbols& symbols);
 
 }  // namespace saltus::evaluation

@@ -11,7 +11,7 @@
 
 namespace saltus::evaluation {
 
-/// One held guard g and the jump it triggers, inputs put in.
+/// Holds one held guard g and the jump it triggers, inputs put in.
 struct HeldGuard {
   std::string jump;                   ///< its name, for errors
   casadi::SX guard;                   ///< g, scalar
@@ -20,13 +20,13 @@ struct HeldGuard {
   std::vector<bool> discrete_states;  ///< n_x
 };
 
-/// xdot = f, and what holds its guards there.
+/// Holds xdot = f, and what holds its guards there.
 struct HeldMotion {
   casadi::SX f;         ///< n_x
   casadi::SX pressure;  ///< one per guard, see ModelKernel::hold_pressure
 };
 
-/// xdot = f + D mu with mu from d^2 g_i/dt^2 = 0 for all i:
+/// Returns xdot = f + D mu with mu from d^2 g_i/dt^2 = 0 for all i:
 ///   d_k = (d set_k/dx - I) w_k,  w_k = d/dx (L_f g_k), rows and columns of the states that jump k sets and that
 ///   absorb, M_ik = d/dx (L_f g_i) d_k,  mu = -M^-1 L_f^2 g,  pressure_k = -M_kk mu_k.
 /// A state absorbs if it moves, or if it is in the guard's rate. Where M is singular at a point (two guards that mean

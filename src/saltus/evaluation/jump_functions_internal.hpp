@@ -29,7 +29,7 @@ class JumpFunctions {
   void values(int jump, const Arguments& at, double* values);
   [[nodiscard]] double priority(int jump, const Arguments& at);
   [[nodiscard]] double delay(int jump, const Arguments& at);
-  /// All of them, with names of their own. Valid as long as this does not move.
+  /// Returns all of them, with names of their own. Valid as long as this does not move.
   [[nodiscard]] std::vector<ModelFunction*> functions();
 
  private:

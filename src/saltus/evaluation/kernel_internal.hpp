@@ -25,7 +25,8 @@ namespace saltus::evaluation {
 
 using model::ModelFunction;
 
-/// xdot = f, free or with guards held, and what follows from it. What is not there yet is made under the symbolic lock.
+/// Holds xdot = f, free or with guards held, and what follows from it. What is not there yet is made under the symbolic
+/// lock.
 struct CompiledMotion {
   casadi::SX f;
   ModelFunction field;      ///< of t, x and the constants
@@ -39,7 +40,7 @@ struct CompiledMotion {
   std::optional<LinearFieldFunction> linear;
 };
 
-/// A motion of one kernel: the functions that it has called, with its own work space.
+/// Holds a motion of one kernel: the functions that it has called, with its own work space.
 struct Motion {
   Motion() = default;
   explicit Motion(CompiledMotion& motion)
@@ -55,12 +56,12 @@ struct Motion {
   std::optional<ode::LinearField> linear_always;  ///< if it is the same in all modes
 };
 
-/// On which of the variables each row of an expression depends, ascending.
+/// Returns on which of the variables each row of an expression depends, ascending.
 [[nodiscard]] std::vector<std::vector<int>> dependencies_of_rows(const casadi::SX& expression,
                                                                  const casadi::SX& variables);
 [[nodiscard]] std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends);
 
-/// The model's symbols and expressions; they never change.
+/// Holds the model's symbols and expressions; they never change.
 struct KernelSymbols {
   explicit KernelSymbols(const model::System& system);
 
@@ -70,7 +71,7 @@ struct KernelSymbols {
   int n_psi = 0;
 };
 
-/// What the expressions say without values; found once.
+/// Holds what the expressions say without values; found once.
 struct KernelStructure {
   std::vector<std::vector<bool>> on_cells;  ///< by event function
   std::vector<bool> affine, time_only;
@@ -83,7 +84,7 @@ struct KernelStructure {
   int first_jump_guard = 0;
 };
 
-/// The functions that were made of the expressions.
+/// Holds the functions that were made of the expressions.
 struct KernelFunctions {
   ModelFunction functions, scales, output_function, input_function;
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
@@ -93,25 +94,25 @@ struct KernelFunctions {
   std::vector<ModelFunction> gradients;  ///< d phi_j / d (x, t); null before they are first asked for
 };
 
-/// An event function without its roots of what is 0 on a surface.
+/// Holds an event function without its roots of what is 0 on a surface.
 struct LimitedFunction {
   int number = 0;            ///< its negative one
   std::vector<bool> rooted;  ///< by switching function
 };
 
-/// Where a run begins beside t, x and alpha.
+/// Says where a run begins beside t, x and alpha.
 struct KernelValues {
   std::vector<double> parameters;  ///< values of p
   RegionConstants regions;         ///< their references
   CellFunctions cells;             ///< in which each argument is
 };
 
-/// A model as compiled functions, for kernels in any threads. Nothing of it changes but what is made when it is first
-/// asked for, by its functions that are not const: under the symbolic lock.
+/// Holds a model as compiled functions, for kernels in any threads. Nothing of it changes but what is made when it is
+/// first asked for, by its functions that are not const: under the symbolic lock.
 struct CompiledModel : KernelSymbols, KernelStructure {
   explicit CompiledModel(const model::System& system);
 
-  /// Of an event function or, by a negative number, one with limited roots.
+  /// Returns the row of an event function or, by a negative number, of one with limited roots.
   [[nodiscard]] casadi::SX phi_row(int j) const { return j < 0 ? rootless[at(-1 - j)] : casadi::SX(phi(j)); }
   [[nodiscard]] ModelSymbols symbols() const { return {t, x, p, alpha}; }
 
@@ -143,7 +144,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   std::map<std::pair<int, std::vector<double>>, LimitedFunction> limited_;
 };
 
-/// What the user of a kernel changes, and its work space.
+/// Holds what the user of a kernel changes, and its work space.
 struct KernelContext : KernelValues {
   FieldConstants constants;  ///< work space of field()
   /// Of functions that are affine and do not hold selections gradients are constants: these rows, once known.
@@ -162,7 +163,7 @@ struct ModelKernel::Implementation : KernelFunctions, KernelContext {
   [[nodiscard]] Expected<void> start_native();
   void take_native_field();
   [[nodiscard]] bool has_small_field() const;
-  /// An interpreted call is about to be made.
+  /// Counts an interpreted call that is about to be made.
   void count(const ModelFunction& function) {
     if (native.count(function)) take_native_field();
   }

@@ -20,19 +20,19 @@ namespace saltus::evaluation {
 struct ContactValues;
 struct CompiledModel;
 
-/// Whether the functions that every step needs run as native code: compiled C, cached by content. Bit-identical to the
-/// interpreter. `automatic`: from the cache, or compiled once a run is long enough that it pays; interpreted where
+/// Says whether the functions that every step needs run as native code: compiled C, cached by content. Bit-identical to
+/// the interpreter. `automatic`: from the cache, or compiled once a run is long enough that it pays; interpreted where
 /// there is no compiler.
 enum class NativeCode { automatic, on, off };
 
-/// A guard of a jump whose executions have accumulated: it and its derivative along the motion stay 0, the continuous
-/// states that the jump sets absorb what is needed.
+/// Holds a guard of a jump whose executions have accumulated: it and its derivative along the motion stay 0, the
+/// continuous states that the jump sets absorb what is needed.
 struct Hold {
   int jump = 0;
   int function = 0;  ///< event function of the guard g
 };
 
-/// Rows of the event functions that are affine in (t, x): phi_j = offset_j + rate_j t + sum_k coefficient_k
+/// Holds rows of the event functions that are affine in (t, x): phi_j = offset_j + rate_j t + sum_k coefficient_k
 /// x_(column_k), k = start_j ... start_(j+1) - 1. The others have an empty row and NaN as their offset.
 struct AffineRows {
   std::vector<std::size_t> start;
@@ -41,7 +41,7 @@ struct AffineRows {
   std::vector<double> rate, offset;
 };
 
-/// A row that has been computed for one function; a component held fixed is in the offset.
+/// Holds a row that has been computed for one function; a component held fixed is in the offset.
 struct AffineRow {
   std::vector<std::size_t> column;  ///< ascending
   std::vector<double> coefficient;  ///< of these states, those of others are 0
@@ -49,13 +49,13 @@ struct AffineRow {
   double offset = 0.0;
 };
 
-/// A state that a mode keeps constant; component -1 = none.
+/// Holds a state that a mode keeps constant; component -1 = none.
 struct FixedState {
   int component = -1;
   double value = 0.0;
 };
 
-/// The functions of a group of modes by `indicator` (model::ModeGroup): first, first + 1, …
+/// Holds the functions of a group of modes by `indicator` (model::ModeGroup): first, first + 1, …
 struct RegionRange {
   int first = 0;
   int count = 0;
@@ -65,13 +65,13 @@ struct RegionRange {
 /// f as native code: x, constants and xdot are not null and do not overlap.
 using DirectField = void (*)(double t, const double* x, const double* constants, double* xdot);
 
-/// The motion in force, free or held, and how often it was evaluated: of a kernel, for its callers' shortcut.
+/// Holds the motion in force, free or held, and how often it was evaluated: of a kernel, for its callers' shortcut.
 struct FieldUse {
   const void* motion = nullptr;
   long evaluations = 0;
 };
 
-/// What a right-hand side needs of its parameters and selections; filled by ModelKernel::prepare_field.
+/// Holds what a right-hand side needs of its parameters and selections; filled by ModelKernel::prepare_field.
 struct FieldConstants {
   std::vector<double> values;
   std::vector<double> alpha;           ///< what they were made of
@@ -80,11 +80,11 @@ struct FieldConstants {
   const NativeSteps* steps = nullptr;  ///< likewise
   FieldUse* use = nullptr;             ///< of the kernel
 
-  /// Whether `steps` are those of the motion in force.
+  /// Returns whether `steps` are those of the motion in force.
   [[nodiscard]] bool has_steps() const { return steps != nullptr && use->motion == motion; }
 };
 
-/// Event functions are numbered in this order:
+/// Evaluates the functions of a model, of which event functions are numbered in this order:
 /// - psi_0 … psi_{n_psi-1};
 /// - the expressions of [[events]];
 /// - the comparisons (guards) of their conditions;
@@ -107,13 +107,13 @@ class ModelKernel {
   /// and cannot be had.
   [[nodiscard]] static Expected<ModelKernel> compile(const model::System& system, NativeCode native = NativeCode::off);
 
-  /// Another kernel of a compiled model, as if it was just compiled with the parameters of its system: nothing is
-  /// differentiated or compiled twice. Others may run meanwhile. Fails (not_available) as compile() does.
+  /// Returns another kernel of a compiled model, as if it was just compiled with the parameters of its system: nothing
+  /// is differentiated or compiled twice. Others may run meanwhile. Fails (not_available) as compile() does.
   [[nodiscard]] static Expected<ModelKernel> of(std::shared_ptr<CompiledModel> model, NativeCode native);
   [[nodiscard]] std::shared_ptr<CompiledModel> compiled() const;
 
-  /// The kernel of a system with the same structure (model::structure) and these parameters, as if it was just compiled
-  /// and bit by bit; what was compiled stays.
+  /// Returns the kernel of a system with the same structure (model::structure) and these parameters, as if it was just
+  /// compiled and bit by bit; what was compiled stays.
   /// @return false, and nothing has changed, where expressions depend on values (roots) or on what was before.
   [[nodiscard]] bool set_parameters(const std::vector<double>& values);
 
@@ -127,9 +127,9 @@ class ModelKernel {
   [[nodiscard]] int outputs() const;
   [[nodiscard]] int controls() const;
 
-  /// xdot = f(t, x, u(t), p, alpha).
+  /// Evaluates xdot = f(t, x, u(t), p, alpha).
   void field(double t, const double* x, const double* alpha, double* xdot) const;
-  /// The same in two parts, bit for bit: what f makes of p and alpha alone, kept by the caller for as long as the
+  /// Does the same in two parts, bit for bit: what f makes of p and alpha alone, kept by the caller for as long as the
   /// selections stay, and the rest. However many selections f sums up, an evaluation pays for none of them (for all
   /// where hold() has changed the motion since).
   void prepare_field(const double* alpha, FieldConstants& constants) const;
@@ -140,106 +140,111 @@ class ModelKernel {
     ++constants.use->evaluations;
     constants.direct(t, x, constants.values.data(), xdot);
   }
-  /// The linear part of f for these selections, null where f is not affine in t and x (by its operations, whatever the
-  /// selections are). Where the selections or cells change it, it is put into `own`; otherwise it stays as it is as
-  /// long as the kernel and the motion. Cost: the first call makes an expression.
+  /// Returns the linear part of f for these selections, null where f is not affine in t and x (by its operations,
+  /// whatever the selections are). Where the selections or cells change it, it is put into `own`; otherwise it stays as
+  /// it is as long as the kernel and the motion. Cost: the first call makes an expression.
   [[nodiscard]] const ode::LinearField* linear_field(const double* alpha, ode::LinearField& own) const;
-  /// The pattern of the Jacobian of f, selections of sliding surfaces being functions of x; null where a dense matrix
-  /// is as good, with guards held and with regions by `indicator`. Stays where it is. Cost: the first call finds it.
+  /// Returns the pattern of the Jacobian of f, selections of sliding surfaces being functions of x; null where a dense
+  /// matrix is as good, with guards held and with regions by `indicator`. Stays where it is. Cost: the first call finds
+  /// it.
   [[nodiscard]] const ode::JacobianPattern* jacobian_pattern() const;
-  /// Values of all event functions.
+  /// Evaluates all event functions.
   void functions(double t, const double* x, const double* alpha, double* values) const;
-  /// Magnitudes from which rounding and tolerances of event functions follow, each over all event functions:
+  /// Evaluates magnitudes from which rounding and tolerances of event functions follow, each over all event functions:
   ///   magnitude_j = sum_i |d_i phi_j x_i| + |d_t phi_j t|,   slope_j = sum_i |d_i phi_j|.
   void scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const;
-  /// Gradient row d phi_j / d x (n_x) and d phi_j / d t.
+  /// Evaluates the gradient row d phi_j / d x (n_x) and d phi_j / d t.
   void gradient(int function, double t, const double* x, const double* alpha, double* row, double* rate) const;
-  /// The number, for lie_derivative() and lie_gradient() only (of order 0, too), of phi_j with its roots of what is 0
-  /// with a switching function 0 there, to rounding: where x is held at 0, with selections of 1/2, and beside it,
-  /// v + sqrt(abs(x))*sign(x) is v. Cost: an expression, once.
+  /// Returns the number, for lie_derivative() and lie_gradient() only (of order 0, too), of phi_j with its roots of
+  /// what is 0 with a switching function 0 there, to rounding: where x is held at 0, with selections of 1/2, and beside
+  /// it, v + sqrt(abs(x))*sign(x) is v. Cost: an expression, once.
   [[nodiscard]] int with_limited_roots(int function) const;
-  /// Whether phi_function has a root of psi_surface, or of what is 0 with it. Cost: that of with_limited_roots().
+  /// Returns whether phi_function has a root of psi_surface, or of what is 0 with it. Cost: that of
+  /// with_limited_roots().
   [[nodiscard]] bool has_root_inside(int function, int surface) const;
-  /// L^order phi_j along f(., alpha) with alpha held, e.g. order 1: grad phi . f + d phi/dt. order >= 1.
+  /// Returns L^order phi_j along f(., alpha) with alpha held, e.g. order 1: grad phi . f + d phi/dt. order >= 1.
   [[nodiscard]] double lie_derivative(int function, int order, double t, const double* x, const double* alpha) const;
-  /// Its gradient (n_x) and derivative with respect to t.
+  /// Evaluates its gradient (n_x) and derivative with respect to t.
   void lie_gradient(int function, int order, double t, const double* x, const double* alpha, double* row,
                     double* rate) const;
   void outputs(double t, const double* x, const double* alpha, double* values) const;
-  /// u(t) during the simulation.
+  /// Evaluates u(t) during the simulation.
   void inputs(double t, const double* alpha, double* values) const;
-  /// Truth (0 or 1) of the condition of [[events]] entry `event` from the steps of its guards.
+  /// Returns the truth (0 or 1) of the condition of [[events]] entry `event` from the steps of its guards.
   [[nodiscard]] bool condition(int event, double t, const double* x, const double* alpha,
                                const double* guard_alpha) const;
 
-  /// Event function of guard `guard` of jump `jump`.
+  /// Returns the event function of guard `guard` of jump `jump`.
   [[nodiscard]] int jump_guard(int jump, int guard) const;
-  /// Truth (0 or 1) of the condition of a jump from the steps of its guards.
+  /// Returns the truth (0 or 1) of the condition of a jump from the steps of its guards.
   [[nodiscard]] bool jump_condition(int jump, double t, const double* x, const double* alpha,
                                     const double* guard_alpha) const;
-  /// Right-hand sides of `set`, one per target.
+  /// Evaluates right-hand sides of `set`, one per target.
   void jump_values(int jump, double t, const double* x, const double* alpha, double* values) const;
   [[nodiscard]] double jump_priority(int jump, double t, const double* x, const double* alpha) const;
   [[nodiscard]] double jump_delay(int jump, double t, const double* x, const double* alpha) const;
 
-  /// Gaps, velocities and what moves them; only for systems with contacts.
+  /// Evaluates gaps, velocities and what moves them; only for systems with contacts.
   void contacts(double t, const double* x, const double* alpha, ContactValues& values) const;
 
-  /// From now on field(), lie_derivative() and depends() are those of the held system
+  /// Makes field(), lie_derivative() and depends() those of the held system
   ///   xdot = f + D mu,  d_k = (d set_k/dx - I) w_k,  w_k = d/dx (d g_k/dt) restricted to the continuous states that
   ///   jump k sets (and those of rate 0 that are in d g_k/dt),
   ///   mu from d^2 g/dt^2 = 0 for all held guards.
   /// An empty list releases all. Fails (outside_class's message) where d g/dt does not hold the states the jump sets;
   /// the motion then is what it was. Cost: expressions and functions are made once per list.
   [[nodiscard]] Expected<void> hold(const std::vector<Hold>& holds);
-  /// -M_kk mu_k with M_ik = d/dx (d g_i/dt) d_k, in the order of hold(): d^2 g_k/dt^2 without the hold if it is the
-  /// only one, and in general of its sign while the guard is pressed on; release where it passes 0. Only while holding.
+  /// Evaluates -M_kk mu_k with M_ik = d/dx (d g_i/dt) d_k, in the order of hold(): d^2 g_k/dt^2 without the hold if it
+  /// is the only one, and in general of its sign while the guard is pressed on; release where it passes 0. Only while
+  /// holding.
   void hold_pressure(double t, const double* x, const double* alpha, double* pressure) const;
 
-  /// Whether phi_j is affine in (t, x) for fixed alpha: by its operations, so floor or a comparison never is.
+  /// Returns whether phi_j is affine in (t, x) for fixed alpha: by its operations, so floor or a comparison never is.
   [[nodiscard]] bool is_affine(int function) const;
-  /// Rows of all affine event functions for these selections. Allocates the first time `rows` is filled.
+  /// Fills rows of all affine event functions for these selections. Allocates the first time `rows` is filled.
   void affine_rows(const double* alpha, AffineRows& rows) const;
-  /// L phi_j along f(., alpha) as a row, if it is affine in t and the states that are not fixed; false if it is not.
+  /// Returns L phi_j along f(., alpha) as a row, if it is affine in t and the states that are not fixed; false if it is
+  /// not.
   [[nodiscard]] bool lie_row(int function, FixedState fixed, const double* alpha, AffineRow& row) const;
-  /// Whether phi_j depends on t and discrete states only (for fixed alpha): between jumps it is a function of time,
-  /// which no selection changes, so that nothing slides on it.
+  /// Returns whether phi_j depends on t and discrete states only (for fixed alpha): between jumps it is a function of
+  /// time, which no selection changes, so that nothing slides on it.
   [[nodiscard]] bool is_time_only(int function) const;
-  /// Switching functions whose alpha occurs in phi_j (after inputs are put in), ascending.
+  /// Returns switching functions whose alpha occurs in phi_j (after inputs are put in), ascending.
   [[nodiscard]] const std::vector<int>& inner(int function) const;
-  /// Whether the normal component grad psi_i . f + d psi_i/dt depends on alpha_j (structurally).
+  /// Returns whether the normal component grad psi_i . f + d psi_i/dt depends on alpha_j (structurally).
   [[nodiscard]] bool depends(int surface, int alpha) const;
-  /// Surfaces other than psi_i of which one depends(.) on the other, or psi_i on it; ascending.
+  /// Returns surfaces other than psi_i of which one depends(.) on the other, or psi_i on it; ascending.
   [[nodiscard]] const std::vector<int>& neighbours(int surface) const;
 
-  /// Whether f has a root of psi_j, or of what is 0 with it, so that its derivative is infinite beside the surface. On
-  /// the surface, to the rounding of psi_j, the root is 0 and so are its derivatives: field() and lie_derivative() are
-  /// those of everything else.
+  /// Returns whether f has a root of psi_j, or of what is 0 with it, so that its derivative is infinite beside the
+  /// surface. On the surface, to the rounding of psi_j, the root is 0 and so are its derivatives: field() and
+  /// lie_derivative() are those of everything else.
   [[nodiscard]] bool has_root(int surface) const;
-  /// Whether it is 0 beyond the surface of its region, too: if d psi_j/dt jumps there, from no side that is always 0.
-  /// Otherwise it is NaN.
+  /// Returns whether it is 0 beyond the surface of its region, too: if d psi_j/dt jumps there, from no side that is
+  /// always 0. Otherwise it is NaN.
   [[nodiscard]] bool root_is_continued(int surface) const;
 
   [[nodiscard]] int cells() const;
-  /// The event function of a cell's upper end (argument - end, negative inside); that of the lower one follows it.
+  /// Returns the event function of a cell's upper end (argument - end, negative inside); that of the lower one follows
+  /// it.
   [[nodiscard]] int cell_function(int cell) const;
   [[nodiscard]] const model::CellTable& cell_table(int cell) const;
   [[nodiscard]] long cell(int cell) const;
   /// Moves one argument to another cell. Part of where a run is, like t and x.
   void set_cell(int cell, long index);
   [[nodiscard]] double cell_argument(int cell, double t, const double* x, const double* alpha) const;
-  /// Whether phi_j holds constants of this cell.
+  /// Returns whether phi_j holds constants of this cell.
   [[nodiscard]] bool depends_on_cell(int function, int cell) const;
 
-  /// The groups of modes by `indicator`.
+  /// Returns the groups of modes by `indicator`.
   [[nodiscard]] const std::vector<RegionRange>& region_groups() const;
-  /// The region whose indicator the others of its group are measured against; -1 before it is first set.
+  /// Returns the region whose indicator the others of its group are measured against; -1 before it is first set.
   [[nodiscard]] int reference(std::size_t group) const;
-  /// Part of where a run is, like cells. f does not depend on it if the weights of all regions are in alpha.
+  /// Sets a part of where a run is, like cells. f does not depend on it if the weights of all regions are in alpha.
   void set_reference(std::size_t group, int function);
 
   [[nodiscard]] long field_evaluations() const;
-  /// Which motion is in force, free or held: the same address, the same motion.
+  /// Returns which motion is in force, free or held: the same address, the same motion.
   [[nodiscard]] const void* motion() const;
 
  private:

@@ -10,10 +10,10 @@
 
 namespace saltus::evaluation {
 
-/// A shared library in memory; closed with the last copy of the handle.
+/// Holds a shared library in memory; closed with the last copy of the handle.
 class NativeLibrary {
  public:
-  /// Address of a function, or nullptr.
+  /// Returns the address of a function, or nullptr.
   [[nodiscard]] void* symbol(const std::string& name) const;
 
  private:
@@ -22,11 +22,11 @@ class NativeLibrary {
   std::shared_ptr<void> handle_;  // shared: functions of one library live in several places
 };
 
-/// $SALTUS_CACHE, else $XDG_CACHE_HOME/saltus, else ~/.cache/saltus; nullopt if none of them is set.
+/// Returns $SALTUS_CACHE, else $XDG_CACHE_HOME/saltus, else ~/.cache/saltus; nullopt if none of them is set.
 [[nodiscard]] std::optional<std::filesystem::path> cache_folder();
 
-/// The library of a C source if it has been compiled before, found by content (the stored source is compared, so two
-/// sources never share a library). Never compiles.
+/// Returns the library of a C source if it has been compiled before, found by content (the stored source is compared,
+/// so two sources never share a library). Never compiles.
 [[nodiscard]] std::optional<NativeLibrary> find_native(const std::string& source);
 
 /// Compiles a C source (cc, or $CC) with -O3 for this machine and -ffp-contract=off, so that results are bit-identical

@@ -22,11 +22,11 @@ class NativeJob;
 /// bit-identical.
 class NativeFunctions {
  public:
-  /// `functions` have names of their own and outlive this without moving; `appended` is C source that may call them.
-  /// Fails (not_available) if native code is insisted on and cannot be had.
+  /// Begins with `functions`, which have names of their own and outlive this without moving; `appended` is C source
+  /// that may call them. Fails (not_available) if native code is insisted on and cannot be had.
   [[nodiscard]] Expected<void> start(NativeCode wanted, std::vector<model::ModelFunction*> functions,
                                      std::string appended = "");
-  /// An interpreted call is about to be made. True if the functions are native from now on.
+  /// Counts an interpreted call that is about to be made. True if the functions are native from now on.
   bool count(const model::ModelFunction& function) {
     if (!waiting_) return false;
     operations_ += static_cast<double>(function.operations());
@@ -38,7 +38,7 @@ class NativeFunctions {
     count(function);
     function(in, out);
   }
-  /// Address of a function of the native code; nullptr as long as everything is interpreted.
+  /// Returns the address of a function of the native code; nullptr as long as everything is interpreted.
   [[nodiscard]] void* symbol(const std::string& name) const { return library_ ? library_->symbol(name) : nullptr; }
 
  private:

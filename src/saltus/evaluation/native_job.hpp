@@ -12,14 +12,15 @@
 
 namespace saltus::evaluation {
 
-/// What find_native() compares and compile_native() compiles: the source below what its machine code depends on.
+/// Returns what find_native() compares and compile_native() compiles: the source below what its machine code depends
+/// on.
 [[nodiscard]] std::string native_content(const std::string& source);
-/// Where the library of a content is.
+/// Returns where the library of a content is.
 [[nodiscard]] std::filesystem::path native_library_file(const std::filesystem::path& folder,
                                                         const std::string& content);
 [[nodiscard]] std::optional<NativeLibrary> open_library(const std::filesystem::path& file);
 
-/// The compiler is ended with the job; nothing half-written is left behind.
+/// Holds a running compiler, which is ended with the job; nothing half-written is left behind.
 class NativeJob {
  public:
   /// Fails (not_available) without cache folder or compiler.
@@ -28,7 +29,7 @@ class NativeJob {
   NativeJob& operator=(const NativeJob&) = delete;
   ~NativeJob();
 
-  /// Whether the compiler has ended. Cost: one call of the system.
+  /// Returns whether the compiler has ended. Cost: one call of the system.
   [[nodiscard]] bool has_ended();
   /// Waits for its end, and puts the library into the cache.
   [[nodiscard]] Expected<NativeLibrary> finish();

@@ -5,7 +5,7 @@
 
 namespace saltus::evaluation {
 
-/// Sliding on one surface with a constant gradient, between two fields f-, f+ which differ in their constants:
+/// Is sliding on one surface with a constant gradient, between two fields f-, f+ which differ in their constants:
 ///   xdot = f- + s (f+ - f-),  s = g- / (g- - g+),  g = row . f + rate,  less its rounding normal to the surface.
 /// Laid out as the C code declares it.
 struct SlidingConstants {
@@ -17,7 +17,7 @@ struct SlidingConstants {
   long only = -1;           ///< the only component of the row that is not 0, or -1
 };
 
-/// Stages along the field of constants (their data), and along SlidingConstants (theirs).
+/// Holds stages along the field of constants (their data), and along SlidingConstants (theirs).
 struct NativeSteps {
   ode::StagesFunctions field, sliding;
 };

@@ -9,7 +9,7 @@
 
 namespace saltus::evaluation {
 
-/// A right-hand side whose roots are 0 where their arguments are no more than rounding.
+/// Holds a right-hand side whose roots are 0 where their arguments are no more than rounding.
 struct RootLimits {
   casadi::SX f;
   std::vector<bool> rooted;     ///< n_psi: whether a root of something that is 0 with psi_j was found in f

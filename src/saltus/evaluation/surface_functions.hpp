@@ -13,15 +13,15 @@ namespace saltus::evaluation {
 
 enum class SurfaceOwner { switching_function, jump, region_border };
 
-/// gradient . x[states] + rate t + constant.
+/// Is gradient . x[states] + rate t + constant.
 struct AffineForm {
   std::vector<double> gradient;
   double rate = 0.0;
   double constant = 0.0;
 };
 
-/// psi(t, x[states]) with the parameters and inputs of the system put in and, for nested functions, the alphas of the
-/// inner ones as their signs say.
+/// Evaluates psi(t, x[states]) with the parameters and inputs of the system put in. In nested functions the alphas of
+/// the inner ones are put in, too, as their signs say.
 struct SurfaceFunction {
   std::string name;
   SurfaceOwner owner = SurfaceOwner::switching_function;
@@ -37,9 +37,9 @@ struct SurfaceFunction {
   std::vector<std::function<double(double t, const double* coordinates)>> within_values;  ///< with `value`
 };
 
-/// One for every column of the result, then one for every guard of [[jumps]]. Then one for every two regions of a group
-/// by `indicator`, which may never be the two smallest ones. Those that depend on no state are left out. Cost: compiles
-/// one function for each that is not affine.
+/// Returns one function for every column of the result, then one for every guard of [[jumps]]. Then one for every two
+/// regions of a group by `indicator`, which may never be the two smallest ones. Those that depend on no state are left
+/// out. Cost: compiles one function for each that is not affine.
 [[nodiscard]] std::vector<SurfaceFunction> surface_functions(const model::System& system);
 
 }  // namespace saltus::evaluation

@@ -21,15 +21,15 @@ class Complaints {
 
   [[nodiscard]] SourceLocation at(const Token& token) const { return {file_, token.line, token.column}; }
 
-  /// The error; there has been a complaint.
+  /// Returns the error; there has been a complaint.
   [[nodiscard]] Error take() { return std::move(error_); }
 
   std::nullopt_t empty(const Token& end);
 
-  /// An operand has to begin at the token with this index, and none does.
+  /// Notes that an operand has to begin at the token with this index, and none does.
   std::nullopt_t missing_operand(std::size_t index);
 
-  /// After a complete operand, the token with this index neither goes on nor closes what is open.
+  /// Notes that, after a complete operand, the token with this index neither goes on nor closes what is open.
   /// @param opening  the innermost open parenthesis, null outside of all
   std::nullopt_t after_operand(std::size_t index, const Token* opening);
 

@@ -9,7 +9,7 @@
 
 namespace saltus::expression {
 
-/// How tightly an expression holds together, loosest first.
+/// Says how tightly an expression holds together, loosest first.
 enum class Precedence { logical_or, logical_and, logical_not, comparison, sum, product, sign, power, primary };
 
 [[nodiscard]] constexpr Precedence tighter(Precedence precedence) {
@@ -51,14 +51,14 @@ inline constexpr std::array binary_operators{
 }
 static_assert(is_table_in_enumerator_order());
 
-/// The loosest left operand that needs no parentheses: 2^3^4 is 2^(3^4), a<b<c is nothing.
+/// Returns the loosest left operand that needs no parentheses: 2^3^4 is 2^(3^4), a<b<c is nothing.
 [[nodiscard]] constexpr Precedence left_operand(const BinaryGrammar& grammar) {
   const bool chains_to_the_left =
       grammar.precedence != Precedence::power && grammar.precedence != Precedence::comparison;
   return chains_to_the_left ? grammar.precedence : tighter(grammar.precedence);
 }
 
-/// The loosest right operand that needs no parentheses; signs are welcome besides (2^-1, a*-b).
+/// Returns the loosest right operand that needs no parentheses; signs are welcome besides (2^-1, a*-b).
 [[nodiscard]] constexpr Precedence right_operand(const BinaryGrammar& grammar) {
   return grammar.precedence == Precedence::power ? Precedence::power : tighter(grammar.precedence);
 }

@@ -11,7 +11,7 @@ namespace saltus::expression {
 
 enum class TokenKind { number, name, symbol, end, invalid };
 
-/// `text` views the expression: a token lives no longer than the text it was cut from.
+/// Holds a `text`, which views the expression: a token lives no longer than the text it was cut from.
 struct Token {
   TokenKind kind = TokenKind::end;
   std::string_view text;
@@ -24,7 +24,7 @@ struct Token {
   }
 };
 
-/// At least one token; the last one is the end, or invalid if the rest cannot be cut into tokens.
+/// Holds at least one token; the last one is the end, or invalid if the rest cannot be cut into tokens.
 struct Tokens {
   std::vector<Token> list;
   std::optional<Error> invalid;  ///< what is wrong with the invalid token, if there is one

@@ -6,7 +6,7 @@
 
 namespace saltus::expression {
 
-/// Text in single quotes for a message, shortened if it is long.
+/// Returns a text in single quotes for a message, shortened if it is long.
 [[nodiscard]] std::string quoted(std::string_view text);
 
 struct SymbolMistake {
@@ -14,14 +14,14 @@ struct SymbolMistake {
   std::string_view remedy;
 };
 
-/// The longest operator of another language with two or more characters ("**", "&&") at the beginning of `rest`, or
-/// null.
+/// Returns the longest operator of another language with two or more characters ("**", "&&") at the beginning of
+/// `rest`, or null.
 [[nodiscard]] const SymbolMistake* long_symbol_mistake(std::string_view rest);
 
-/// Likewise for a single character that no expression contains ("%", "["), or null.
+/// Does likewise for a single character that no expression contains ("%", "["), or null.
 [[nodiscard]] const SymbolMistake* short_symbol_mistake(std::string_view rest);
 
-/// One character beyond printable ASCII at the beginning of a text.
+/// Holds one character beyond printable ASCII at the beginning of a text.
 struct ForeignCharacter {
   std::string_view text;    ///< its bytes
   std::string description;  ///< "'−' (U+2212, minus sign)"; or the byte if it is no UTF-8
@@ -29,7 +29,8 @@ struct ForeignCharacter {
 };
 [[nodiscard]] ForeignCharacter foreign_character(std::string_view rest);
 
-/// What to write instead of the function `name` of another language ("ln", "arcsin"); empty if it is none we know.
+/// Returns what to write instead of the function `name` of another language ("ln", "arcsin"); empty if it is none we
+/// know.
 [[nodiscard]] std::string_view remedy_for_function(std::string_view name);
 
 }  // namespace saltus::expression

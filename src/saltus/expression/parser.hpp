@@ -24,22 +24,21 @@ namespace saltus::expression {
 [[nodiscard]] Expected<NodePtr> parse(std::string_view text, const SourceLocation& start,
                                       const std::vector<std::string>& extra_functions = {});
 
-/// A number as a tree, e.g. for a bare number in a model file; may be negative, as it may not in a parsed tree.
+/// Returns a number as a tree, e.g. for a bare number in a model file; may be negative, as it may not in a parsed tree.
 [[nodiscard]] NodePtr number(double value, const SourceLocation& location);
 
-/// A tree in place of one that could not be read: a name without letters, which nobody can give.
+/// Returns a tree in place of one that could not be read: a name without letters, which nobody can give.
 [[nodiscard]] NodePtr unreadable(const SourceLocation& location);
 
-/// The text of a tree without spaces (but around the words and, or, not), with the parentheses that were written and
-/// those that are needed, numbers as they were written (or, if no text states them, the shortest ones that read back
-/// the same). Names switching functions.
-/// Parsing it gives an equal tree, if the tree was parsed.
+/// Returns the text of a tree without spaces (but around the words and, or, not), with the parentheses that were
+/// written and those that are needed, numbers as they were written (or, if no text states them, the shortest ones that
+/// read back the same). Names switching functions. Parsing it gives an equal tree, if the tree was parsed.
 [[nodiscard]] std::string to_text(const Node& node);
 
-/// The same, with spaces where people put them: around + - and comparisons, behind commas.
+/// Writes the same, with spaces where people put them: around + - and comparisons, behind commas.
 [[nodiscard]] std::string to_spaced_text(const Node& node);
 
-/// Names (not functions) that occur in the tree, each once, in order of appearance.
+/// Returns names (not functions) that occur in the tree, each once, in order of appearance.
 [[nodiscard]] std::vector<std::string> names_in(const Node& node);
 
 struct FunctionSignature {
@@ -47,13 +46,13 @@ struct FunctionSignature {
   int arguments;
 };
 
-/// All functions of the language.
+/// Returns all functions of the language.
 [[nodiscard]] const std::vector<FunctionSignature>& functions();
 
-/// Whether the language keeps `name` for itself: t, pi, and, or, not, otherwise and the names of functions.
+/// Returns whether the language keeps `name` for itself: t, pi, and, or, not, otherwise and the names of functions.
 [[nodiscard]] bool is_reserved(std::string_view name);
 
-/// Whether `name` consists of letters, digits and underscores (ASCII) without a leading digit.
+/// Returns whether `name` consists of letters, digits and underscores (ASCII) without a leading digit.
 [[nodiscard]] bool is_identifier(std::string_view name);
 
 }  // namespace saltus::expression

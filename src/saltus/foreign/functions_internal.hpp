@@ -10,7 +10,7 @@
 
 namespace saltus::foreign {
 
-/// Functions of w that are evaluated once per point.
+/// Holds functions of w that are evaluated once per point.
 class CachedFunction {
  public:
   CachedFunction() = default;

@@ -15,19 +15,19 @@ namespace saltus::foreign {
 
 using Json = nlohmann::json;
 
-/// Members of the file, as what they stand for; keeps the first error and goes on with empty values.
+/// Reads members of the file, as what they stand for; keeps the first error and goes on with empty values.
 class JsonFile {
  public:
-  /// Infinity, -Infinity and NaN are taken for numbers though JSON has none.
+  /// Takes Infinity, -Infinity and NaN for numbers though JSON has none.
   JsonFile(const std::string& text, std::string file);
 
   [[nodiscard]] bool has(const char* key) const { return json_.is_object() && json_.contains(key); }
-  /// A list of numbers, or one number for a list of one.
+  /// Reads a list of numbers, or one number for a list of one.
   /// @param size  how many there have to be; absent: any number of them
   std::vector<double> numbers(const char* key, std::optional<std::size_t> size = std::nullopt);
-  /// A serialised expression, a column of symbols.
+  /// Reads a serialised expression, a column of symbols.
   casadi::SX symbols(const char* key);
-  /// The values of a serialised function f(w) or f(w, p); numbers of p are put in.
+  /// Reads the values of a serialised function f(w) or f(w, p); numbers of p are put in.
   std::vector<casadi::SX> values(const char* key, const casadi::SX& w, const std::vector<double>& p);
 
   void fail(std::string message, std::string remedy = "", ErrorCode code = ErrorCode::parse_failure);

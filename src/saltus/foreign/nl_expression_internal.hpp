@@ -12,7 +12,7 @@
 
 namespace saltus::foreign {
 
-/// What stands behind `o`.
+/// Holds what stands behind `o`.
 struct NlOperator {
   int code = 0;
   int operands = 0;  ///< -1: a list, whose length is the next line
@@ -20,14 +20,14 @@ struct NlOperator {
   casadi::SX (*make)(std::span<const casadi::SX> operands);
 };
 
-/// nullptr if nobody knows the code.
+/// Returns nullptr if nobody knows the code.
 [[nodiscard]] const NlOperator* nl_operator(long code);
 
-/// sum of |changes of slope| max(x - breakpoint, 0), zero where x is.
+/// Returns sum of |changes of slope| max(x - breakpoint, 0), zero where x is.
 [[nodiscard]] casadi::SX piecewise_linear(const std::vector<double>& slopes, const std::vector<double>& breakpoints,
                                           const casadi::SX& x);
 
-/// The names that expressions may use.
+/// Holds the names that expressions may use.
 struct NlNames {
   std::vector<casadi::SX> variables;
   std::unordered_map<long, casadi::SX> defined;  ///< common expressions, numbered behind the variables

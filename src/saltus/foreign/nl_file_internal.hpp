@@ -18,7 +18,7 @@ struct NlHeader {
   long jacobian_entries = 0, gradient_entries = 0;  ///< of segments J and G, all together
 };
 
-/// Line of segment b or r. Type 5 of r: the row complements a variable.
+/// Holds the line of segment b or r. Type 5 of r: the row complements a variable.
 struct NlBound {
   double lower = -infinity;
   double upper = infinity;
@@ -28,7 +28,7 @@ struct NlBound {
   int line = 0;
 };
 
-/// A row or an objective: its nonlinear part, and its linear one.
+/// Holds a row or an objective: its nonlinear part, and its linear one.
 struct NlBody {
   std::optional<casadi::SX> nonlinear;
   casadi::SX linear = 0.0;
@@ -46,11 +46,11 @@ struct NlFile {
   std::vector<std::string> notes;
 };
 
-/// The ten lines at the beginning.
+/// Reads the ten lines at the beginning.
 [[nodiscard]] NlHeader read_header(NlLines& lines);
-/// Everything behind the header; errors stay in `lines`.
+/// Reads everything behind the header; errors stay in `lines`.
 void read_segments(NlLines& lines, NlFile& file);
-/// Segments b and r, whose first line has been read.
+/// Reads segments b and r, whose first line has been read.
 void read_bounds(NlLines& lines, long count, std::vector<NlBound>& bounds);
 void read_row_bounds(NlLines& lines, NlFile& file);
 

@@ -16,21 +16,21 @@ class NlLines {
  public:
   NlLines(std::string_view text, std::string file);
 
-  /// To the next line with words; `expected` says what should stand there if there is none. False at the end.
+  /// Goes to the next line with words; `expected` says what should stand there if there is none. False at the end.
   bool advance(std::string_view expected);
-  /// To the next line, if there is one.
+  /// Goes to the next line, if there is one.
   bool advance_if_any();
 
   [[nodiscard]] std::size_t words() const { return words_.size(); }
   [[nodiscard]] std::string_view word(std::size_t i) const { return i < words_.size() ? words_[i] : ""; }
-  /// First character of the line: what segments and operands are called by.
+  /// Returns the first character of the line: what segments and operands are called by.
   [[nodiscard]] char letter() const { return words_.empty() ? '\0' : words_.front().front(); }
 
-  /// Word i as a whole number from low to high. `what` is what was expected, for the error.
+  /// Reads word i as a whole number from low to high. `what` is what was expected, for the error.
   long whole(std::size_t i, std::string_view what, long low, long high);
-  /// What follows the letter of the line.
+  /// Reads what follows the letter of the line.
   long whole_behind_letter(std::string_view what, long low, long high);
-  /// Word i as a number, infinite ones among them, NaN not.
+  /// Reads word i as a number, infinite ones among them, NaN not.
   double number(std::size_t i, std::string_view what);
   double number_behind_letter(std::string_view what);
 
@@ -38,7 +38,7 @@ class NlLines {
   [[nodiscard]] bool failed() const { return error_.has_value(); }
   [[nodiscard]] const Error& error() const { return *error_; }
   [[nodiscard]] int line() const { return line_; }
-  /// Lines of the text from the next one on: no list in it is longer.
+  /// Returns the number of lines of the text from the next one on: no list in it is longer.
   [[nodiscard]] long lines_left() const { return lines_ - line_; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace saltus::foreign {
 
-/// What AMPL writes beside an .nl file, one name a line: NAME.col and NAME.row. Empty where there are none.
+/// Holds what AMPL writes beside an .nl file, one name a line: NAME.col and NAME.row. Empty where there are none.
 struct Names {
   std::string columns;
   std::string rows;

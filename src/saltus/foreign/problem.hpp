@@ -9,9 +9,10 @@
 
 namespace saltus::foreign {
 
-/// Variables are those of the file in its order; behind them two for each complementarity with a variable between two
-/// bounds (its row = plus - minus). Rows g are the file's, without those that are one side of a pair; behind them those
-/// of such complementarities. Functions and first derivatives are evaluated once per point. Made by `parse`.
+/// States the problem of a file, whose variables are those of the file in its order; behind them two for each
+/// complementarity with a variable between two bounds (its row = plus - minus). Rows g are the file's, without those
+/// that are one side of a pair; behind them those of such complementarities. Functions and first derivatives are
+/// evaluated once per point. Made by `parse`.
 class Problem final : public mpcc::Problem {
  public:
   struct Implementation;
@@ -37,13 +38,13 @@ class Problem final : public mpcc::Problem {
   [[nodiscard]] std::string row_name(int row) const override;
 
   [[nodiscard]] int file_variables() const;
-  /// Names of the file's variables; empty if it has none.
+  /// Returns names of the file's variables; empty if it has none.
   [[nodiscard]] const std::vector<std::string>& file_names() const;
-  /// An objective in the file's own sense: a file may maximise, `objective` is always minimised.
+  /// Returns an objective in the file's own sense: a file may maximise, `objective` is always minimised.
   [[nodiscard]] double in_sense_of_file(double objective) const;
-  /// All variables from those of the file, moved onto their bounds.
+  /// Returns all variables from those of the file, moved onto their bounds.
   [[nodiscard]] Eigen::VectorXd complete(mpcc::ConstVectorView x) const;
-  /// What a person should know of how the file was read.
+  /// Returns what a person should know of how the file was read.
   [[nodiscard]] const std::vector<std::string>& notes() const;
 
  private:

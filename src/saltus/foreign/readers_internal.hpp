@@ -12,7 +12,7 @@
 namespace saltus::foreign {
 
 [[nodiscard]] Expected<Statement> parse_nl(std::string_view text, const std::string& file, const Names& names);
-/// NOSBENCH and mpecopt's MacMPEC.
+/// Reads NOSBENCH and mpecopt's MacMPEC.
 [[nodiscard]] Expected<Statement> parse_json(const std::string& text, const std::string& file);
 
 }  // namespace saltus::foreign

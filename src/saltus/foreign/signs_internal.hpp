@@ -10,8 +10,8 @@
 
 namespace saltus::foreign {
 
-/// One per side (row of `sides`): implied if it is affine in w and a sum of distances of variables from their finite
-/// bounds with positive weights.
+/// Returns one per side (row of `sides`): implied if it is affine in w and a sum of distances of variables from their
+/// finite bounds with positive weights.
 /// @param jacobian  of sides
 [[nodiscard]] std::vector<mpcc::Sign> signs_of(const casadi::SX& w, const casadi::SX& sides, const casadi::SX& jacobian,
                                                const mpcc::Bounds& bounds);

@@ -14,7 +14,7 @@ inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 enum class Sense { minimize, maximize };
 
-/// A row lower <= expression <= upper.
+/// Holds a row lower <= expression <= upper.
 struct Row {
   casadi::SX expression;
   double lower = -infinity;
@@ -22,14 +22,14 @@ struct Row {
   std::string name;  ///< may be empty, and so below
 };
 
-/// 0 <= G _|_ H >= 0.
+/// States 0 <= G _|_ H >= 0.
 struct Pair {
   casadi::SX G;
   casadi::SX H;
   std::string name;
 };
 
-/// body = plus - minus with two variables behind those of the file, both >= 0.
+/// States body = plus - minus with two variables behind those of the file, both >= 0.
 struct Split {
   casadi::SX body;
   int plus = 0;
@@ -48,8 +48,8 @@ struct Statement {
   std::vector<std::string> notes;  ///< what a person should know of how the file was read
 };
 
-/// A mixed complementarity: lower <= side <= upper, both finite, and body >= 0 where the side is at lower, <= 0 where
-/// it is at upper, else 0. Becomes body = p - n with (side - lower) _|_ p and (upper - side) _|_ n.
+/// Adds a mixed complementarity: lower <= side <= upper, both finite, and body >= 0 where the side is at lower, <= 0
+/// where it is at upper, else 0. Becomes body = p - n with (side - lower) _|_ p and (upper - side) _|_ n.
 void add_box(Statement& statement, const casadi::SX& side, double lower, double upper, const casadi::SX& body,
              const std::string& name);
 

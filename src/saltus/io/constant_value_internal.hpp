@@ -7,7 +7,7 @@
 
 namespace saltus::io {
 
-/// The value of an expression of numbers, pi and smooth functions; nullopt if anything else occurs in it.
+/// Returns the value of an expression of numbers, pi and smooth functions; nullopt if anything else occurs in it.
 [[nodiscard]] std::optional<double> constant_value(const expression::Node& node);
 
 }  // namespace saltus::io

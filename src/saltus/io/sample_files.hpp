@@ -10,7 +10,7 @@
 
 namespace saltus::io {
 
-/// Two columns of a file, with the line each row stands in.
+/// Holds two columns of a file, with the line each row stands in.
 struct Columns {
   std::string file;
   std::vector<double> first, second;
@@ -24,11 +24,11 @@ struct Columns {
 [[nodiscard]] Expected<Columns> parse_columns(std::string_view text, const std::string& file,
                                               const std::string& second);
 
-/// The mistake that was found in the columns, with the line of its row.
+/// Returns the mistake that was found in the columns, with the line of its row.
 [[nodiscard]] Error located(const model::PointMistake& mistake, const Columns& columns);
 
-/// The piecewise constant control of a stored result: of an optimisation one sample per control interval, else one per
-/// row of its trajectory, of rows at one time the last. Fails if there is no such control.
+/// Reads the piecewise constant control of a stored result: of an optimisation one sample per control interval, else
+/// one per row of its trajectory, of rows at one time the last. Fails if there is no such control.
 /// @param file  for messages
 [[nodiscard]] Expected<Columns> parse_control(const std::string& text, const std::string& file,
                                               const std::string& control);

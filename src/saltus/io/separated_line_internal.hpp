@@ -7,11 +7,11 @@
 
 namespace saltus::io {
 
-/// The fields of a line. It is separated by semicolons if there are some, else by commas, else by tabs, between which a
-/// field may be empty; else by spaces. Quotes around a field are taken away.
+/// Returns the fields of a line. It is separated by semicolons if there are some, else by commas, else by tabs, between
+/// which a field may be empty; else by spaces. Quotes around a field are taken away.
 [[nodiscard]] std::vector<std::string_view> separated_fields(std::string_view line);
 
-/// The number a field states, may begin with +; nullopt if it is none.
+/// Returns the number a field states, may begin with +; nullopt if it is none.
 [[nodiscard]] std::optional<double> separated_number(std::string_view field);
 
 }  // namespace saltus::io

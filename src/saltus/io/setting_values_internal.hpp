@@ -9,21 +9,21 @@
 
 namespace saltus::io {
 
-/// "--set KEY" as the place of an error.
+/// Returns "--set KEY" as the place of an error.
 [[nodiscard]] SourceLocation place_of_setting(std::string_view key);
 
-/// An error of --set KEY=VALUE.
+/// Returns an error of --set KEY=VALUE.
 [[nodiscard]] tl::unexpected<Error> refused_setting(std::string_view key, ErrorCode code, std::string message,
                                                     std::string remedy);
 
 /// Takes what a control is given away, for something else.
 void withdraw_input(model::Description& description, std::string_view name);
 
-/// Whether the value of a setting is a table, as in { points = 11 }.
+/// Returns whether the value of a setting is a table, as in { points = 11 }.
 [[nodiscard]] bool is_table_text(std::string_view value);
 
-/// A table behind --set: what is written there replaces what the model has, and the rest stays. Errors are those of the same
-/// table in a file.
+/// Reads a table behind --set: what is written there replaces what the model has, and the rest stays. Errors are those
+/// of the same table in a file.
 /// @param key  below [simulate], or a table of [optimize] that read_optimize_key reads; the model has that one
 [[nodiscard]] Expected<void> set_table(ModelFile& model, std::string_view key, std::string_view value);
 

@@ -6,7 +6,7 @@
 
 namespace saltus::io {
 
-/// SHA-256 of some bytes as 64 lower-case hexadecimal digits. Reference: FIPS 180-4.
+/// Returns SHA-256 of some bytes as 64 lower-case hexadecimal digits. Reference: FIPS 180-4.
 [[nodiscard]] std::string sha256(std::string_view bytes);
 
 }  // namespace saltus::io

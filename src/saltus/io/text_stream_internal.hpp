@@ -14,7 +14,7 @@ class TextStream {
   /// The sink must outlive it.
   explicit TextStream(Sink sink) : sink_(sink) {}
 
-  /// What is appended here is passed on by one of the next two.
+  /// Returns the text that is appended to, which is passed on by one of the next two.
   [[nodiscard]] std::string& text() { return text_; }
   /// Passes on what is there if that is much; false if the sink wants no more.
   bool pass() { return text_.size() < longest ? good_ : flush(); }
@@ -32,13 +32,13 @@ class TextStream {
   bool good_ = true;
 };
 
-/// What a writer of parts returns where its sink took all, or did not.
+/// Returns what a writer of parts returns where its sink took all, or did not.
 [[nodiscard]] inline Expected<void> taken(bool all) {
   if (all) return {};
   return tl::unexpected(Error{ErrorCode::io_failure, "not everything was taken", "", {}, {}});
 }
 
-/// All that a writer writes.
+/// Returns all that a writer writes.
 [[nodiscard]] inline std::string collected(Writer writer) {
   std::string all;
   static_cast<void>(writer([&](std::string_view piece) {

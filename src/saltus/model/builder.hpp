@@ -18,27 +18,27 @@
 
 namespace saltus::model {
 
-/// Initial value and bounds (for optimisation) of a state or control, in model units.
+/// Holds initial value and bounds (for optimisation) of a state or control, in model units.
 struct Values {
   double initial = 0.0;
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
 };
 
-/// Thresholds of a hysteresis, different ones, in the unit of its input, and 0 or 1 at the start.
+/// Holds thresholds of a hysteresis, different ones, in the unit of its input, and 0 or 1 at the start.
 struct HysteresisValues {
   double on = 1.0, off = 0.0;
   double initial = 0.0;
 };
 
-/// What is done at an event of the user, and which crossings count.
+/// Holds what is done at an event of the user, and which crossings count.
 struct EventOptions {
   std::optional<std::string> name{};  ///< event1, event2, … by position if absent
   Direction direction = Direction::both;
   AtEvent action = AtEvent::record;
 };
 
-/// How a jump is executed once it is triggered (docs/model-file.md, [[jumps]]).
+/// Says how a jump is executed once it is triggered (docs/model-file.md, [[jumps]]).
 struct JumpOptions {
   std::optional<std::string> name{};  ///< jump1, jump2, … by position if absent
   bool at_start = false;              ///< also where the condition holds at the start
@@ -48,7 +48,8 @@ struct JumpOptions {
   JumpValues values = JumpValues::at_trigger;
 };
 
-/// M(q) dv/dt = force - grad potential - coriolis + forces of contacts, dq/dt = v (docs/model-file.md, [mechanics]).
+/// States M(q) dv/dt = force - grad potential - coriolis + forces of contacts, dq/dt = v (docs/model-file.md,
+/// [mechanics]).
 struct Mechanics {
   std::vector<std::string> positions{}, velocities{};  ///< states, in the same order
   casadi::SX mass{};                                   ///< n x n over positions and parameters; 0 x 0: identity
@@ -58,7 +59,7 @@ struct Mechanics {
   std::vector<DrawnShape> draw{};             ///< of the bodies, over positions and parameters; for the report
 };
 
-/// gap >= 0, with friction along a tangent, or in the plane of two (docs/model-file.md, [[contacts]]).
+/// States gap >= 0, with friction along a tangent, or in the plane of two (docs/model-file.md, [[contacts]]).
 struct ContactOptions {
   std::map<std::string, casadi::SX> tangent{};         ///< by position; empty: frictionless
   casadi::SX friction = 0.0;                           ///< >= 0, over parameters
@@ -88,15 +89,15 @@ class Builder {
   void set_description(std::string text);
   void set_inclusion(Inclusion inclusion);
 
-  /// The time t.
+  /// Returns the time t.
   [[nodiscard]] casadi::SX time() const;
   /// @param value  finite; shared switching functions, folding and kinks are decided for it
   casadi::SX parameter(const std::string& name, double value);
   casadi::SX state(const std::string& name, const Values& values);
-  /// A state that changes by jumps only: its rate is 0, and a comparison of such states is decided as written where
-  /// both sides are equal.
+  /// Adds a state that changes by jumps only: its rate is 0, and a comparison of such states is decided as written
+  /// where both sides are equal.
   casadi::SX discrete_state(const std::string& name, double initial);
-  /// A name that is 0 or 1: a discrete state that becomes 1 where `input` rises through `on` and 0 where it falls
+  /// Adds a name that is 0 or 1: a discrete state that becomes 1 where `input` rises through `on` and 0 where it falls
   /// through `off` (on > off), or the other way round (on < off). A jump of the same name changes it. Where the input
   /// is beyond a threshold at the start, the side it is on holds, with a warning.
   /// @param input  over states and parameters
@@ -105,19 +106,19 @@ class Builder {
   /// Declares the switching function psi under a name and returns psi itself.
   casadi::SX switching(const std::string& name, const casadi::SX& psi);
 
-  /// step(e) = alpha, in [0, 1] on e = 0; `name` for the switching function, by default the text of e.
+  /// Returns step(e) = alpha, in [0, 1] on e = 0; `name` for the switching function, by default the text of e.
   casadi::SX step(const casadi::SX& e, const std::string& name = "");
   casadi::SX sign(const casadi::SX& e, const std::string& name = "");
   casadi::SX abs(const casadi::SX& e, const std::string& name = "");
-  /// Switching function a - b.
+  /// Adds the switching function a - b.
   casadi::SX max(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
   casadi::SX min(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
-  /// a where the condition holds, else b; NaN of the branch not taken does not spread.
+  /// Returns a where the condition holds, else b; NaN of the branch not taken does not spread.
   casadi::SX if_(const Condition& condition, const casadi::SX& a, const casadi::SX& b);
 
-  /// The largest integer not above e, an expression of time and parameters: right-continuous, it jumps there.
+  /// Returns the largest integer not above e, an expression of time and parameters: right-continuous, it jumps there.
   casadi::SX floor(const casadi::SX& e);
-  /// e - m floor(e / m), in [0, m) for m > 0; m a constant other than 0.
+  /// Returns e - m floor(e / m), in [0, m) for m > 0; m a constant other than 0.
   casadi::SX mod(const casadi::SX& e, const casadi::SX& m);
   /// Declares a table under a name and returns it as a function of one argument, any expression of the model:
   ///   const auto road = model.table("road", {0, 1, 2}, {0, 0.1, 0});
@@ -129,40 +130,40 @@ class Builder {
   std::function<casadi::SX(const casadi::SX&)> table(const std::string& name, const std::vector<double>& x,
                                                      const std::vector<double>& y, TableKind kind = TableKind::linear);
 
-  /// d state / dt; at most once for every state, and exactly once for one that no mode mentions.
+  /// Sets d state / dt; at most once for every state, and exactly once for one that no mode mentions.
   void dynamics(const std::string& state, const casadi::SX& rate);
   /// Gives positions and velocities their dynamics; once at most. The result has the output `energy`.
   void mechanics(const Mechanics& mechanics);
-  /// Bodies that do not pass through each other: gap over positions, parameters and time, >= 0 at the start. The result
-  /// has the outputs gap(name), force(name), friction(name), impulse(name).
+  /// Adds bodies that do not pass through each other: gap over positions, parameters and time, >= 0 at the start. The
+  /// result has the outputs gap(name), force(name), friction(name), impulse(name).
   void contact(const std::string& name, const casadi::SX& gap, const ContactOptions& options = {});
-  /// One mode of a group: where the condition holds, the rates are added to those of dynamics() and of the modes of
-  /// other groups; a state that is not among them gets 0. The modes of a group cover every sign pattern of their
+  /// Adds one mode of a group: where the condition holds, the rates are added to those of dynamics() and of the modes
+  /// of other groups; a state that is not among them gets 0. The modes of a group cover every sign pattern of their
   /// switching functions exactly once.
   void mode(const Condition& when, const std::map<std::string, casadi::SX>& rates, const std::string& group = "");
-  /// One mode of a group by indicator: it holds where its indicator is the smallest of the group (Stewart's form); the
-  /// fields of regions with equal indicators mix. Without a name it is mode1, mode2, … by its position.
+  /// Adds one mode of a group by indicator: it holds where its indicator is the smallest of the group (Stewart's form);
+  /// the fields of regions with equal indicators mix. Without a name it is mode1, mode2, … by its position.
   void region(const casadi::SX& indicator, const std::map<std::string, casadi::SX>& rates, const std::string& name = "",
               const std::string& group = "");
-  /// The mode that holds where no other one of the group does.
+  /// Adds the mode that holds where no other one of the group does.
   void otherwise(const std::map<std::string, casadi::SX>& rates, const std::string& group = "");
   void output(const std::string& name, const casadi::SX& expression);
-  /// Zeros of an expression, or edges of a condition.
+  /// Adds zeros of an expression, or edges of a condition.
   void event(const casadi::SX& expression, const EventOptions& options = {});
   void event(const Condition& condition, const EventOptions& options = {});
-  /// When the condition becomes true, the states of `set` get their new values, all at once.
+  /// Gives the states of `set` their new values, all at once, when the condition becomes true.
   void jump(const Condition& when, const std::map<std::string, casadi::SX>& set, const JumpOptions& options = {});
-  /// When the guard has passed 0 in the given direction.
+  /// Does so when the guard has passed 0 in the given direction.
   void jump(const casadi::SX& guard, Direction direction, const std::map<std::string, casadi::SX>& set,
             const JumpOptions& options = {});
-  /// At times in ascending order.
+  /// Does so at times in ascending order.
   void jump_at(const std::vector<double>& times, const std::map<std::string, casadi::SX>& set,
                const JumpOptions& options = {});
-  /// At start + k period, k = 1, 2, …
+  /// Does so at start + k period, k = 1, 2, …
   void jump_every(double period, const std::map<std::string, casadi::SX>& set, const JumpOptions& options = {});
-  /// The control during a simulation, an expression of time and parameters; its initial value otherwise.
+  /// Sets the control during a simulation, an expression of time and parameters; its initial value otherwise.
   void input(const std::string& control, const casadi::SX& expression);
-  /// The same, piecewise constant: values[k] from times[k] on, the first one before.
+  /// Sets the same, piecewise constant: values[k] from times[k] on, the first one before.
   /// @param times  ascending; one finite value each
   void input(const std::string& control, const std::vector<double>& times, const std::vector<double>& values);
 

@@ -7,20 +7,20 @@
 
 namespace saltus::model {
 
-/// Interpolation between the points of a table.
+/// Names interpolation between the points of a table.
 enum class TableKind {
   linear,  ///< straight between points: kinks at all of them
   cubic,   ///< not-a-knot cubic spline: twice differentiable inside, kinks at the two ends
 };
 
-/// The real line cut at its breaks; a break belongs to the cell above it (right-continuous). Within a cell a function
-/// of the argument is a smooth expression of the cell's constants and the argument.
+/// Holds the real line cut at its breaks; a break belongs to the cell above it (right-continuous). Within a cell a
+/// function of the argument is a smooth expression of the cell's constants and the argument.
 struct CellTable {
   enum class Breaks {
     integers,  ///< cell k is [k, k + 1) and its only constant is k
     listed,    ///< cell k is [breaks[k - 1], breaks[k]), unbounded below the first and above the last
   };
-  /// What happens at a break.
+  /// Says what happens at a break.
   enum class Change {
     jump,  ///< the function jumps: signs of switching functions are read anew
     kink,  ///< it is continuous, some derivative is not
@@ -32,26 +32,27 @@ struct CellTable {
   std::vector<double> constants;  ///< (breaks + 1) rows of `columns`, for `listed`
   int columns = 1;
 
-  /// The cell an argument lies in; 0 for NaN.
+  /// Returns the cell an argument lies in; 0 for NaN.
   [[nodiscard]] long cell(double argument) const;
-  /// The ends of a cell; infinite where it is unbounded.
+  /// Returns the ends of a cell; infinite where it is unbounded.
   [[nodiscard]] double lower(long cell) const;
   [[nodiscard]] double upper(long cell) const;
   [[nodiscard]] double constant(long cell, int column) const;
 };
 
-/// Cells of floor: the constant is the largest integer not above the argument.
+/// Returns cells of floor: the constant is the largest integer not above the argument.
 [[nodiscard]] CellTable integer_cells();
 
-/// Cells of a table: with constants (x_k, y_k, b_k) of a linear one the value is y_k + b_k d, d = argument - x_k; with
-/// (x_k, y_k, b_k, c_k, d_k) of a cubic one it is y_k + d (b_k + d (c_k + d d_k)). Constant outside [x_0, x_n].
-/// The points must have passed find_mistake. Cost: linear in the number of points.
+/// Returns cells of a table: with constants (x_k, y_k, b_k) of a linear one the value is y_k + b_k d, d = argument -
+/// x_k; with (x_k, y_k, b_k, c_k, d_k) of a cubic one it is y_k + d (b_k + d (c_k + d d_k)). Constant outside [x_0,
+/// x_n]. The points must have passed find_mistake. Cost: linear in the number of points.
 [[nodiscard]] CellTable table_cells(const std::vector<double>& x, const std::vector<double>& y, TableKind kind);
 
-/// Cells of a piecewise constant function: value k from time k on, the first one before; equal neighbours are one cell.
+/// Returns cells of a piecewise constant function: value k from time k on, the first one before; equal neighbours are
+/// one cell.
 [[nodiscard]] CellTable step_cells(const std::vector<double>& t, const std::vector<double>& values);
 
-/// Points that cannot be a table.
+/// Holds points that cannot be a table.
 struct PointMistake {
   std::string message, remedy;
   std::optional<std::size_t> point{};  ///< the one that is wrong
@@ -61,10 +62,11 @@ struct PointMistake {
 /// Largest number of points of a table or of samples of an input.
 inline constexpr std::size_t most_points = 1'000'000;
 
-/// Different lengths, too few points (2 linear, 4 cubic), too many, not finite, arguments that do not ascend.
+/// Checks for different lengths, too few points (2 linear, 4 cubic), too many, not finite, arguments that do not
+/// ascend.
 [[nodiscard]] std::optional<PointMistake> find_mistake(const std::vector<double>& x, const std::vector<double>& y,
                                                        TableKind kind);
-/// The same for samples of an input, of which one is enough.
+/// Does the same for samples of an input, of which one is enough.
 [[nodiscard]] std::optional<PointMistake> find_mistake(const std::vector<double>& t, const std::vector<double>& values);
 
 }  // namespace saltus::model

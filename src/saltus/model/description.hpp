@@ -18,7 +18,7 @@ enum class Inclusion { filippov, aizerman_pyatnitskii };
 enum class Direction { up, down, both };
 enum class AtEvent { record, stop };
 
-/// What turns a jump of [[jumps]] on (docs/model-file.md).
+/// Says what turns a jump of [[jumps]] on (docs/model-file.md).
 enum class JumpTrigger {
   condition,   ///< a condition becomes true
   guard_down,  ///< g < 0 becomes true
@@ -26,17 +26,17 @@ enum class JumpTrigger {
   guard_both,  ///< either
   times,       ///< given times
 };
-/// When the right-hand sides of `set` are evaluated.
+/// Says when the right-hand sides of `set` are evaluated.
 enum class JumpValues { at_trigger, at_execution };
 
-/// name = "expression"; location is that of the name, the expression carries its own positions.
+/// Holds name = "expression"; location is that of the name, the expression carries its own positions.
 struct NamedExpression {
   std::string name;
   expression::NodePtr expression;
   SourceLocation location;
 };
 
-/// Bounds are expressions of parameters; absent means unbounded.
+/// Holds a quantity, whose bounds are expressions of parameters; absent means unbounded.
 struct StateDescription {
   std::string name;
   expression::NodePtr initial;
@@ -60,7 +60,7 @@ struct UserEventDescription {
   SourceLocation location;
 };
 
-/// One of [[modes]]. The modes of one group share out the sign patterns of their switching functions; groups are
+/// Holds one of [[modes]]. The modes of one group share out the sign patterns of their switching functions; groups are
 /// summed.
 struct ModeDescription {
   std::string group;                      ///< empty: the group without a name
@@ -71,7 +71,7 @@ struct ModeDescription {
   SourceLocation location;
 };
 
-/// One of [[jumps]].
+/// Holds one of [[jumps]].
 struct JumpDescription {
   std::optional<std::string> name;
   JumpTrigger trigger = JumpTrigger::condition;
@@ -87,7 +87,7 @@ struct JumpDescription {
   SourceLocation location;
 };
 
-/// [tables.name]: name(e) is a function of one argument.
+/// Holds [tables.name]: name(e) is a function of one argument.
 struct TableDescription {
   std::string name;
   std::vector<double> x, y;  ///< free of mistakes (find_mistake)
@@ -95,14 +95,15 @@ struct TableDescription {
   SourceLocation location;
 };
 
-/// A piecewise constant input: value k from times[k] on, the first one before.
+/// Holds a piecewise constant input: value k from times[k] on, the first one before.
 struct SampledInput {
   std::string name;
   std::vector<double> times, values;  ///< free of mistakes (find_mistake)
   SourceLocation location;
 };
 
-/// A model file without its [simulate] table and the numerical options of [optimize]. All vectors are in the order of the file.
+/// Holds a model file without its [simulate] table and the numerical options of [optimize]. All vectors are in the
+/// order of the file.
 struct Description {
   std::string file;
   std::string name;
@@ -130,8 +131,8 @@ struct Description {
   std::vector<expression::NodePtr> replaced;  ///< by settings: the file uses what they name
 };
 
-/// `--set NAME=VALUE`: replaces a parameter, an initial value or a control's constant value; VALUE is an expression of
-/// constants (numbers, pi, functions). Unknown names are errors with the nearest known ones.
+/// Holds `--set NAME=VALUE`: replaces a parameter, an initial value or a control's constant value; VALUE is an
+/// expression of constants (numbers, pi, functions). Unknown names are errors with the nearest known ones.
 struct Override {
   std::string name;
   expression::NodePtr value;

@@ -7,9 +7,9 @@
 
 namespace saltus::model {
 
-/// What build() would refuse, and what it would refuse next were that put right. A name whose meaning could not be
-/// worked out says nothing about the expressions that use it. Trees may be expression::unreadable, of which nothing is
-/// told: whoever read them has. Empty for a description that build() takes.
+/// Returns what build() would refuse, and what it would refuse next were that put right. A name whose meaning could not
+/// be worked out says nothing about the expressions that use it. Trees may be expression::unreadable, of which nothing
+/// is told: whoever read them has. Empty for a description that build() takes.
 [[nodiscard]] std::vector<Error> find_mistakes(const Description& description);
 
 }  // namespace saltus::model

@@ -15,7 +15,7 @@
 
 namespace saltus::model {
 
-/// lower <= y_output <= upper, y the outputs of Ocp::system; one of both may be infinite.
+/// States lower <= y_output <= upper, y the outputs of Ocp::system; one of both may be infinite.
 struct OcpConstraint {
   std::string name;  ///< as written
   int output = 0;
@@ -26,7 +26,7 @@ struct OcpConstraint {
   bool at_stages = false;  ///< of a slack: its slack is one of `stage_slacks`
 };
 
-/// r'W r, r = y_of - reference.
+/// States r'W r, r = y_of - reference.
 struct OcpLeastSquares {
   std::vector<int> of;
   std::vector<int> reference;  ///< outputs of t and p; empty: 0, or samples
@@ -35,7 +35,7 @@ struct OcpLeastSquares {
   CostPoints at = CostPoints::intervals;
 };
 
-/// What initial_guess says of one quantity.
+/// Holds what initial_guess says of one quantity.
 struct OcpGuess {
   enum class Kind { state, control, parameter };
   Kind kind = Kind::state;
@@ -49,13 +49,13 @@ struct OcpHorizon {
   double lower = 0.0, upper = 0.0;
 };
 
-/// Time frozen by hand, or for contacts and hysteresis: x_state is physical time, dx_state / dtau its speed.
+/// Holds the time frozen by hand, or for contacts and hysteresis: x_state is physical time, dx_state / dtau its speed.
 struct OcpClock {
   int state = 0;
   double speed_lower = 1.0, speed_upper = 1.0;
 };
 
-/// An optimal control problem is
+/// States an optimal control problem:
 ///   min  int L dt + E(x(T), T, p) + w T + least squares + penalties
 ///   over u_k (one per interval), free T, free x_i(from) and free p
 ///   subject to xdot = f(t, x, u, p, alpha), bounds, path and terminal constraints and complementarities.
@@ -89,7 +89,7 @@ struct Ocp {
 /// @return the problem, or the first error with file, line, column and remedy.
 [[nodiscard]] Expected<Ocp> build_ocp(const Description& description, const std::vector<Override>& overrides = {});
 
-/// The system with piecewise constant controls: u = values[k] from times[k] on, the first one before.
+/// Builds the system with piecewise constant controls: u = values[k] from times[k] on, the first one before.
 /// @param times  ascending
 /// @param values  one row per time, one column per control
 [[nodiscard]] System with_controls(System system, const std::vector<double>& times,

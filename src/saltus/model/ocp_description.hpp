@@ -10,7 +10,7 @@
 
 namespace saltus::model {
 
-/// How a violated constraint is paid for; hard ones are not violated.
+/// Says how a violated constraint is paid for; hard ones are not violated.
 enum class ConstraintNorm {
   hard,
   l1,    ///< penalty times the sum of violations
@@ -21,7 +21,7 @@ enum class ConstraintPoints { intervals, elements, stages };
 enum class CostPoints { intervals, stages, end };
 enum class Relation { less_equal, greater_equal, equal };
 
-/// sides[0] relations[0] sides[1] (relations[1] sides[2]): one comparison, or the two-sided a <= e <= b.
+/// Holds sides[0] relations[0] sides[1] (relations[1] sides[2]): one comparison, or the two-sided a <= e <= b.
 struct ConstraintDescription {
   std::string text;  ///< as written: its name in results
   std::vector<expression::NodePtr> sides;
@@ -38,7 +38,7 @@ struct HorizonDescription {
   SourceLocation location;
 };
 
-/// One of [[optimize.least_squares]].
+/// Holds one of [[optimize.least_squares]].
 struct LeastSquaresDescription {
   std::vector<expression::NodePtr> of;
   std::vector<expression::NodePtr> reference;            ///< one per expression; empty: 0, or samples
@@ -54,14 +54,14 @@ struct PathComplementarityDescription {
   SourceLocation location;
 };
 
-/// The guess of a state, a control or a free parameter: an expression of t and parameters.
+/// Holds the guess of a state, a control or a free parameter: an expression of t and parameters.
 struct GuessDescription {
   std::string name;
   expression::NodePtr expression;
   SourceLocation location;
 };
 
-/// [optimize] without its numerical options.
+/// Holds [optimize] without its numerical options.
 struct OcpDescription {
   expression::NodePtr from;  ///< null means 0
   HorizonDescription horizon;
@@ -75,14 +75,15 @@ struct OcpDescription {
   SourceLocation location;
 };
 
-/// lower <= . <= upper of [parameters] name = { initial, lower, upper, free = true }.
+/// Holds lower <= . <= upper of [parameters] name = { initial, lower, upper, free = true }.
 struct FreeParameterDescription {
   std::string name;
   expression::NodePtr lower, upper;
   SourceLocation location;
 };
 
-/// [time_freezing]: of a model whose regions freeze time by hand, or how it is frozen at contacts and in hysteresis.
+/// Holds [time_freezing]: of a model whose regions freeze time by hand, or how it is frozen at contacts and in
+/// hysteresis.
 struct ClockDescription {
   std::string clock;                             ///< the state that is physical time; empty: there is none by hand
   expression::NodePtr speed_lower, speed_upper;  ///< null: 1

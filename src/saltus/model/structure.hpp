@@ -8,9 +8,9 @@
 
 namespace saltus::model {
 
-/// The operations of all expressions that a simulation compiles, in their order, with their constants, with symbols by
-/// their places; values of parameters and initial states are not in it. Two systems with the same structure have the
-/// same compiled functions, bit by bit. Cost: one look at every operation, table and jump.
+/// Returns the operations of all expressions that a simulation compiles, in their order, with their constants, with
+/// symbols by their places; values of parameters and initial states are not in it. Two systems with the same structure
+/// have the same compiled functions, bit by bit. Cost: one look at every operation, table and jump.
 [[nodiscard]] std::vector<std::uint64_t> structure(const System& system);
 
 }  // namespace saltus::model

@@ -7,8 +7,8 @@
 
 namespace saltus::model {
 
-/// For every switching function the states whose right-hand side has its selection, ascending; by the form of the
-/// expressions, without evaluating them.
+/// Returns for every switching function the states whose right-hand side has its selection, ascending; by the form of
+/// the expressions, without evaluating them.
 [[nodiscard]] std::vector<std::vector<int>> switched_rates(const System& system);
 
 }  // namespace saltus::model

@@ -15,7 +15,7 @@
 
 namespace saltus::model {
 
-/// How a switching function takes part in a result.
+/// Says how a switching function takes part in a result.
 enum class SwitchingRole {
   listed,      ///< makes a jump somewhere: column in the result, each change of sign is an event
   kink,        ///< nothing jumps on its surface: restart only (column if named)
@@ -24,7 +24,8 @@ enum class SwitchingRole {
   region,      ///< of a mode by `indicator`: see ModeGroup; in no column
 };
 
-/// psi_j(t, x, u, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index (nesting).
+/// Holds psi_j(t, x, u, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index
+/// (nesting).
 struct SwitchingFunction {
   std::string name;  ///< declared name, or the argument's text without spaces at its first place
   casadi::SX psi;    ///< scalar over t, x, u, p and the alphas of inner surfaces
@@ -36,18 +37,18 @@ struct SwitchingFunction {
   /// them: it counts where psi is identically 0 until a jump.
   double alpha_at_zero = 0.5;
   bool continuous = false;  ///< listed, though nothing jumps on its surface: an edge of a layer
-  /// Whether f is the same on both sides: then nothing slides on the surface.
+  /// Returns whether f is the same on both sides: then nothing slides on the surface.
   [[nodiscard]] bool is_kink() const { return role == SwitchingRole::kink || continuous; }
 };
 
-/// A column of the result: a switching function, or an alias of one (the same surface named twice).
+/// Holds a column of the result: a switching function, or an alias of one (the same surface named twice).
 struct SwitchingColumn {
   std::string name;
   int function = 0;      ///< index into System::switching
   int orientation = +1;  ///< -1 if this name's psi is a negative multiple of the function's
 };
 
-/// `when` of [[events]]: value = 0 is the event if `guards` is empty; otherwise a condition whose truth is the
+/// Holds `when` of [[events]]: value = 0 is the event if `guards` is empty; otherwise a condition whose truth is the
 /// polynomial `value` (0 or 1) in `guard_alpha` (step of each guard, decided as written at equality).
 struct UserEvent {
   std::string name;  ///< given, or event1, event2, … by position
@@ -60,9 +61,9 @@ struct UserEvent {
   AtEvent action = AtEvent::record;
 };
 
-/// One of [[jumps]]: x[targets] <- values when it is executed. Conditions hold pointwise, as in UserEvent: `value` is a
-/// polynomial (0 or 1) in `guard_alpha`; a comparison that may stand at equality on discrete states (==, !=) is two
-/// guards. A guard with a direction is guards = g (1 x 1) and no value.
+/// Holds one of [[jumps]]: x[targets] <- values when it is executed. Conditions hold pointwise, as in UserEvent:
+/// `value` is a polynomial (0 or 1) in `guard_alpha`; a comparison that may stand at equality on discrete states (==,
+/// !=) is two guards. A guard with a direction is guards = g (1 x 1) and no value.
 struct Jump {
   std::string name;  ///< given, or jump1, jump2, … by position
   bool named = false;
@@ -81,7 +82,7 @@ struct Jump {
   JumpValues evaluated = JumpValues::at_trigger;
 };
 
-/// A piece of an expression that is smooth in every cell of its argument: floor, a table, a sampled input. The
+/// Holds a piece of an expression that is smooth in every cell of its argument: floor, a table, a sampled input. The
 /// expressions of a System hold the symbols; whoever evaluates them keeps the constants of the cell in which the
 /// argument is, and moves them where it leaves the cell.
 struct Cell {
@@ -91,7 +92,7 @@ struct Cell {
   std::shared_ptr<const CellTable> table;
 };
 
-/// A group of [[modes]], of which one holds at a time; its part of the right-hand side is in f.
+/// Holds a group of [[modes]], of which one holds at a time; its part of the right-hand side is in f.
 ///
 /// By `when` the regions are unions of sign patterns. By `indicator` (Stewart's form [stewart1990]) region i is where
 /// g_i is smallest. Where several are, their fields f_i mix with weights theta_i >= 0, sum_i theta_i = 1. Each region
@@ -110,7 +111,7 @@ struct ModeGroup {
 struct TimeFreezing;  // time_freezing/time_freezing.hpp
 struct FrozenSystem;
 
-/// xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j), with the constants of cells as further symbols. With
+/// Holds xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j), with the constants of cells as further symbols. With
 /// Inclusion::filippov f is multi-affine in the alphas of listed functions (those of kinks and time events are 0 or 1
 /// wherever their value matters). All expressions are over the symbols t, x, u, p, alpha of this value. Units are the
 /// model's. Structure (which functions exist, what folded, what is a kink) holds for parameter_values.

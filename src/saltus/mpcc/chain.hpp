@@ -5,7 +5,7 @@
 
 namespace saltus::mpcc {
 
-/// Consecutive numbers first, first + 1, ..., first + count - 1.
+/// Holds consecutive numbers first, first + 1, ..., first + count - 1.
 struct IndexRange {
   int first = 0;
   int count = 0;
@@ -13,7 +13,7 @@ struct IndexRange {
   [[nodiscard]] int end() const { return first + count; }
 };
 
-/// Where the parts of one element stand. Elements of one chain are alike in all counts.
+/// Says where the parts of one element stand. Elements of one chain are alike in all counts.
 struct ElementPlace {
   IndexRange variables;  ///< all of its own
   IndexRange rows;       ///< of g
@@ -22,15 +22,15 @@ struct ElementPlace {
   std::vector<int> link_state, link_multipliers;
 };
 
-/// The elements between two nodes, and what they share.
+/// Holds the elements between two nodes, and what they share.
 struct IntervalPlace {
   IndexRange shared;  ///< controls, speed of time and lengths
   int first_element = 0;
   int elements = 0;
 };
 
-/// Intervals from left to right. `border` is shared by all of them (horizon, free parameters); `start` belongs to the
-/// left end of the first (free initial state and its multipliers).
+/// Holds intervals from left to right. `border` is shared by all of them (horizon, free parameters); `start` belongs to
+/// the left end of the first (free initial state and its multipliers).
 struct Chain {
   std::vector<IntervalPlace> intervals;
   std::vector<ElementPlace> elements;

@@ -14,7 +14,7 @@ namespace saltus::mpcc {
 using ConstVectorView = Eigen::Ref<const Eigen::VectorXd>;
 using VectorView = Eigen::Ref<Eigen::VectorXd>;
 
-/// Places of the entries of a sparse matrix; entries of the same place add up.
+/// Holds places of the entries of a sparse matrix; entries of the same place add up.
 struct Pattern {
   std::vector<int> row;
   std::vector<int> column;
@@ -26,13 +26,13 @@ struct Pattern {
   }
 };
 
-/// lower <= . <= upper, componentwise; -inf and +inf where there is no bound.
+/// Holds lower <= . <= upper, componentwise; -inf and +inf where there is no bound.
 struct Bounds {
   Eigen::VectorXd lower;
   Eigen::VectorXd upper;
 };
 
-/// Whether one side of a pair is known to be nonnegative.
+/// Says whether one side of a pair is known to be nonnegative.
 enum class Sign {
   constrained,  ///< 0 <= G_i(w) is a constraint of its own
   /// Follows from the bounds of w, nobody need impose it again. The side is affine, a sum of distances of variables
@@ -42,7 +42,7 @@ enum class Sign {
   implied,
 };
 
-/// Which side of a pair is zero.
+/// Says which side of a pair is zero.
 enum class ActiveSide {
   G,         ///< G_i is zero, H_i is not
   H,         ///< H_i is zero, G_i is not
@@ -50,27 +50,27 @@ enum class ActiveSide {
   none,      ///< neither: not complementary
 };
 
-/// What a branch problem fixes besides the sides of its pairs (Problem::close_branch).
+/// Holds what a branch problem fixes besides the sides of its pairs (Problem::close_branch).
 struct BranchClosure {
   std::vector<int> at_lower;               ///< variables fixed at their lower bounds
   std::vector<int> at_upper;               ///< and upper ones
   std::vector<std::pair<int, int>> equal;  ///< variables of equal value
   std::vector<int> dropped_rows;           ///< of g: those of a method, not of the user's problem
-  /// What the branch leaves open, not what the user asks for: variables fixed at a bound, and rows of g without bounds
-  /// that are equations here, g = 0. A solver may do without them where they leave no solution.
+  /// Holds what the branch leaves open, not what the user asks for: variables fixed at a bound, and rows of g without
+  /// bounds that are equations here, g = 0. A solver may do without them where they leave no solution.
   struct Freedom {
     std::vector<int> at_lower, at_upper, rows;
     [[nodiscard]] bool is_empty() const { return at_lower.empty() && at_upper.empty() && rows.empty(); }
   } freedom;
 };
 
-/// Another choice of sides, and where to begin to solve it.
+/// Holds another choice of sides, and where to begin to solve it.
 struct BranchMove {
   std::vector<ActiveSide> sides;
   Eigen::VectorXd start;
 };
 
-/// min f(w)   subject to   lower_w <= w <= upper_w,   lower_g <= g(w) <= upper_g,   0 <= G(w) _|_ H(w) >= 0.
+/// States min f(w)   subject to   lower_w <= w <= upper_w,   lower_g <= g(w) <= upper_g,   0 <= G(w) _|_ H(w) >= 0.
 ///
 /// All constraint functions together are c(w) = (g, G, H), n_g + 2 n_pairs rows. Patterns are fixed for the life of the
 /// problem; parameters live inside of it and may be changed between solutions. Without pairs it is a nonlinear program.
@@ -91,47 +91,47 @@ class Problem {
 
   [[nodiscard]] virtual const Bounds& variable_bounds() const = 0;
   [[nodiscard]] virtual const Bounds& constraint_bounds() const = 0;  ///< of g only
-  /// For the rows of G, then those of H: 2 n_pairs.
+  /// Returns signs for the rows of G, then those of H: 2 n_pairs.
   [[nodiscard]] virtual const std::vector<Sign>& signs() const = 0;
 
   [[nodiscard]] virtual double objective(ConstVectorView w) = 0;
   virtual void objective_gradient(ConstVectorView w, VectorView gradient) = 0;  ///< n_w
   virtual void functions(ConstVectorView w, VectorView c) = 0;                  ///< rows()
-  /// Values of dc/dw in the order of jacobian_pattern(), which has rows() rows.
+  /// Evaluates values of dc/dw in the order of jacobian_pattern(), which has rows() rows.
   virtual void jacobian(ConstVectorView w, VectorView values) = 0;
-  /// Values of the lower triangle of factor d2f/dw2 + sum_i y_i d2c_i/dw2 in the order of hessian_pattern().
+  /// Evaluates values of the lower triangle of factor d2f/dw2 + sum_i y_i d2c_i/dw2 in the order of hessian_pattern().
   virtual void hessian(ConstVectorView w, double objective_factor, ConstVectorView y, VectorView values) = 0;
   [[nodiscard]] virtual const Pattern& jacobian_pattern() const = 0;
   [[nodiscard]] virtual const Pattern& hessian_pattern() const = 0;
 
-  /// Where to begin, n_w; by default 0, moved onto the bounds.
+  /// Returns where to begin, n_w; by default 0, moved onto the bounds.
   [[nodiscard]] virtual Eigen::VectorXd start() const;
   [[nodiscard]] virtual std::string name(int variable) const;  ///< by default "w[3]"
-  /// Of a row of (g, G, H); by default "g[0]", "G[5]", "H[5]".
+  /// Returns the name of a row of (g, G, H); by default "g[0]", "G[5]", "H[5]".
   [[nodiscard]] virtual std::string row_name(int row) const;
-  /// Structure for solvers that use it; null for problems without any.
+  /// Returns structure for solvers that use it; null for problems without any.
   [[nodiscard]] virtual const Chain* chain() const { return nullptr; }
 
   // A discretisation may add terms of its own to the objective and rows of its own to g. They steer the relaxed
   // problems and are no part of what the user asks for.
 
-  /// From now on objective() and its derivatives contain the method's terms, scaled for a relaxed problem that starts
-  /// at w. They never do before the first call, nor after without_method_terms().
+  /// Makes objective() and its derivatives contain the method's terms, scaled for a relaxed problem that starts at w.
+  /// They never do before the first call, nor after without_method_terms().
   virtual void with_method_terms(ConstVectorView w) { static_cast<void>(w); }
   virtual void without_method_terms() {}
-  /// From now on parameters that a method follows down with the relaxation have their values at this part of it: 1 at
-  /// the first relaxed problem of a path, 0 (as before the first call) for the problem itself.
+  /// Gives parameters that a method follows down with the relaxation their values at this part of it: 1 at the first
+  /// relaxed problem of a path, 0 (as before the first call) for the problem itself.
   virtual void relaxed_by(double part) { static_cast<void>(part); }
-  /// Pairs of the same group have the same zero side in a branch problem; -1: a pair of the method's own, which a
-  /// branch problem leaves out. By default every pair is its own group.
+  /// Returns groups of pairs, which have the same zero side in a branch problem; -1: a pair of the method's own, which
+  /// a branch problem leaves out. By default every pair is its own group.
   [[nodiscard]] virtual int pair_group(int pair) const { return pair; }
-  /// What else a branch problem with these zero sides (G or H, one per pair) fixes, makes equal and leaves out.
+  /// Returns what else a branch problem with these zero sides (G or H, one per pair) fixes, makes equal and leaves out.
   [[nodiscard]] virtual BranchClosure close_branch(const std::vector<ActiveSide>& sides) const;
   /// Gives variables that only the rows of a method ask for the values that these rows have at w, a solution of a
   /// branch problem. By default there are none.
   virtual void complete(VectorView w) { static_cast<void>(w); }
-  /// Other sides with which the same point can be written, although no pair of it is biactive: what a closure keeps
-  /// apart (an element of length zero has the modes of either neighbour). By default none.
+  /// Returns other sides with which the same point can be written, although no pair of it is biactive: what a closure
+  /// keeps apart (an element of length zero has the modes of either neighbour). By default none.
   [[nodiscard]] virtual std::vector<BranchMove> equal_branches(const std::vector<ActiveSide>& sides,
                                                                ConstVectorView w) const;
 };

@@ -18,36 +18,36 @@ using BernsteinCoefficients = std::array<double, event_nodes>;
 inline constexpr int series_degree = 16;
 using SeriesCoefficients = std::array<double, series_degree + 1>;
 
-/// Interpolation nodes in [0, 1], ascending, both ends among them (Chebyshev-Lobatto), and the nodes between them at
-/// which an interpolant is checked.
+/// Returns interpolation nodes in [0, 1], ascending, both ends among them (Chebyshev-Lobatto), and the nodes between
+/// them at which an interpolant is checked.
 [[nodiscard]] const std::array<double, event_nodes>& interpolation_nodes();
 [[nodiscard]] const std::array<double, event_degree>& check_nodes();
 
-/// Bernstein coefficients of the interpolant with the given values at interpolation_nodes(). The end coefficients are
-/// the end values bit for bit; scaling the values by a power of two scales the coefficients exactly.
+/// Returns Bernstein coefficients of the interpolant with the given values at interpolation_nodes(). The end
+/// coefficients are the end values bit for bit; scaling the values by a power of two scales the coefficients exactly.
 ///
 /// Accuracy: the result is the exact interpolant of values changed by a few roundings of the largest coefficient;
 /// single coefficients amplify errors of the values by up to 184, values of the polynomial by less than 3.
 [[nodiscard]] BernsteinCoefficients to_bernstein(std::span<const double, event_nodes> values);
 
-/// Value (de Casteljau), and derivative with respect to theta, at theta in [0, 1].
+/// Evaluates the value (de Casteljau), and derivative with respect to theta, at theta in [0, 1].
 [[nodiscard]] double evaluate(const BernsteinCoefficients& coefficients, double theta);
 [[nodiscard]] double evaluate(const SeriesCoefficients& coefficients, double theta);
 [[nodiscard]] double derivative(const BernsteinCoefficients& coefficients, double theta);
 [[nodiscard]] double derivative(const SeriesCoefficients& coefficients, double theta);
 
-/// Bernstein coefficients on [0, 1] of sum_k terms_k theta^k.
+/// Returns Bernstein coefficients on [0, 1] of sum_k terms_k theta^k.
 ///
 /// Accuracy: every coefficient is a sum of parts of the terms; its error is below series_rounding times the sum of
 /// their sizes. Scaling the terms by a power of two scales the coefficients exactly.
 [[nodiscard]] SeriesCoefficients to_bernstein(const SeriesCoefficients& terms);
 /// A sum of series_degree + 1 products: as many half units, and one for the table.
 inline constexpr double series_rounding = (series_degree + 2) * 0x1p-53;
-/// The same polynomial on [from, to], 0 <= from < to <= 1, as coefficients on [0, 1].
+/// Returns the same polynomial on [from, to], 0 <= from < to <= 1, as coefficients on [0, 1].
 [[nodiscard]] SeriesCoefficients part_of(const SeriesCoefficients& coefficients, double from, double to);
 
-/// A bracket [lower, upper] of one sign change: the value's sign is that at 0+ just below `lower`, the other above
-/// `upper`.
+/// Holds a bracket [lower, upper] of one sign change: the value's sign is that at 0+ just below `lower`, the other
+/// above `upper`.
 struct SignChange {
   double lower = 0.0;
   double upper = 0.0;
@@ -68,8 +68,8 @@ template <std::size_t nodes>
   return k == nodes;
 }
 
-/// True only if first_sign_change finds nothing with the same arguments: no coefficient is beyond the noise on the
-/// other side. The cheap way out for almost every event function in almost every step; false for NaN.
+/// Returns true only if first_sign_change finds nothing with the same arguments: no coefficient is beyond the noise on
+/// the other side. The cheap way out for almost every event function in almost every step; false for NaN.
 template <std::size_t nodes = event_nodes>
 [[nodiscard]] inline bool certainly_no_sign_change(const std::array<double, nodes>& coefficients, int sign,
                                                    int zero_order, double noise) {
@@ -103,7 +103,7 @@ template <std::size_t nodes = event_nodes>
                                                           int zero_order, double noise);
 [[nodiscard]] std::optional<SignChange> first_sign_change(const SeriesCoefficients& coefficients, int sign,
                                                           int zero_order, double noise);
-/// The same for the polynomial with these terms, sum_k terms_k theta^k, in less time.
+/// Returns the same for the polynomial with these terms, sum_k terms_k theta^k, in less time.
 [[nodiscard]] std::optional<SignChange> first_sign_change(const SeriesCoefficients& coefficients,
                                                           const SeriesCoefficients& terms, int sign, int zero_order,
                                                           double noise);

@@ -13,7 +13,7 @@ constexpr double binomial(std::size_t n, std::size_t k) {
   return value;
 }
 
-/// 1 / C(degree, k).
+/// Returns 1 / C(degree, k).
 template <std::size_t degree>
 constexpr auto inverse_binomials() {
   std::array<double, degree + 1> row{};
@@ -21,8 +21,8 @@ constexpr auto inverse_binomials() {
   return row;
 }
 
-/// In place of b_j the sum of C(j, k) b_k over k, j = 0 ... degree: Bernstein coefficients from the terms of a power
-/// series over C(degree, k). By sums of neighbours, all of them written out.
+/// Puts in place of b_j the sum of C(j, k) b_k over k, j = 0 ... degree: Bernstein coefficients from the terms of a
+/// power series over C(degree, k). By sums of neighbours, all of them written out.
 template <std::size_t degree, class Value, std::size_t... j>
 [[gnu::always_inline]] inline void add_neighbours(Value* b, std::index_sequence<j...>) {
   ((b[degree - j] += b[degree - j - 1]), ...);
@@ -36,7 +36,7 @@ template <std::size_t degree, class Value>
   binomial_sums<degree>(b, std::make_index_sequence<degree>{});
 }
 
-/// Corner cutting down to two coefficients, those of the tangent at theta.
+/// Cuts corners down to two coefficients, those of the tangent at theta.
 template <std::size_t nodes>
 std::array<double, 2> tangent(const std::array<double, nodes>& coefficients, double theta) {
   std::array<double, nodes> b = coefficients;

@@ -5,12 +5,12 @@
 
 namespace saltus::ode {
 
-/// Three successive terms of a sequence.
+/// Holds three successive terms of a sequence.
 struct SuccessiveTerms {
   double first = 0.0, second = 0.0, third = 0.0;
 };
 
-/// Aitken's delta-squared process: the limit x_3 + d_2^2 / (d_1 - d_2), d_k = x_(k+1) - x_k, which is exact for
+/// Does Aitken's delta-squared process: the limit x_3 + d_2^2 / (d_1 - d_2), d_k = x_(k+1) - x_k, which is exact for
 /// geometric sequences of any ratio below 1.
 /// @param ratio  r < 1, by which the whole shrinks that x is a component of. Where |d_2| > (1 + r) / 2 |d_1| the
 ///               differences are rounding, and the limit is x_3.

@@ -6,7 +6,7 @@
 
 namespace saltus::ode {
 
-/// A and c of f(t, x) = A x + b + c t, for n states. Derivatives of solutions need no more: x'' = A x' + c.
+/// Holds A and c of f(t, x) = A x + b + c t, for n states. Derivatives of solutions need no more: x'' = A x' + c.
 struct LinearField {
   std::vector<double> diagonal;  ///< of A, n
   std::vector<std::size_t> start,

@@ -6,8 +6,8 @@
 
 namespace saltus::ode {
 
-/// p(theta) = c0 + s (c1 + r (c2 + s (c3 + ...))), s = theta, r = 1 - theta, on [0, 1]: a component of a DenseStep, or
-/// a linear combination of components.
+/// Holds p(theta) = c0 + s (c1 + r (c2 + s (c3 + ...))), s = theta, r = 1 - theta, on [0, 1]: a component of a
+/// DenseStep, or a linear combination of components.
 struct NestedPolynomial {
   static constexpr std::size_t most = 8;
   std::array<double, most> c{};  ///< the first degree + 1 of them

@@ -9,7 +9,7 @@
 
 namespace saltus::ode {
 
-/// The step under trial; `x` and `slope` stay as they are during it.
+/// Holds the step under trial; `x` and `slope` stay as they are during it.
 struct RadauTrial {
   RightHandSide f;
   double t;
@@ -20,21 +20,21 @@ struct RadauTrial {
   const JacobianPattern* pattern;  ///< null: dense
 };
 
-/// One step of one of the methods: new value, error estimate, collocation polynomial.
+/// Takes one step of one of the methods: new value, error estimate, collocation polynomial.
 class Radau {
  public:
   virtual ~Radau() = default;
 
-  /// `x_new` and `slope_new` are results, n doubles each; `evaluations` of f are counted up.
+  /// Attempts a step, of which `x_new` and `slope_new` are results, n doubles each; `evaluations` of f are counted up.
   virtual Attempt attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) = 0;
   [[nodiscard]] virtual double error_norm() const = 0;
-  /// Coefficients 1 to s of the nested form of the collocation polynomial of the last attempt, s n doubles.
+  /// Evaluates coefficients 1 to s of the nested form of the collocation polynomial of the last attempt, s n doubles.
   virtual void dense(double* coefficients) const = 0;
   /// Forgets the Jacobian and the steps before: the right-hand side has changed.
   virtual void restart() = 0;
 };
 
-/// Null for methods that are none of these.
+/// Returns null for methods that are none of these.
 [[nodiscard]] std::unique_ptr<Radau> make_radau(Method method, int n);
 
 }  // namespace saltus::ode

@@ -29,7 +29,7 @@ inline double natural_size(const Tolerances& tolerances) {
   return tolerances.rtol > 0.0 ? tolerances.atol / tolerances.rtol : 0.0;
 }
 
-/// Until the next correction would be a rounding, or corrections are rounding and no longer fall.
+/// Iterates until the next correction would be a rounding, or corrections are rounding and no longer fall.
 template <class Tableau>
 auto RadauSteps<Tableau>::iterate(const RadauTrial& trial) -> Outcome {
   const double stagnation = std::clamp(1e-2 * trial.tolerances.rtol, 1e3 * radau_epsilon, 1e-8);
@@ -63,7 +63,7 @@ bool RadauSteps<Tableau>::stage_slopes(const RadauTrial& trial) {
   return true;
 }
 
-/// The corrections of the transformed increments (IV.8.4).
+/// Solves for the corrections of the transformed increments (IV.8.4).
 template <class Tableau>
 void RadauSteps<Tableau>::solve_systems(double h) {
   const auto mixed = [&](std::size_t row, Eigen::Index i) {
@@ -90,7 +90,7 @@ void RadauSteps<Tableau>::solve_systems(double h) {
   }
 }
 
-/// One Newton correction; returns its largest component relative to the size of the component.
+/// Makes one Newton correction; returns its largest component relative to the size of the component.
 template <class Tableau>
 double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
   solve_systems(trial.h);
@@ -114,8 +114,8 @@ double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
   return largest;
 }
 
-/// Forward differences, each into the direction in which the solution goes: a domain that ends at the start is not
-/// left.
+/// Takes forward differences, each into the direction in which the solution goes: a domain that ends at the start is
+/// not left.
 template <class Tableau>
 bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
   largest_ = start_.cwiseAbs().maxCoeff();
@@ -145,7 +145,7 @@ double RadauSteps<Tableau>::increment(const RadauTrial& trial, Eigen::Index colu
   return std::copysign(increment, reach);
 }
 
-/// Columns that have no row in common, all at once.
+/// Takes the difference of columns that have no row in common, all at once.
 template <class Tableau>
 bool RadauSteps<Tableau>::difference(const RadauTrial& trial, const std::vector<std::size_t>& columns,
                                      double direction) {

@@ -15,12 +15,12 @@ namespace saltus::ode {
 template <std::size_t n>
 using Square = std::array<std::array<double, n>, n>;
 
-/// alpha +- i beta.
+/// Holds alpha +- i beta.
 struct EigenvaluePair {
   double alpha, beta;
 };
 
-/// Of all of them: `gamma` and `pairs` are the eigenvalues of the inverse of the coefficient matrix A, and
+/// Holds, of all of them: `gamma` and `pairs` are the eigenvalues of the inverse of the coefficient matrix A, and
 /// inverse(A) t = t diag(gamma, ((alpha, -beta), (beta, alpha)), ...). `error` has the weights of the stages'
 /// increments in the error estimate, whose order is the number of stages: that of the quadrature with a node at 0 of
 /// weight 1/gamma beside the others.

@@ -26,7 +26,7 @@ inline constexpr double bracket_width = 0x1p-40;
 // Parts are bisected two bits beyond the brackets; what is undecided there is a dip narrower than any bracket.
 inline constexpr int deepest = 42;
 
-/// Without initial values: a list of these is on the stack of every search.
+/// Holds a part without initial values: a list of these is on the stack of every search.
 template <std::size_t nodes>
 struct Part {
   double start;
@@ -34,7 +34,7 @@ struct Part {
   Coefficients<nodes> b;
 };
 
-/// Both parts of a polynomial cut at theta, each on its own [0, 1].
+/// Holds both parts of a polynomial cut at theta, each on its own [0, 1].
 template <std::size_t nodes>
 struct Halves {
   Coefficients<nodes> left;
@@ -59,7 +59,7 @@ enum class Verdict {
   split,  ///< undecided
 };
 
-/// For a part that does not begin low.
+/// Judges a part that does not begin low.
 template <std::size_t nodes>
 Verdict judge(const Coefficients<nodes>& b, double noise) {
   const auto is_low = [noise](double value) { return !(value >= -noise); };
@@ -74,7 +74,7 @@ Verdict judge(const Coefficients<nodes>& b, double noise) {
   return shallow ? Verdict::none : Verdict::split;
 }
 
-/// The part in which the polynomial gets low for the first time (exactly once, or at the limit of resolution).
+/// Finds the part in which the polynomial gets low for the first time (exactly once, or at the limit of resolution).
 template <std::size_t nodes>
 std::optional<Part<nodes>> first_descent(const Coefficients<nodes>& coefficients, double noise) {
   std::array<Part<nodes>, deepest + 1> pending;  // leftmost last; each is at most as wide as the next one
@@ -147,8 +147,8 @@ SignChange narrow(SignChange bracket, Function&& value) {
   return bracket;
 }
 
-/// A polynomial by Horner's rule in theta / (1 - theta), from the nearer end: a quarter of the work of de Casteljau,
-/// and as few roundings of the coefficients.
+/// Evaluates a polynomial by Horner's rule in theta / (1 - theta), from the nearer end: a quarter of the work of de
+/// Casteljau, and as few roundings of the coefficients.
 template <std::size_t nodes>
 class Scaled {
  public:
@@ -192,8 +192,8 @@ class Scaled {
   Coefficients<nodes> c_;
 };
 
-/// p(theta) / theta^order for a polynomial whose first `order` coefficients are 0, raised to the full degree again by
-/// leaving the last coefficients unused.
+/// Evaluates p(theta) / theta^order for a polynomial whose first `order` coefficients are 0, raised to the full degree
+/// again by leaving the last coefficients unused.
 template <std::size_t nodes>
 class Quotient {
  public:
@@ -217,7 +217,7 @@ class Quotient {
   int degree_;
 };
 
-/// A high point from which the polynomial descends to a low one without rising to high again; 0 if there is none.
+/// Finds a high point from which the polynomial descends to a low one without rising to high again; 0 if there is none.
 template <std::size_t nodes>
 double high_before(const Coefficients<nodes>& p, double low, double noise) {
   // Seen backwards from the low point and upside down, the part in which it gets high is a first descent. There it ends
@@ -229,9 +229,9 @@ double high_before(const Coefficients<nodes>& p, double low, double noise) {
   return ascent ? low * (1.0 - std::min(1.0, ascent->start + ascent->width)) : 0.0;
 }
 
-/// Values of a polynomial, and of what is left of it without its zero at 0, from its Bernstein coefficients.
+/// Evaluates values of a polynomial, and of what is left of it without its zero at 0, from its Bernstein coefficients.
 struct FromCoefficients {
-  /// A bracket of the zero of a polynomial that falls once, if it is found in a quicker way than by narrowing.
+  /// Finds a bracket of the zero of a polynomial that falls once, if it is found in a quicker way than by narrowing.
   template <std::size_t nodes>
   [[nodiscard]] std::optional<SignChange> only_zero(const Coefficients<nodes>& p) const {
     if constexpr (nodes == event_nodes) {
@@ -240,7 +240,7 @@ struct FromCoefficients {
       return std::nullopt;
     }
   }
-  /// The same behind a zero at 0: that of p(theta) / theta, raised to the same degree.
+  /// Does the same behind a zero at 0: that of p(theta) / theta, raised to the same degree.
   template <std::size_t nodes>
   [[nodiscard]] std::optional<SignChange> only_zero_behind_start(const Coefficients<nodes>& p) const {
     if constexpr (nodes == event_nodes) {
@@ -264,7 +264,7 @@ struct FromCoefficients {
   }
 };
 
-/// The arguments of first_sign_change, and where values are from, those of a polynomial times `sign`.
+/// Takes the arguments of first_sign_change, and where values are from, those of a polynomial times `sign`.
 template <std::size_t nodes, class Values>
 std::optional<SignChange> search_sign_change(const Coefficients<nodes>& coefficients, int sign, int zero_order,
                                              double noise, const Values& values) {

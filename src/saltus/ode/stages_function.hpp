@@ -11,15 +11,15 @@ namespace saltus::ode {
 /// @return the number of stages evaluated; less than 0, -1 less that number, where one or its argument is not finite
 using StagesFunction = int (*)(double t, double h, const double* x, const void* data, double* stages, double* x_new);
 
-/// One for each method; null where there is none.
+/// Holds one for each method; null where there is none.
 struct StagesFunctions {
   StagesFunction dopri5 = nullptr;
   StagesFunction dop853 = nullptr;
 };
 
-/// What is known of a right-hand side beside its values: its stages, with their data, and its linear part if it is
-/// affine. The pattern of its Jacobian, where that has few entries: used by radau5 only, for as long as it has the same
-/// address.
+/// Holds what is known of a right-hand side beside its values: its stages, with their data, and its linear part if it
+/// is affine. The pattern of its Jacobian, where that has few entries: used by radau5 only, for as long as it has the
+/// same address.
 struct RightHandSideStages {
   StagesFunctions functions;
   const void* data = nullptr;

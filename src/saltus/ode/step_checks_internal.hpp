@@ -23,7 +23,7 @@ inline bool all_finite(const double* values, std::size_t n) {
   return (carries >> 63) == 0;
 }
 
-/// What an error of a component, or of a pair of them, is measured in.
+/// Returns what an error of a component, or of a pair of them, is measured in.
 template <class Value>
 inline Value error_scale(const Tolerances& tolerances, Value x, Value x_new) {
   // A component that is 0 on both sides with atol = 0 has no scale: its error is 0 or far too large, but 0 / 0 is

@@ -13,16 +13,17 @@ namespace saltus::ode {
 class StepControl {
  public:
   explicit StepControl(Method method);
-  /// What the steps are made by from here on: of Method::taylor either of its two ways.
+  /// Says what the steps are made by from here on: of Method::taylor either of its two ways.
   void follow(Method method) { method_ = method; }
-  /// Factor h_new / h after an accepted step with this error norm (<= 1). At most 1 right after a rejection.
+  /// Returns the factor h_new / h after an accepted step with this error norm (<= 1). At most 1 right after a
+  /// rejection.
   [[nodiscard]] double accepted(double error_norm);
-  /// Factor (< 1) after a rejected step (error norm > 1, infinity included).
+  /// Returns the factor (< 1) after a rejected step (error norm > 1, infinity included).
   [[nodiscard]] double rejected(double error_norm);
   void reset();
-  /// Behind an event, where the length of the next step is one that was right for such a step before: its error is
-  /// taken for that of the step before it, too, as in a row of like steps. As at a start (reset) dopri5 would shorten
-  /// the step behind it by 0.7, and from then on the first one of every mode that comes back.
+  /// Begins behind an event, where the length of the next step is one that was right for such a step before: its error
+  /// is taken for that of the step before it, too, as in a row of like steps. As at a start (reset) dopri5 would
+  /// shorten the step behind it by 0.7, and from then on the first one of every mode that comes back.
   void restart();
 
  private:
@@ -42,9 +43,9 @@ class StepControl {
 /// suspicion).
 class StiffnessWatch {
  public:
-  /// To be asked after every accepted step; true once, when the suspicion is enough.
+  /// Is asked after every accepted step; true once, when the suspicion is enough.
   [[nodiscard]] bool looks_stiff(const Stepper& stepper);
-  /// A new right-hand side.
+  /// Begins with a new right-hand side.
   void reset() { *this = StiffnessWatch{}; }
 
  private:

@@ -13,17 +13,18 @@
 
 namespace saltus::ode {
 
-/// Explicit methods of Dormand and Prince; for stiff problems the implicit Radau IIA methods with three, five and seven
-/// stages; the Taylor series of the solution where the right-hand side is affine and its linear part is known, and
-/// dop853 elsewhere.
+/// Names the explicit methods of Dormand and Prince; for stiff problems the implicit Radau IIA methods with three, five
+/// and seven stages; the Taylor series of the solution where the right-hand side is affine and its linear part is
+/// known, and dop853 elsewhere.
 enum class Method { dopri5, dop853, radau5, radau9, radau13, taylor };
 
-/// Whether a method is one of Radau's.
+/// Returns whether a method is one of Radau's.
 [[nodiscard]] constexpr bool is_implicit(Method method) {
   return method == Method::radau5 || method == Method::radau9 || method == Method::radau13;
 }
 
-/// Order of the propagated solution (5, 8, 5, 9, 13, 16) and degree in theta of the dense output (4, 7, 3, 5, 7, 16).
+/// Returns the order of the propagated solution (5, 8, 5, 9, 13, 16) and degree in theta of the dense output (4, 7, 3,
+/// 5, 7, 16).
 [[nodiscard]] int order(Method method);
 [[nodiscard]] int dense_degree(Method method);
 
@@ -31,14 +32,14 @@ enum class Method { dopri5, dop853, radau5, radau9, radau13, taylor };
 /// undefined.
 using RightHandSide = FunctionRef<void(double t, const double* x, double* xdot)>;
 
-/// Error weights: atol + rtol |x_i|, both >= 0 and not both 0.
+/// Holds the error weights: atol + rtol |x_i|, both >= 0 and not both 0.
 struct Tolerances {
   double rtol = 1e-8;
   double atol = 1e-10;
 };
 
-/// Continuous extension of one accepted step, x(t + theta h), theta in [0, 1]; exact at theta = 0 and 1 (bit for bit),
-/// and a component whose slopes are all 0 is exactly constant.
+/// Continues one accepted step inside, x(t + theta h), theta in [0, 1]; exact at theta = 0 and 1 (bit for bit), and a
+/// component whose slopes are all 0 is exactly constant.
 ///
 /// A value: later steps of the Stepper leave it as it is. Filled again by Stepper::dense it reuses its storage.
 class DenseStep {
@@ -46,20 +47,19 @@ class DenseStep {
   double t = 0.0;
   double h = 0.0;
   void evaluate(double theta, double* x) const;  ///< n doubles
-  /// One component.
+  /// Evaluates one component.
   [[nodiscard]] double value(std::size_t i, double theta) const;
-  /// From now on the part of it from theta = from to `to`, 0 <= from < to <= 1; its end stays where it is if that is
-  /// the old one. Not of a series.
+  /// Keeps from now on the part of it from theta = from to `to`, 0 <= from < to <= 1; its end stays where it is if that
+  /// is the old one. Not of a series.
   void cut(double from, double to);
-  /// Component i is component k of another one of the same method and interval from now on.
+  /// Makes component i component k of another one of the same method and interval from now on.
   void replace(std::size_t i, const DenseStep& other, std::size_t k);
-  /// Bernstein coefficients of component i on [0, 1]; those at the ends are x_i(t) and x_i(t + h), bit for bit. The
-  /// others have a few roundings of the largest one. Cost: some fifty operations.
-  /// Not of a series.
+  /// Returns Bernstein coefficients of component i on [0, 1]; those at the ends are x_i(t) and x_i(t + h), bit for bit.
+  /// The others have a few roundings of the largest one. Cost: some fifty operations. Not of a series.
   [[nodiscard]] BernsteinCoefficients bernstein(std::size_t i) const;
   /// Adds the same in the form that the step is kept in, times a factor, to a sum of such. Not of a series.
   void add_nested(std::size_t i, double factor, NestedPolynomial& sum) const;
-  /// Whether this is a Taylor series, and the terms of one component: x_i(t + theta h) = sum_k terms_k theta^k.
+  /// Returns whether this is a Taylor series, and the terms of one component: x_i(t + theta h) = sum_k terms_k theta^k.
   [[nodiscard]] bool is_series() const { return method_ == Method::taylor; }
   [[nodiscard]] SeriesCoefficients terms(std::size_t i) const;
   [[nodiscard]] double end(std::size_t i) const { return end_[i]; }  ///< x_i(t + h)
@@ -89,7 +89,8 @@ class Series;
 struct ExplicitMethod;
 struct ExplicitStep;
 
-/// Workspace of one method for n states; allocates in the constructor only (and for a DenseStep filled the first time).
+/// Holds workspace of one method for n states; allocates in the constructor only (and for a DenseStep filled the first
+/// time).
 class Stepper {
  public:
   /// @param n  number of states, >= 0
@@ -111,50 +112,51 @@ class Stepper {
   Attempt attempt(RightHandSide f, double t, const double* x, const double* slope, double h,
                   const Tolerances& tolerances, const RightHandSideStages& stages = {});
 
-  /// The same along a polynomial that is known, from its beginning: x_new(), dense() and bounds() are its own,
+  /// Does the same along a polynomial that is known, from its beginning: x_new(), dense() and bounds() are its own,
   /// slope_new() is its derivative, error_norm() is 0. It stays where it is until the next attempt.
   void follow(const DenseStep& known, double h);
-  /// Whether the last attempt was one of these.
+  /// Returns whether the last attempt was one of these.
   [[nodiscard]] bool follows() const { return known_ != nullptr; }
 
-  /// Which of the functions attempt() uses, null if none.
+  /// Returns which of the functions attempt() uses, null if none.
   [[nodiscard]] StagesFunction stages_function(const StagesFunctions& functions) const;
 
-  /// Whether attempt() has a use for the pattern of the Jacobian.
+  /// Returns whether attempt() has a use for the pattern of the Jacobian.
   [[nodiscard]] bool wants_pattern() const { return radau_ != nullptr; }
-  /// Whether attempt() has a use for the linear part of an affine right-hand side.
+  /// Returns whether attempt() has a use for the linear part of an affine right-hand side.
   [[nodiscard]] bool wants_linear_field() const { return series_ != nullptr; }
-  /// What the last attempt was made by: taylor, or dop853 in its place, or the method itself.
+  /// Returns what the last attempt was made by: taylor, or dop853 in its place, or the method itself.
   [[nodiscard]] Method method() const { return took_series_ ? Method::taylor : pair_; }
 
-  /// Largest component of the local error estimate over atol + rtol max(|x|, |x_new|); <= 1 is acceptable, infinite if
-  /// it overflows, never NaN. Valid after a finite attempt.
+  /// Returns the largest component of the local error estimate over atol + rtol max(|x|, |x_new|); <= 1 is acceptable,
+  /// infinite if it overflows, never NaN. Valid after a finite attempt.
   [[nodiscard]] double error_norm() const { return error_norm_; }
   [[nodiscard]] const double* x_new() const { return x_new_.data(); }
-  /// f(t + h, x_new), n doubles: dopri5's last stage, computed by dop853 too.
+  /// Returns f(t + h, x_new), n doubles: dopri5's last stage, computed by dop853 too.
   [[nodiscard]] const double* slope_new() const { return stages_.data() + slope_new_; }
 
-  /// Bounds of every component of the dense output of the last attempt, which was finite, without computing it; n
-  /// doubles each. False where a method has none (Radau). With dop853 they rest on the slopes of the stages: right for
+  /// Bounds every component of the dense output of the last attempt, which was finite, without computing it; n doubles
+  /// each. False where a method has none (Radau). With dop853 they rest on the slopes of the stages: right for
   /// right-hand sides that these resolve, which is what the error estimate assumes too.
   [[nodiscard]] bool bounds(double* low, double* high) const;
-  /// Bounds of the mean slopes (x_i(t + theta h) - x_i(t)) / (theta h) of that dense output over 0 < theta <= 1,
-  /// likewise: they say which components leave their starts in one direction only.
+  /// Bounds the mean slopes (x_i(t + theta h) - x_i(t)) / (theta h) of that dense output over 0 < theta <= 1, likewise:
+  /// they say which components leave their starts in one direction only.
   [[nodiscard]] bool mean_slopes(double* low, double* high) const;
   [[nodiscard]] double start_time() const { return t_; }  ///< of the last attempt
   [[nodiscard]] double length() const { return h_; }      ///< of the last attempt
 
-  /// Dense output of the last attempt, which was finite (dop853: three more evaluations of f; `undefined` if one is not
-  /// finite, and `output` is then no more than the cubic through both ends with their slopes).
+  /// Evaluates the dense output of the last attempt, which was finite (dop853: three more evaluations of f; `undefined`
+  /// if one is not finite, and `output` is then no more than the cubic through both ends with their slopes).
   Attempt dense(RightHandSide f, DenseStep& output);
 
-  /// The right-hand side has changed: Radau methods and taylor keep nothing of the steps before. No effect on the
-  /// explicit pairs.
+  /// Notes that the right-hand side has changed: Radau methods and taylor keep nothing of the steps before. No effect
+  /// on the explicit pairs.
   void restart();
 
-  /// Length of the last attempt, which was finite, over the one at which an explicit method becomes unstable, from its
-  /// two last stages (Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2): about 1 or more in step after
-  /// step means that stability, not accuracy, limits the steps. 0 where that is not known, and for Radau methods.
+  /// Returns the length of the last attempt, which was finite, over the one at which an explicit method becomes
+  /// unstable, from its two last stages (Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2): about 1 or
+  /// more in step after step means that stability, not accuracy, limits the steps. 0 where that is not known, and for
+  /// Radau methods.
   [[nodiscard]] double stability_ratio() const;
 
   [[nodiscard]] long evaluations() const { return evaluations_; }  ///< of f, since construction

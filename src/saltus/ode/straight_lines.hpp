@@ -9,15 +9,15 @@
 
 namespace saltus::ode {
 
-/// Smallest and largest value of every column so far, and from them how far a line may be from a column.
+/// Holds the smallest and largest value of every column so far, and from them how far a line may be from a column.
 class ColumnRanges {
  public:
   /// @param share  of the range of a column, >= 0
   /// @param floor  what a column is known to, whatever its range
   ColumnRanges(std::size_t columns, double share, const Tolerances& floor);
-  /// Values that are not finite leave the range as it is.
+  /// Widens the range by a value; those that are not finite leave the range as it is.
   void widen(std::size_t column, double value);
-  /// max(share (high - low), atol + rtol max(|low|, |high|)); the second part before any value.
+  /// Returns max(share (high - low), atol + rtol max(|low|, |high|)); the second part before any value.
   [[nodiscard]] double tolerance(std::size_t column) const;
   [[nodiscard]] std::size_t size() const { return low_.size(); }
 
@@ -33,7 +33,7 @@ class StraightLines {
   /// The columns of a curve at theta; those that are not finite there count as straight.
   using Curve = FunctionRef<void(double theta, double* columns)>;
 
-  /// Points inside (0, end), ascending: straight lines from the curve at 0 over these to its end are within
+  /// Finds points inside (0, end), ascending: straight lines from the curve at 0 over these to its end are within
   /// tolerance[i] of column i, as far as samples show. They are few: each is as far behind the one before it as the
   /// samples between them allow.
   /// @param parts      equal parts that are sampled at least, >= 1; further ones where the curve bends

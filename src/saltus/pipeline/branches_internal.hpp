@@ -12,7 +12,7 @@ namespace saltus::pipeline {
 /// From the root to a branch: what was chosen on the way.
 using Path = std::vector<event_integrator::Choice>;
 
-/// One trajectory, and where others leave it.
+/// Holds one trajectory, and where others leave it.
 struct Followed {
   result::Result result;
   std::vector<event_integrator::BranchPoint> branch_points;
@@ -20,7 +20,7 @@ struct Followed {
   bool reached = true;               ///< false: stopped before the last choice of its path
 };
 
-/// Which trajectory this is, from 1, of how many that are known and will be followed.
+/// Says which trajectory this is, from 1, of how many that are known and will be followed.
 struct Count {
   long number = 1;
   long known = 1;

@@ -11,22 +11,22 @@
 
 namespace saltus::pipeline {
 
-/// The most accurate setting of the event engine: dop853 with rtol 1e-13, atol 1e-15; for a model whose options name
-/// radau5 (a stiff one: the explicit methods would need its shortest time as step) radau5 with rtol 1e-12, atol 1e-14.
-/// Everything else as in `options`.
+/// Returns the most accurate setting of the event engine: dop853 with rtol 1e-13, atol 1e-15; for a model whose options
+/// name radau5 (a stiff one: the explicit methods would need its shortest time as step) radau5 with rtol 1e-12, atol
+/// 1e-14. Everything else as in `options`.
 [[nodiscard]] SimulateOptions reference_options(SimulateOptions options);
 
-/// "dop853, rtol 1e-13, atol 1e-15"
+/// Returns "dop853, rtol 1e-13, atol 1e-15"
 [[nodiscard]] std::string reference_name(const SimulateOptions& reference);
 
-/// What `found` and `reference` have in common, as far as both got to their ends.
+/// Holds what `found` and `reference` have in common, as far as both got to their ends.
 struct Agreement {
   std::optional<double> state_difference;        ///< max_i |x_i - x_i of the reference| at the end
   std::optional<double> switch_time_difference;  ///< max_k |t_k - t_k of the reference|, if there are as many
 };
 [[nodiscard]] Agreement agreement(const result::Result& found, const result::Result& reference);
 
-/// Times of the changes of mode and of the jumps; without starts and user events, which are no switches.
+/// Returns times of the changes of mode and of the jumps; without starts and user events, which are no switches.
 [[nodiscard]] std::vector<double> switch_times(const result::Result& result);
 
 /// Simulates the system with every method, first with the most accurate one.

@@ -1,14 +1,12 @@
 // The options of elements as what discretization and reformulation know.
 #pragma once
 
-#include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/fesd_options.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::pipeline {
 
-[[nodiscard]] discretization::TableauFamily family(Scheme scheme);
 [[nodiscard]] reformulation::ReformulationOptions reformulation_options(const ElementOptions& options);
 [[nodiscard]] discretization::FesdOptions fesd_options(const ElementOptions& wanted);
 

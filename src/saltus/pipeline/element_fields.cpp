@@ -30,49 +30,9 @@ constexpr auto of_timestepping = [](auto& o) -> auto& { return o.timestepping; }
 
 template <auto part>
 constexpr bool is_fesd = std::is_same_v<std::remove_const_t<decltype(part)>, std::remove_const_t<decltype(of_fesd)>>;
-template <auto part>
-constexpr auto scheme = [](auto& o) -> auto& {
-  return part(o).scheme;
-};
-template <auto part>
-constexpr auto stages = [](auto& o) -> auto& {
-  return part(o).stages;
-};
-template <auto part>
-constexpr auto steps = [](auto& o) -> auto& {
-  return part(o).steps;
-};
-template <auto part>
-constexpr auto elements = [](auto& o) -> auto& {
-  return part(o).elements;
-};
-template <auto part>
-constexpr auto representation = [](auto& o) -> auto& {
-  return part(o).representation;
-};
-template <auto part>
-constexpr auto step_bounds = [](auto& o) -> auto& {
-  return part(o).step_bounds;
-};
-template <auto part>
-constexpr auto rho = [](auto& o) -> auto& {
-  return part(o).rho;
-};
-template <auto part>
-constexpr auto equilibration_scale = [](auto& o) -> auto& {
-  return part(o).equilibration_scale;
-};
-template <auto part>
-constexpr auto reformulation = [](auto& o) -> auto& {
-  return part(o).reformulation;
-};
-template <auto part>
-constexpr auto cross_complementarity = [](auto& o) -> auto& {
-  return part(o).cross_complementarity;
-};
-template <auto part>
-constexpr auto step_equilibration = [](auto& o) -> auto& {
-  return part(o).step_equilibration;
+template <auto part, auto member>
+constexpr auto option_of = [](auto& o) -> auto& {
+  return part(o).*member;
 };
 
 template <auto part>
@@ -129,26 +89,20 @@ void record_lifting(const SimulateOptions& options, std::string_view key, Option
 }
 
 template <auto part>
-constexpr auto sensitivities = [](auto& o) -> auto& {
-  return part(o).sensitivities;
-};
-
-template <auto part>
 constexpr std::array fields_of{
-    OptionField{"scheme", "radau_iia, gauss_legendre, lobatto_iiia, lobatto_iiic, explicit",
-                "Runge-Kutta method of the elements.", set_choice<scheme<part>, schemes>,
-                record_choice<scheme<part>, schemes>},
-    OptionField{"stages", "a whole number >= 1",
-                "Its stages: radau_iia and gauss_legendre have 1 to 9, the Lobatto methods 2 to 5, explicit 1 to 4.",
-                set_count<stages<part>>, record_count<stages<part>>},
-    OptionField{"steps", "a whole number >= 1", "Simulation steps, of equal length.", set_count<steps<part>>,
-                record_count<steps<part>>},
-    OptionField{"elements", "a whole number >= 1", "Elements in each; at least 2 with switch detection.",
-                set_count<elements<part>>, record_count<elements<part>>},
-    OptionField{"representation", "integral, differential",
-                "Unknowns of an element: stage states or stage slopes; the solutions are the same.",
-                set_choice<representation<part>, representations>,
-                record_choice<representation<part>, representations>},
+    choice_field<option_of<part, &ElementOptions::scheme>, schemes>(
+        "scheme", "radau_iia, gauss_legendre, lobatto_iiia, lobatto_iiic, explicit",
+        "Runge-Kutta method of the elements."),
+    count_field<option_of<part, &ElementOptions::stages>>(
+        "stages", "a whole number >= 1",
+        "Its stages: radau_iia and gauss_legendre have 1 to 9, the Lobatto methods 2 to 5, explicit 1 to 4."),
+    count_field<option_of<part, &ElementOptions::steps>>("steps", "a whole number >= 1",
+                                                         "Simulation steps, of equal length."),
+    count_field<option_of<part, &ElementOptions::elements>>("elements", "a whole number >= 1",
+                                                            "Elements in each; at least 2 with switch detection."),
+    choice_field<option_of<part, &ElementOptions::representation>, representations>(
+        "representation", "integral, differential",
+        "Unknowns of an element: stage states or stage slopes; the solutions are the same."),
     OptionField{"error_limit", is_fesd<part> ? "a finite number > 0, or \"off\"" : "\"off\"",
                 is_fesd<part>
                     ? "Of the estimated errors of all elements, relative to the states: steps are divided for it."
@@ -158,28 +112,26 @@ constexpr std::array fields_of{
                 is_fesd<part>
                     ? "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided."
                     : "Lengths are fixed: every value holds.",
-                set_step_bounds<part>, record_number<step_bounds<part>>},
-    OptionField{"rho", "a finite number > 0", "Weight of the objective terms of step_equilibration.",
-                set_number<rho<part>, Range::positive>, record_number<rho<part>>},
-    OptionField{"equilibration_scale", "a finite number > 0", "Scale of step_equilibration = \"l2_relaxed_scaled\".",
-                set_number<equilibration_scale<part>, Range::positive>, record_number<equilibration_scale<part>>},
-    OptionField{"reformulation", "step, stewart", "How set-valued selections are written with complementarities.",
-                set_choice<reformulation<part>, reformulations>, record_choice<reformulation<part>, reformulations>},
-    OptionField{"cross_complementarity", "stage_stage, fe_stage, stage_fe, fe_fe, paper",
-                "Which products are summed up; the solutions are the same.",
-                set_choice<cross_complementarity<part>, cross_complementarities>,
-                record_choice<cross_complementarity<part>, cross_complementarities>},
-    OptionField{"step_equilibration", "direct, mlcp, none, heuristic_mean|diff, l2_relaxed[_scaled], paper",
-                is_fesd<part> ? "Lengths where nothing switches: the first two are exact, the others slow, for studies."
-                              : "Lengths are fixed: all mean the same.",
-                set_choice<step_equilibration<part>, step_equilibrations>,
-                record_choice<step_equilibration<part>, step_equilibrations>},
+                set_step_bounds<part>, record_number<option_of<part, &ElementOptions::step_bounds>>},
+    number_field<option_of<part, &ElementOptions::rho>, Range::positive>(
+        "rho", "a finite number > 0", "Weight of the objective terms of step_equilibration."),
+    number_field<option_of<part, &ElementOptions::equilibration_scale>, Range::positive>(
+        "equilibration_scale", "a finite number > 0", "Scale of step_equilibration = \"l2_relaxed_scaled\"."),
+    choice_field<option_of<part, &ElementOptions::reformulation>, reformulations>(
+        "reformulation", "step, stewart", "How set-valued selections are written with complementarities."),
+    choice_field<option_of<part, &ElementOptions::cross_complementarity>, cross_complementarities>(
+        "cross_complementarity", "stage_stage, fe_stage, stage_fe, fe_fe, paper",
+        "Which products are summed up; the solutions are the same."),
+    choice_field<option_of<part, &ElementOptions::step_equilibration>, step_equilibrations>(
+        "step_equilibration", "direct, mlcp, none, heuristic_mean|diff, l2_relaxed[_scaled], paper",
+        is_fesd<part> ? "Lengths where nothing switches: the first two are exact, the others slow, for studies."
+                      : "Lengths are fixed: all mean the same."),
     OptionField{"lifting", "a whole number >= 2, or \"off\"",
                 "Most factors in products of selections, longer ones are lifted; the solutions are the same.",
                 set_lifting<part>, record_lifting<part>},
-    OptionField{"sensitivities", "true, false",
-                "Derivatives of the end state with respect to initial state and parameters, of the discretisation.",
-                set_truth<sensitivities<part>>, record_truth<sensitivities<part>>},
+    truth_field<option_of<part, &ElementOptions::sensitivities>>(
+        "sensitivities", "true, false",
+        "Derivatives of the end state with respect to initial state and parameters, of the discretisation."),
 };
 
 }  // namespace

@@ -10,7 +10,8 @@
 
 namespace saltus::pipeline {
 
-/// The columns with these names, or that fit a pattern (a name comes first: names of switching functions have stars).
+/// Returns the columns with these names, or that fit a pattern (a name comes first: names of switching functions have
+/// stars).
 /// @param frame  a result with the names of its columns
 /// @return nullopt if all are wanted; an Error that names what is not there, without a location
 [[nodiscard]] Expected<std::optional<result::KeptColumns>> kept_columns(const result::Result& frame,

@@ -13,7 +13,7 @@ class Numbered {
   Numbered(const Numbered&) = delete;
   Numbered& operator=(const Numbered&) = delete;
 
-  /// Observers of the next run; must not outlive this.
+  /// Returns observers of the next run; must not outlive this.
   [[nodiscard]] Observers next() {
     ++number_;
     Observers inner;

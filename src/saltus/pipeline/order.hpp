@@ -20,20 +20,20 @@ struct OrderScheme {
   bool operator==(const OrderScheme&) const = default;
 };
 
-/// What to measure. Everything else is as in [simulate.fesd] and [simulate.timestepping].
+/// Says what to measure. Everything else is as in [simulate.fesd] and [simulate.timestepping].
 struct OrderOptions {
   std::vector<OrderScheme> schemes{{"radau_iia", 1}, {"radau_iia", 2}, {"radau_iia", 3}, {"gauss_legendre", 2}};
   std::vector<long> steps{25, 50, 100, 200, 400};  ///< simulation steps, ascending
   std::optional<std::string> reformulation;        ///< step or stewart; that of the options without
 };
 
-/// "radau_iia:2,gauss_legendre:3"; errors (invalid_option) say what was expected and found.
+/// Reads "radau_iia:2,gauss_legendre:3"; errors (invalid_option) say what was expected and found.
 [[nodiscard]] Expected<std::vector<OrderScheme>> parse_schemes(std::string_view text);
-/// "25,50,100": whole numbers >= 1, at least two, ascending.
+/// Reads "25,50,100": whole numbers >= 1, at least two, ascending.
 [[nodiscard]] Expected<std::vector<long>> parse_steps(std::string_view text);
 
-/// The slope of the straight line that fits log(error) over log(step) in the least squares.
-/// Points with an error of at most `floor` say nothing about the scheme and are left out.
+/// Finds the slope of the straight line that fits log(error) over log(step) in the least squares. Points with an error
+/// of at most `floor` say nothing about the scheme and are left out.
 /// @return nullopt if fewer than two points are left, or all at one step.
 [[nodiscard]] std::optional<double> fitted_slope(std::span<const double> steps, std::span<const double> errors,
                                                  double floor);

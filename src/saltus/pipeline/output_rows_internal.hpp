@@ -13,12 +13,12 @@ namespace saltus::pipeline {
 /// With Automatic: lines between rows are so close to every column, in parts of its range.
 inline constexpr double straight_share = 1e-3;
 
-/// Whether rows are asked for at given times.
+/// Returns whether rows are asked for at given times.
 [[nodiscard]] inline bool is_at_times(const OutputGrid& grid) {
   return !std::holds_alternative<Automatic>(grid) && !std::holds_alternative<EveryStep>(grid);
 }
 
-/// The rows that are asked for, beside those at events and the last one.
+/// Returns the times of the rows that are asked for, beside those at events and the last one.
 [[nodiscard]] event_integrator::OutputTimes output_times(const OutputGrid& grid, double from, double until);
 
 /// Leaves one row at each time, that behind an event; of those that are not at one of `times` the last one only.

@@ -18,7 +18,7 @@ class PassingOn {
   PassingOn(const Observers& observers, const result::Result& frame, const std::vector<double>* times);
 
   void take(result::Trajectory rows, result::Events events);
-  /// The last row, which is known as such only now; then what is known of all.
+  /// Returns the last row, which is known as such only now; then what is known of all.
   [[nodiscard]] result::PassedOn end();
 
  private:

@@ -9,7 +9,7 @@
 
 namespace saltus::pipeline {
 
-/// The value in force of a word or a number; nullopt if there is none of that key (below [simulate]) and type.
+/// Returns the value in force of a word or a number; nullopt if there is none of that key (below [simulate]) and type.
 template <class Value>
 [[nodiscard]] std::optional<Value> recorded(const result::OptionRecord& record, const std::string& key) {
   for (const auto& [name, value] : record) {

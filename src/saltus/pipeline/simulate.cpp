@@ -1,7 +1,6 @@
 #include "saltus/pipeline/simulate.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <type_traits>
@@ -10,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/stopwatch.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
@@ -262,7 +262,7 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
     return simulate_elements(system, options, std::move(integration_or->output.times),
                              std::move(integration_or->initial_mode), frame(system, options), observers);
   }
-  auto begin = std::chrono::steady_clock::now();
+  Stopwatch stopwatch;
   const auto integrand_or = integrand(system, options);
   if (!integrand_or) return tl::unexpected(integrand_or.error());
   integration_or->layers = integrand_or->layers();
@@ -298,9 +298,8 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
     if (passing) result.passed_on = passing->end();
     if (!options.event_rows) leave_out_event_rows(integration.output.times, result.trajectory);
     result.statistics = run.statistics;
-    const auto end = std::chrono::steady_clock::now();
-    result.statistics.wall_seconds = std::chrono::duration<double>(end - begin).count();
-    begin = end;
+    result.statistics.wall_seconds = stopwatch.seconds();
+    stopwatch = {};
     return followed;
   };
   auto result = follow_branches(run_one, {options.event.trajectories, options.event.members});

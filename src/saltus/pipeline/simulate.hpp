@@ -17,7 +17,7 @@
 
 namespace saltus::pipeline {
 
-/// What an observer sees after every accepted step.
+/// Holds what an observer sees after every accepted step.
 struct StepRecord {
   double t = 0.0;
   double from = 0.0;
@@ -39,8 +39,8 @@ struct Observers {
   std::function<void(const result::Result& part)> on_part{};
 };
 
-/// Kernels that were compiled before, for runs of systems with the same structure: of one model with other parameters
-/// and initial values. For any number of threads.
+/// Holds kernels that were compiled before, for runs of systems with the same structure: of one model with other
+/// parameters and initial values. For any number of threads.
 class KernelStore {
  public:
   struct Kept {
@@ -48,8 +48,8 @@ class KernelStore {
     evaluation::NativeCode native = evaluation::NativeCode::off;
     evaluation::ModelKernel kernel;
   };
-  /// A kernel of the system: one that waits here, another one of a model that was compiled here, or a new one, as of
-  /// ModelKernel::compile. Results are the same.
+  /// Takes a kernel of the system: one that waits here, another one of a model that was compiled here, or a new one, as
+  /// of ModelKernel::compile. Results are the same.
   [[nodiscard]] Expected<Kept> take(const model::System& system, evaluation::NativeCode native);
   void give_back(Kept kept);
 

@@ -1,8 +1,8 @@
-#include <chrono>
 #include <optional>
 #include <utility>
 
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/base/stopwatch.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/step_problem.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
@@ -68,10 +68,10 @@ result::Result with_run(result::Result frame, fesd_integrator::Integration run) 
 Expected<result::Result> simulate_elements(const model::System& system, const SimulateOptions& options,
                                            std::vector<double> times, std::vector<std::pair<int, int>> forced,
                                            result::Result frame, const Observers& observers) {
-  const auto begin = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   const bool detected = options.method == Method::fesd;
   const ElementOptions& wanted = detected ? options.fesd : options.timestepping;
-  auto tableau = discretization::butcher_tableau(family(wanted.scheme), static_cast<int>(wanted.stages));
+  auto tableau = discretization::butcher_tableau(wanted.scheme, static_cast<int>(wanted.stages));
   if (!tableau) return tl::unexpected(tableau.error());
   const auto dcs = reformulation::reformulate(system, reformulation_options(wanted));
   if (!dcs) return tl::unexpected(dcs.error());
@@ -110,7 +110,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   if (!run) return tl::unexpected(run.error());
   frame = with_run(std::move(frame), std::move(*run));
   if (!options.event_rows) leave_out_event_rows(integration.times, frame.trajectory);
-  frame.statistics.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  frame.statistics.wall_seconds = stopwatch.seconds();
   return frame;
 }
 

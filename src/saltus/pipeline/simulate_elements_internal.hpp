@@ -8,8 +8,8 @@ namespace saltus::pipeline {
 
 [[nodiscard]] evaluation::NativeCode native_code(Native native);
 
-/// Methods fesd and timestepping: reformulates the system, integrates it, and fills the parts of `frame` that depend on
-/// it. `times`: of the rows, empty for every element; `forced`: index into System::switching and mode.
+/// Simulates by fesd or timestepping: reformulates the system, integrates it, and fills the parts of `frame` that
+/// depend on it. `times`: of the rows, empty for every element; `forced`: index into System::switching and mode.
 [[nodiscard]] Expected<result::Result> simulate_elements(const model::System& system, const SimulateOptions& options,
                                                          std::vector<double> times,
                                                          std::vector<std::pair<int, int>> forced, result::Result frame,

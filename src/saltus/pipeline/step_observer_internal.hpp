@@ -6,7 +6,7 @@
 
 namespace saltus::pipeline {
 
-/// A run, and which one of how many it is.
+/// Holds a run, and which one of how many it is.
 struct ObservedRun {
   double from = 0.0;
   double until = 0.0;
@@ -14,7 +14,7 @@ struct ObservedRun {
   long trajectories = 1;
 };
 
-/// Empty if nobody observes. `observers` must outlive it.
+/// Returns an observer, empty if nobody observes. `observers` must outlive it.
 [[nodiscard]] inline result::StepObserver step_observer(const Observers& observers, const ObservedRun& run) {
   if (!observers.on_step) return {};
   return [&observers, run](const result::Progress& progress) {

@@ -15,8 +15,8 @@ inline constexpr int most_surfaces_with_curves = 64;
 /// Times, both ends of the run among them, at which a curve that moves is drawn.
 inline constexpr int times_of_moving_surface = 9;
 
-/// What a drawing of one state shows: its range in the trajectory and a quarter of it on either side; a state that does
-/// not move gets room of its own size.
+/// Returns what a drawing of one state shows: its range in the trajectory and a quarter of it on either side; a state
+/// that does not move gets room of its own size.
 [[nodiscard]] Interval drawn_range(const result::Result& result, int state);
 
 /// Finds where the switching functions and the guards of jumps of `system` are zero and where two of its regions by

@@ -13,7 +13,7 @@
 
 namespace saltus::pipeline {
 
-/// What is left of a run: its end; its events, too; or everything.
+/// Says what is left of a run: its end; its events, too; or everything.
 enum class Keep { final, events, trajectory };
 
 struct SweepOptions {
@@ -23,7 +23,7 @@ struct SweepOptions {
   std::size_t before = 0;  ///< of a share of a sweep: runs that others do before these; for messages
 };
 
-/// One run: a system with its values, and the options.
+/// Holds one run: a system with its values, and the options.
 struct StatedRun {
   model::System system;
   SimulateOptions options;

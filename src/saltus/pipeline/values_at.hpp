@@ -11,10 +11,10 @@
 
 namespace saltus::pipeline {
 
-/// Which value is meant where there are two, at an event.
+/// Says which value is meant where there are two, at an event.
 enum class SideOfEvent { before, behind };
 
-/// x(t), inputs, outputs, selections and modes at any times of a simulation, from the method's dense output.
+/// Evaluates x(t), inputs, outputs, selections and modes at any times of a simulation, from the method's dense output.
 ///
 /// The simulation is run once more with rows at these times, and without branches: the values are those of its rows at
 /// the same times bit for bit, and no polynomials are kept in memory.

@@ -10,7 +10,7 @@
 
 namespace saltus::pipeline {
 
-/// The worst of one form on one active set.
+/// Holds the worst of one form on one active set.
 struct FormRank {
   reformulation::Form form = reformulation::Form::step;
   int unknowns = 0;
@@ -18,7 +18,7 @@ struct FormRank {
   double smallest_singular_value = 0.0;  ///< the smallest one met
 };
 
-/// A set of surfaces, or regions of groups by `indicator`, on which the solution slides.
+/// Holds a set of surfaces, or regions of groups by `indicator`, on which the solution slides.
 struct MetActiveSet {
   std::vector<std::string> names;
   double first = 0.0;  ///< time

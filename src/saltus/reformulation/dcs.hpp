@@ -13,7 +13,7 @@
 
 namespace saltus::reformulation {
 
-/// How a set-valued selection is written with complementarities.
+/// Says how a set-valued selection is written with complementarities.
 enum class Form {
   step,     ///< of a step function: (22) of [nurkanovic2024]
   stewart,  ///< of the smallest of several indicators: (28) of [nurkanovic2024], [stewart1990]
@@ -25,8 +25,8 @@ struct ReformulationOptions {
   std::optional<int> lifting = 2;
 };
 
-/// Consecutive selections that belong together: all step selections are one part; every simplex of Stewart's form is
-/// one part.
+/// Holds consecutive selections that belong together: all step selections are one part; every simplex of Stewart's form
+/// is one part.
 struct DcsPart {
   Form form = Form::step;
   int first = 0, count = 0;
@@ -39,7 +39,7 @@ struct DcsPart {
   int mode_group = -1;  ///< Stewart, indicators of the user: index into System::mode_groups
 };
 
-/// psi = 0, whose sides a selection tells apart.
+/// Is psi = 0, whose sides a selection tells apart.
 struct Surface {
   std::string name;   ///< of the switching function; with the sides of the surfaces inside it if it is nested
   int function = -1;  ///< index into System::switching, -1 for the break of a table
@@ -47,8 +47,8 @@ struct Surface {
   casadi::SX psi;     ///< scalar over t, x, u, p, held
 };
 
-/// What is constant within a simulation step and set from outside: selections of functions of time, inputs and discrete
-/// states, the constants of cells (floor, mod, tables of time, sampled inputs).
+/// Holds what is constant within a simulation step and set from outside: selections of functions of time, inputs and
+/// discrete states, the constants of cells (floor, mod, tables of time, sampled inputs).
 struct HeldSymbol {
   enum class Kind {
     selection,  ///< 1 where `argument` > 0, 0 where it is < 0, `at_zero` where it is identically 0
@@ -61,7 +61,7 @@ struct HeldSymbol {
   casadi::SX argument;   ///< scalar over t, u, p, the discrete states of x, and held symbols before this one
 };
 
-/// xdot = f(t, x, u, p, selection, lifted, held), the selections given by
+/// States xdot = f(t, x, u, p, selection, lifted, held), the selections given by
 ///   step:     psi = lambda_p - lambda_n,  0 <= lambda_n _|_ alpha >= 0,  0 <= lambda_p _|_ 1 - alpha >= 0
 ///   stewart:  g - lambda + mu e = 0,  e'theta = 1,  0 <= lambda _|_ theta >= 0.
 /// No selection occurs in psi or g: functions inside others are taken apart by
@@ -98,7 +98,8 @@ struct Dcs {
   std::vector<model::UserEvent> events;  ///< values and guards over t, x, u, p, selection, held
 };
 
-/// The dynamic complementarity system of a model. Groups of modes by `indicator` are Stewart parts in both forms.
+/// Returns the dynamic complementarity system of a model. Groups of modes by `indicator` are Stewart parts in both
+/// forms.
 /// @return not_available for models with [[jumps]], for terms that unfold into more than 64 branches, and for what the
 ///         form does not cover; the message says what and the remedy what to use instead.
 /// Cost: that of rebuilding the expressions once per branch of nested functions and per region of a group.

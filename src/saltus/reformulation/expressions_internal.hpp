@@ -13,7 +13,7 @@ namespace saltus::reformulation {
 using casadi::SX;
 using casadi::SXElem;
 
-/// Values for symbols. Guards that their weight has opened are taken away.
+/// Puts values for symbols. Guards that their weight has opened are taken away.
 class Replacement {
  public:
   void set(const SXElem& symbol, const SXElem& value);
@@ -31,32 +31,32 @@ class Replacement {
   std::vector<SXElem> symbols_;  ///< the addresses in values_ stay theirs
 };
 
-/// The symbols an expression is made of.
+/// Returns the symbols an expression is made of.
 [[nodiscard]] std::vector<SXElem> symbols_in(const SX& expression);
 
-/// The parts of an expression (by address, as SXElem::get) in which one of the symbols occurs.
+/// Returns the parts of an expression (by address, as SXElem::get) in which one of the symbols occurs.
 [[nodiscard]] std::unordered_set<const void*> nodes_with(const SXElem& expression,
                                                          const std::unordered_set<const void*>& symbols);
 
-/// Terms whose sum is the expression, as fine as its structure allows: products are multiplied out where only one
-/// factor has some of the symbols. What has none of them is not taken apart.
+/// Returns terms whose sum is the expression, as fine as its structure allows: products are multiplied out where only
+/// one factor has some of the symbols. What has none of them is not taken apart.
 [[nodiscard]] std::vector<SXElem> additive_terms(const SXElem& expression,
                                                  const std::unordered_set<const void*>& symbols);
 
-/// Whether branches of an expression can be NaN or infinite at finite values; operations on constants and `constants`
-/// (parameters) alone are taken to be finite.
+/// Returns whether branches of an expression can be NaN or infinite at finite values; operations on constants and
+/// `constants` (parameters) alone are taken to be finite.
 [[nodiscard]] bool may_be_nonfinite(const SXElem& expression, const SX& constants);
 
-/// weight * branch, and 0 where the weight is 0 whatever the branch is.
+/// Returns weight * branch, and 0 where the weight is 0 whatever the branch is.
 [[nodiscard]] SXElem weighted(const SXElem& weight, const SXElem& branch, const SX& constants);
 
-/// The scalar's only entry, 0 if it is structurally zero.
+/// Returns the scalar's only entry, 0 if it is structurally zero.
 [[nodiscard]] SXElem entry(const SX& scalar);
 
-/// A dense column.
+/// Returns a dense column.
 [[nodiscard]] SX column(const std::vector<SXElem>& entries);
 
-/// The entries of a column, structural zeros among them.
+/// Returns the entries of a column, structural zeros among them.
 [[nodiscard]] std::vector<SXElem> entries(const SX& column);
 
 }  // namespace saltus::reformulation

@@ -6,27 +6,27 @@
 
 namespace saltus::reformulation {
 
-/// A Dcs and its sizes, filled by one of the forms.
+/// Holds a Dcs and its sizes, filled by one of the forms.
 struct Reformulated {
   Dcs dcs;
   Sizes sizes;
 };
 
-/// Selections and indicators while they are collected.
+/// Holds selections and indicators while they are collected.
 struct Collected {
   std::vector<SXElem> selection, indicator;
 };
 
-/// One Stewart part of all indicators of a group of modes.
+/// Adds one Stewart part of all indicators of a group of modes.
 void add_indicator_part(const IndicatorPart& part, const model::System& system, Collected& collected,
                         Reformulated& result);
 void add_group(GroupSizes group, Sizes& sizes);
 [[nodiscard]] std::vector<std::string> names_of(const FieldGroup& group, const Unnested& unnested);
 
-/// Parts, f, lifted and surface_alpha of `result`.
+/// Makes parts, f, lifted and surface_alpha of `result`.
 [[nodiscard]] Collected fill_step_form(const model::System& system, const Unnested& unnested,
                                        std::optional<int> lifting, Reformulated& result);
-/// The same in Stewart's form. `alpha` becomes what each surface's alpha is in theta.
+/// Makes the same in Stewart's form. `alpha` becomes what each surface's alpha is in theta.
 [[nodiscard]] Expected<Collected> fill_stewart_form(const model::System& system, const Unnested& unnested,
                                                     Reformulated& result);
 

@@ -7,7 +7,7 @@
 
 namespace saltus::reformulation {
 
-/// alpha_j, or 1 - alpha_j.
+/// Is alpha_j, or 1 - alpha_j.
 struct StepFactor {
   int alpha = 0;
   bool complement = false;
@@ -15,7 +15,7 @@ struct StepFactor {
   bool operator==(const StepFactor&) const = default;
 };
 
-/// beta_k (none if -1) times the factors; 1 if there is nothing.
+/// Is beta_k (none if -1) times the factors; 1 if there is nothing.
 struct LiftedProduct {
   int beta = -1;
   std::vector<StepFactor> factors;
@@ -23,7 +23,7 @@ struct LiftedProduct {
   bool operator==(const LiftedProduct&) const = default;
 };
 
-/// theta_i and beta_k as products, G_lift(theta, alpha, beta) = 0 of [nurkanovic2024], section 6.3.
+/// States theta_i and beta_k as products, G_lift(theta, alpha, beta) = 0 of [nurkanovic2024], section 6.3.
 struct Lifting {
   std::vector<LiftedProduct> beta;   ///< each refers to earlier ones only
   std::vector<LiftedProduct> theta;  ///< one per row of S, in its order
@@ -40,7 +40,7 @@ struct Lifting {
 /// Cost: rows times columns times the logarithm of the rows.
 [[nodiscard]] Lifting lift(const Eigen::MatrixXi& signs, int most_factors);
 
-/// theta without lifting: all factors in one product.
+/// Returns theta without lifting: all factors in one product.
 [[nodiscard]] Lifting without_lifting(const Eigen::MatrixXi& signs);
 
 }  // namespace saltus::reformulation

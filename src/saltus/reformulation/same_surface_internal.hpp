@@ -9,7 +9,7 @@
 
 namespace saltus::reformulation {
 
-/// Switching functions of one system by their values.
+/// Holds switching functions of one system by their values.
 class SurfaceSamples {
  public:
   explicit SurfaceSamples(const model::System& system) : system_(system) {}
@@ -18,9 +18,9 @@ class SurfaceSamples {
     int surface = 0;
     int orientation = 1;  ///< -1: the factor is negative
   };
-  /// The surface added before of which psi (over t, x, u, p, held) is a multiple.
+  /// Returns the surface added before of which psi (over t, x, u, p, held) is a multiple.
   [[nodiscard]] std::optional<Match> find(const SXElem& psi, const std::vector<SXElem>& held) const;
-  /// The next surface.
+  /// Adds the next surface.
   void add(const SXElem& psi, const std::vector<SXElem>& held);
 
  private:

@@ -9,8 +9,8 @@
 
 namespace saltus::reformulation {
 
-/// Numbers of one stage, with the multipliers theta as variables of their own, as the paper counts (our systems have
-/// them eliminated: f is written in alpha and beta).
+/// Holds numbers of one stage, with the multipliers theta as variables of their own, as the paper counts (our systems
+/// have them eliminated: f is written in alpha and beta).
 struct Counts {
   int alpha = 0;              ///< n_psi; 0 in Stewart's form
   int theta = 0;              ///< n_f: fields that differ, in Stewart's form sign patterns
@@ -22,7 +22,7 @@ struct Counts {
   [[nodiscard]] bool operator==(const Counts&) const = default;
 };
 
-/// One group of switching functions that occur in common products.
+/// Holds one group of switching functions that occur in common products.
 struct GroupSizes {
   std::vector<std::string> surfaces;  ///< names; of modes for a group by `indicator`
   Form form = Form::step;

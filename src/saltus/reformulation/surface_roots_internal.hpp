@@ -13,7 +13,7 @@ namespace saltus::reformulation {
 /// go to Unnested::roots, with a symbol for their value. Cost: linear in the size of f, times surfaces inside guards.
 void take_roots(const model::System& system, Unnested& unnested);
 
-/// The parts of a Dcs that are made of them: f, with_roots, roots, root_bases, root_exponents.
+/// Makes the parts of a Dcs that are made of them: f, with_roots, roots, root_bases, root_exponents.
 void finish_roots(const Unnested& unnested, Dcs& dcs);
 
 }  // namespace saltus::reformulation

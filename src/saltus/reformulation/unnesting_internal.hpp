@@ -9,27 +9,27 @@
 
 namespace saltus::reformulation {
 
-/// The regions of a group by `indicator`, for one choice of sides of what the indicators contain.
+/// Holds the regions of a group by `indicator`, for one choice of sides of what the indicators contain.
 struct IndicatorPart {
   int mode_group = 0;
   std::vector<SXElem> theta;
   std::vector<SXElem> indicator;
 };
 
-/// A power with an exponent in (0, 1) of what is zero on a surface; of its value in f there is a symbol.
+/// Holds a power with an exponent in (0, 1) of what is zero on a surface; of its value in f there is a symbol.
 struct SurfaceRoot {
   SXElem symbol, base;
   double exponent = 0.5;
   int surface = 0;
 };
 
-/// A symbol in f that is 1 on both sides of a surface, 0 while it slides.
+/// Holds a symbol in f that is 1 on both sides of a surface, 0 while it slides.
 struct AwayFromSurface {
   int surface = 0;
   SXElem symbol;
 };
 
-/// A System in selections of which none is inside another.
+/// Holds a System in selections of which none is inside another.
 struct Unnested {
   std::vector<Surface> surfaces;
   std::vector<SXElem> surface_symbols;  ///< alpha of each

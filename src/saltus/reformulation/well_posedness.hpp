@@ -8,8 +8,8 @@
 
 namespace saltus::reformulation {
 
-/// Where a solution is; mode and alpha as in a result, but one entry per function of System::switching. A region of a
-/// group by `indicator` has mode 0 where it is active, and its theta as alpha.
+/// Says where a solution is; mode and alpha as in a result, but one entry per function of System::switching. A region
+/// of a group by `indicator` has mode 0 where it is active, and its theta as alpha.
 struct SolutionPoint {
   double t = 0.0;
   std::vector<double> x, u;
@@ -17,7 +17,7 @@ struct SolutionPoint {
   std::vector<double> alpha;
 };
 
-/// The linear system for the multipliers of an active set, its gradients and fields divided by their lengths: one
+/// Holds the linear system for the multipliers of an active set, its gradients and fields divided by their lengths: one
 /// surface has the cosine of the angle between its gradient and the jump of the field.
 struct ActiveSetRank {
   std::vector<int> surfaces;  ///< on which the solution slides, ascending: indices into Dcs::surfaces

@@ -14,7 +14,7 @@ namespace saltus::report {
 /// Asked now and then while a page is made; false ends it.
 using GoOn = std::function<bool()>;
 
-/// Numbers and plotly are deflated in it; the page inflates them.
+/// Writes a page, in which numbers and plotly are deflated; the page inflates them.
 /// @param plotly_source  the text of plotly.min.js, embedded into the page
 /// @param overlays       other results of the model (check_overlay), drawn over it; their differences are shown
 /// @return a complete HTML document, which depends on the results only; an empty one if it was ended.

@@ -7,10 +7,10 @@
 
 namespace saltus::report {
 
-/// File, status, objective, residuals, the certificate in words, the path and the largest variables.
+/// Writes file, status, objective, residuals, the certificate in words, the path and the largest variables.
 [[nodiscard]] std::string to_table(const result::MpccResult& result);
 
-/// One problem of a path on a line: phase, sigma, iterations, objective, infeasibility, min(|G|, |H|), seconds.
+/// Writes one problem of a path on a line: phase, sigma, iterations, objective, infeasibility, min(|G|, |H|), seconds.
 [[nodiscard]] std::string to_line(const result::HomotopyStep& step);
 
 }  // namespace saltus::report

@@ -7,16 +7,16 @@
 
 namespace saltus::report {
 
-/// "fesd (radau_iia, 2 stages, 20 intervals of 3 elements)".
+/// Writes "fesd (radau_iia, 2 stages, 20 intervals of 3 elements)".
 [[nodiscard]] std::string optimization_method(const result::Result& result);
-/// Objective with its terms, horizon, free parameters.
+/// Writes objective with its terms, horizon, free parameters.
 [[nodiscard]] std::string objective_table(const result::Optimization& optimization);
-/// What certificate and verification say.
+/// Writes what certificate and verification say.
 [[nodiscard]] std::string findings_table(const result::Result& result, const result::Optimization& optimization);
-/// How many problems of which kind, what they cost.
+/// Writes how many problems of which kind, what they cost.
 [[nodiscard]] std::string optimization_statistics(const result::Optimization& optimization);
 
-/// Tolerance of the residuals: the option in force, or its default.
+/// Writes tolerance of the residuals: the option in force, or its default.
 [[nodiscard]] double residual_tolerance(const result::OptionRecord& options);
 
 }  // namespace saltus::report

@@ -8,21 +8,22 @@
 
 namespace saltus::report {
 
-/// A sentence, and whether what it says is good.
+/// Holds a sentence, and whether what it says is good.
 struct Finding {
   enum class Tone { good, neutral, bad };
   Tone tone = Tone::neutral;
   std::string text;
 };
 
-/// Feasibility, complementarity, stationarity; then whether it is B-stationary, and what that means.
+/// Says feasibility, complementarity, stationarity; then whether it is B-stationary, and what that means.
 /// @param tolerance  of the residuals, optimize.mpcc.tolerance
 [[nodiscard]] std::vector<Finding> certificate_findings(const result::Certificate& certificate, double tolerance);
 
-/// What the event-driven simulation says of intervals, switches, constraints between the nodes, and the whole horizon.
+/// Returns what the event-driven simulation says of intervals, switches, constraints between the nodes, and the whole
+/// horizon.
 [[nodiscard]] std::vector<Finding> verification_findings(const result::Optimization& optimization);
 
-/// Terms that are not zero, with their names, in the order of the result file.
+/// Returns terms that are not zero, with their names, in the order of the result file.
 [[nodiscard]] std::vector<std::pair<std::string, double>> objective_terms(const result::ObjectiveTerms& terms);
 
 }  // namespace saltus::report

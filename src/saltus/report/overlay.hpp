@@ -8,14 +8,14 @@
 
 namespace saltus::report {
 
-/// A result, and what it is called in the page (the name of its file).
+/// Holds a result, and what it is called in the page (the name of its file).
 struct Overlay {
   std::string label;
   result::Result result;
 };
 
-/// Whether `other` is of the same model as `first`: the name of the model, its equations and the names of its states agree
-/// (parameters, methods and outputs may differ).
+/// Checks whether `other` is of the same model as `first`: the name of the model, its equations and the names of its
+/// states agree (parameters, methods and outputs may differ).
 [[nodiscard]] Expected<void> check_overlay(const result::Result& first, const Overlay& other);
 
 }  // namespace saltus::report

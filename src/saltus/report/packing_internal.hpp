@@ -15,7 +15,7 @@ namespace saltus::report {
 /// Arrays of numbers shorter than this stay in the JSON: people can read them, and nothing is gained.
 inline constexpr std::size_t least_packed = 24;
 
-/// JSON and the numbers that were in it. numbers.js puts them together again.
+/// Holds JSON and the numbers that were in it. numbers.js puts them together again.
 ///
 /// An array of numbers becomes {"$n": [first, count]}, null as NaN. A long array of objects that have the same keys
 /// becomes {"$rows": count, "columns": {key: values}}; of a column the values are an array of numbers, or
@@ -28,10 +28,11 @@ struct Packed {
 /// @param go_on  false ends it, with a part of the data
 [[nodiscard]] Packed pack(nlohmann::json data, const GoOn& go_on = {});
 
-/// The bytes of the numbers (little endian), all first bytes before all second ones and so on, which deflates better.
+/// Returns the bytes of the numbers (little endian), all first bytes before all second ones and so on, which deflates
+/// better.
 [[nodiscard]] std::string shuffled_bytes(const std::vector<double>& numbers);
 
-/// Raw deflate (RFC 1951), then base64 (RFC 4648). Cost: about 30 ns per byte.
+/// Does raw deflate (RFC 1951), then base64 (RFC 4648). Cost: about 30 ns per byte.
 /// @param go_on  false ends it, with a part of the bytes
 [[nodiscard]] std::string deflated_base64(std::string_view bytes, const GoOn& go_on = {});
 

@@ -19,14 +19,14 @@ inline constexpr std::size_t many_columns = 64;
 /// How far lines between points may then be from the values, in parts of the range of a column.
 inline constexpr double least_line_tolerance = 5e-4;
 
-/// How the columns of one trajectory are kept.
+/// Says how the columns of one trajectory are kept.
 struct KeptRows {
   std::vector<std::size_t> rows;
   std::vector<double> t;        ///< of them
   double line_tolerance = 0.0;  ///< 0: all values
 };
 
-/// Values of one column at rows; one that is too short counts as not a number there.
+/// Returns values of one column at rows; one that is too short counts as not a number there.
 template <class Table>
 [[nodiscard]] std::vector<double> values_of(const Table& table, const std::vector<std::size_t>& rows,
                                             std::size_t column) {
@@ -38,7 +38,7 @@ template <class Table>
   return values;
 }
 
-/// The points of a column that its lines need.
+/// Returns the points of a column that its lines need.
 [[nodiscard]] inline std::vector<std::size_t> points_of(const KeptRows& kept, const std::vector<double>& values) {
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   for (const double value : values) {
@@ -47,7 +47,7 @@ template <class Table>
   return straight_places(kept.t, values, least < greatest ? kept.line_tolerance * (greatest - least) : 0.0);
 }
 
-/// One array per column: its values, or {"$points": [places, values], "size": rows}.
+/// Returns one array per column: its values, or {"$points": [places, values], "size": rows}.
 template <class Table>
 [[nodiscard]] nlohmann::json kept_columns(const Table& table, const KeptRows& kept, std::size_t width) {
   nlohmann::json columns = nlohmann::json::array();

@@ -8,9 +8,9 @@
 namespace saltus::report {
 
 [[nodiscard]] nlohmann::json status_data(const result::Status& status);
-/// null without a comparison.
+/// Returns null without a comparison.
 [[nodiscard]] nlohmann::json comparison_data(const std::optional<result::Comparison>& comparison);
-/// null without an order study.
+/// Returns null without an order study.
 [[nodiscard]] nlohmann::json order_data(const std::optional<result::OrderStudy>& order);
 
 }  // namespace saltus::report

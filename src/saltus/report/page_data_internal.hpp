@@ -25,13 +25,13 @@ template <class T>
   return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
 }
 
-/// The result column by column, modes as intervals; non-finite numbers become null when written.
+/// Returns the result column by column, modes as intervals; non-finite numbers become null when written.
 /// @param limit  numbers of the trajectory to aim at; see rows_to_draw.
 /// @param go_on  false ends it, with a part of the events
 [[nodiscard]] nlohmann::json page_data(const result::Result& result, std::size_t limit = numbers_in_page,
                                        const GoOn& go_on = {});
 
-/// The JSON text in a form that can stand inside a <script> element whatever its strings contain.
+/// Writes the JSON text in a form that can stand inside a <script> element whatever its strings contain.
 [[nodiscard]] std::string to_script_text(const nlohmann::json& data);
 
 }  // namespace saltus::report

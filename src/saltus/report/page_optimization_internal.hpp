@@ -12,7 +12,7 @@ namespace saltus::report {
 /// Multipliers that a page holds at most.
 inline constexpr std::size_t multipliers_in_page = 20000;
 
-/// null without an optimisation.
+/// Returns null without an optimisation.
 /// @param limit  numbers of the open-loop simulation to aim at; see rows_to_draw.
 [[nodiscard]] nlohmann::json optimization_data(const result::Result& result, std::size_t limit);
 

@@ -10,7 +10,7 @@
 
 namespace saltus::report {
 
-/// Their columns in the order of those of `first`, by name; an empty list for a column that they do not have.
+/// Returns their columns in the order of those of `first`, by name; an empty list for a column that they do not have.
 /// @param limit  numbers to aim at for each; see rows_to_draw
 [[nodiscard]] nlohmann::json overlays_data(const result::Result& first, const std::vector<Overlay>& overlays,
                                            std::size_t limit);

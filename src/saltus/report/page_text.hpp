@@ -8,12 +8,13 @@
 
 namespace saltus::report {
 
-/// Text between tags, or in an attribute.
+/// Writes text between tags, or in an attribute.
 [[nodiscard]] std::string escape_html(std::string_view text);
 
-/// A value as JSON that can stand inside a <script> element whatever its strings contain; non-finite numbers are null.
+/// Writes a value as JSON that can stand inside a <script> element whatever its strings contain; non-finite numbers are
+/// null.
 [[nodiscard]] std::string script_json(const result::OptionValue& value);
-/// An object of such values, in their order.
+/// Writes an object of such values, in their order.
 [[nodiscard]] std::string script_json(const result::OptionRecord& members);
 
 }  // namespace saltus::report

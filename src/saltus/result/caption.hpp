@@ -15,7 +15,7 @@ struct Caption {
 /// By the name of the state, control, parameter or output; those that have none are absent.
 using Captions = std::vector<std::pair<std::string, Caption>>;
 
-/// The caption of a name; an empty one if it has none.
+/// Returns the caption of a name; an empty one if it has none.
 [[nodiscard]] inline Caption caption_of(const Captions& captions, const std::string& name) {
   for (const auto& [captioned, caption] : captions) {
     if (captioned == name) return caption;

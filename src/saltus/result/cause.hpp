@@ -6,7 +6,7 @@
 
 namespace saltus::result {
 
-/// The message without its numbers and without the names in quotes: equal for runs that stopped for one reason.
+/// Returns the message without its numbers and without the names in quotes: equal for runs that stopped for one reason.
 [[nodiscard]] inline std::string cause_of(std::string_view message) {
   std::string cause;
   bool quoted = false;

@@ -12,7 +12,7 @@
 
 namespace saltus::result {
 
-/// One engine's run of the model, or why there is none.
+/// Holds one engine's run of the model, or why there is none.
 struct ComparedRun {
   std::string method;   ///< event, fesd, timestepping or smoothed
   std::string variant;  ///< what tells it from the others of its method: "dop853", "radau_iia 2, stewart"
@@ -32,7 +32,7 @@ struct Comparison {
   std::size_t reference = 0;   ///< number in `runs`
 };
 
-/// A scheme at one number of steps.
+/// Holds a scheme at one number of steps.
 struct OrderPoint {
   std::int64_t steps = 0;
   double mean_step = 0.0;       ///< length of the run by the number of finite elements
@@ -42,7 +42,8 @@ struct OrderPoint {
   double wall_seconds = 0.0;
 };
 
-/// One scheme over step sizes; slopes are those of log(error) over log(mean step), fitted to what is above the floor.
+/// Holds one scheme over step sizes; slopes are those of log(error) over log(mean step), fitted to what is above the
+/// floor.
 struct OrderSeries {
   std::string method;  ///< fesd, or timestepping: without switch detection
   std::string scheme;

@@ -11,7 +11,7 @@
 
 namespace saltus::result {
 
-/// Numbers a and b are the same if |a - b| <= atol + rtol max(|a|, |b|); two that are missing (NaN) are, too.
+/// Holds numbers a and b are the same if |a - b| <= atol + rtol max(|a|, |b|); two that are missing (NaN) are, too.
 struct Tolerances {
   double rtol = 1e-6;
   /// By default that of each column: rtol times its range in both results, and no less than the absolute tolerance with
@@ -19,7 +19,7 @@ struct Tolerances {
   std::optional<double> atol{};
 };
 
-/// Two numbers of one meaning; of a state the pair that lies farthest beyond the tolerances.
+/// Holds two numbers of one meaning; of a state the pair that lies farthest beyond the tolerances.
 struct NumberDifference {
   std::string what;  ///< "x", "t of event 3"
   double a = 0.0, b = 0.0;

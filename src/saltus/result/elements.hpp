@@ -9,13 +9,13 @@
 
 namespace saltus::result {
 
-/// How a selection is written with complementarities.
+/// Says how a selection is written with complementarities.
 enum class SelectionForm {
   step,     ///< psi = lambda_p - lambda_n, 0 <= lambda_n _|_ alpha >= 0, 0 <= lambda_p _|_ 1 - alpha >= 0
   stewart,  ///< 0 <= lambda_i = g_i - min g _|_ theta_i >= 0
 };
 [[nodiscard]] std::string_view name(SelectionForm form);
-/// The inverse of name; nullopt if there is none of that name.
+/// Returns the inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<SelectionForm> selection_form_named(std::string_view name);
 
 struct ElementSelection {
@@ -24,7 +24,7 @@ struct ElementSelection {
   bool operator==(const ElementSelection&) const = default;
 };
 
-/// `points` rows for each element: its left end, its stages, its right end; columns are selections.
+/// Holds `points` rows for each element: its left end, its stages, its right end; columns are selections.
 struct Elements {
   std::size_t points = 0;
   std::vector<ElementSelection> selections;

@@ -37,28 +37,29 @@ enum class EventKind {
   slip,
 };
 [[nodiscard]] std::string_view name(EventKind kind);
-/// The inverse of name; nullopt if there is none of that name.
+/// Returns the inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<EventKind> event_kind_named(std::string_view name);
 
-/// The kind of a switch from the components of the modes (docs/result-file.md).
+/// Returns the kind of a switch from the components of the modes (docs/result-file.md).
 [[nodiscard]] EventKind kind_of_switch(const Mode& before, const Mode& after);
 
 /// The active modes of every group by `indicator`, in the order of the model; empty without such groups.
 using Regions = std::vector<std::vector<std::string>>;
 
-/// Of one contact: its gap is positive; or 0 without friction, with friction that holds, with friction that yields.
+/// Names the modes of one contact: its gap is positive; or 0 without friction, with friction that holds, with friction
+/// that yields.
 enum class ContactMode { open, closed, stick, slip };
 [[nodiscard]] std::string_view name(ContactMode mode);
-/// The inverse of name; nullopt if there is none of that name.
+/// Returns the inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<ContactMode> contact_mode_named(std::string_view name);
 
-/// A group of modes by `indicator`, of which those with the smallest one are active.
+/// Holds a group of modes by `indicator`, of which those with the smallest one are active.
 struct RegionGroup {
   std::string name;  ///< empty for the group without a name
   std::vector<std::string> modes;
   bool operator==(const RegionGroup&) const = default;
 };
-/// The modes of all groups, one after the other, as columns: "mode", of a named group "group.mode".
+/// Returns the modes of all groups, one after the other, as columns: "mode", of a named group "group.mode".
 [[nodiscard]] std::vector<std::string> region_labels(const std::vector<RegionGroup>& groups);
 
 struct Alternative {
@@ -67,7 +68,7 @@ struct Alternative {
   Regions regions{};
 };
 
-/// The fields where two surfaces that influence each other were met: what a picture of the decision needs.
+/// Holds the fields where two surfaces that influence each other were met: what a picture of the decision needs.
 struct Intersection {
   std::array<std::string, 2> surfaces;  ///< names of switching functions
   /// velocities[j][corner] is d psi_j / dt along the field of `corner`, whose bit i is the selection of surface i.
@@ -76,7 +77,7 @@ struct Intersection {
   std::array<double, 2> alpha_after{};                ///< of the mode that goes on
 };
 
-/// One change of mode, jump or user event. Vectors over switching functions follow Result::switching_functions.
+/// Holds one change of mode, jump or user event. Vectors over switching functions follow Result::switching_functions.
 struct Event {
   double t = 0.0;
   EventKind kind = EventKind::crossing;
@@ -94,7 +95,7 @@ struct Event {
   std::optional<Intersection> intersection;
 };
 
-/// Events in their order, kept as columns: an event takes its states and what has changed since the one before it.
+/// Keeps events in their order, as columns: an event takes its states and what has changed since the one before it.
 class Events {
  public:
   Events() = default;
@@ -108,7 +109,7 @@ class Events {
 
   [[nodiscard]] std::size_t size() const { return t_.size(); }
   [[nodiscard]] bool empty() const { return t_.empty(); }
-  /// An event by itself: a value, which cannot be changed in its place. Cost: O(n_x + n_psi).
+  /// Is an event by itself: a value, which cannot be changed in its place. Cost: O(n_x + n_psi).
   // NOLINTBEGIN(readability-const-return-type): what is written into a copy would be lost
   [[nodiscard]] const Event operator[](std::size_t number) const;
   [[nodiscard]] const Event front() const { return (*this)[0]; }
@@ -127,7 +128,7 @@ class Events {
   [[nodiscard]] std::string_view reason(std::size_t number) const { return words_[facts_[number].reason]; }
   [[nodiscard]] std::vector<std::string> surfaces(std::size_t number) const;
   [[nodiscard]] std::optional<bool> unique(std::size_t number) const { return facts_[number].unique; }
-  /// How many continuations beside the one taken it has.
+  /// Returns how many continuations beside the one taken it has.
   [[nodiscard]] std::size_t alternatives(std::size_t number) const;
   [[nodiscard]] std::span<const double> x(std::size_t number) const;
   [[nodiscard]] std::span<const double> x_after(std::size_t number) const;

@@ -9,7 +9,8 @@
 
 namespace saltus::result {
 
-/// Of L = f + rows'g + lower'(l - x) + upper'(x - u) - G'G - H'H; f is the negative of an objective that is maximised.
+/// Holds the multipliers of L = f + rows'g + lower'(l - x) + upper'(x - u) - G'G - H'H; f is the negative of an
+/// objective that is maximised.
 struct MpccMultipliers {
   std::vector<double> rows, lower, upper, G, H;
 };

@@ -18,10 +18,10 @@ enum class HomotopyPhase {
   lpcc,     ///< linear program over the biactive pairs
 };
 [[nodiscard]] std::string_view name(HomotopyPhase phase);
-/// The inverse of name; nullopt if there is none of that name.
+/// Returns the inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<HomotopyPhase> homotopy_phase_named(std::string_view name);
 
-/// One problem of a path, as it was left.
+/// Holds one problem of a path, as it was left.
 struct HomotopyStep {
   HomotopyPhase phase = HomotopyPhase::relaxed;
   std::string solver;  ///< "ipopt", "highs", "enumeration"
@@ -37,10 +37,10 @@ struct HomotopyStep {
 
 enum class StationarityType { S, M, C, A, W };
 [[nodiscard]] std::string_view name(StationarityType type);
-/// The inverse of name; nullopt if there is none of that name.
+/// Returns the inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<StationarityType> stationarity_type_named(std::string_view name);
 
-/// Definitions: docs/result-file.md. Residuals that could not be found are NaN.
+/// Says what holds at a point; definitions: docs/result-file.md. Residuals that could not be found are NaN.
 struct Certificate {
   double primal_infeasibility = 0.0;
   double complementarity_residual = 0.0;
@@ -51,14 +51,14 @@ struct Certificate {
   std::optional<double> lpcc_decrease;
 };
 
-/// Of a terminal, path or boundary constraint; positive where an upper bound or `<=` presses.
+/// Holds the multiplier of a terminal, path or boundary constraint; positive where an upper bound or `<=` presses.
 struct ConstraintMultiplier {
   std::string name;
   double time = 0.0;
   double value = 0.0;
 };
 
-/// The controls over the whole horizon, from the start on.
+/// Holds the controls over the whole horizon, from the start on.
 struct OpenLoop {
   double end_state_error = 0.0;  ///< max over states, scaled like interval defects
   double terminal_violation = 0.0;
@@ -69,13 +69,13 @@ struct OpenLoop {
   std::vector<std::vector<double>> x;
 };
 
-/// How deep bodies are in each other: the largest -gap of all contacts, 0 without any.
+/// Says how deep bodies are in each other: the largest -gap of all contacts, 0 without any.
 struct Penetration {
   double solution = 0.0;    ///< at the nodes and stages that the optimisation has
   double simulation = 0.0;  ///< of the event engine, interval by interval
 };
 
-/// What the event engine says of an optimised trajectory.
+/// Holds what the event engine says of an optimised trajectory.
 struct Verification {
   double tolerance = 0.0;
   double interval_defect = 0.0;  ///< relative to the range of the state
@@ -102,7 +102,7 @@ struct OptimizationStatistics {
   double wall_seconds = 0.0;
 };
 
-/// What `saltus optimize` finds beside the trajectory of a Result.
+/// Holds what `saltus optimize` finds beside the trajectory of a Result.
 struct Optimization {
   double objective = 0.0;
   ObjectiveTerms terms;

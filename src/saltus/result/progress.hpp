@@ -6,7 +6,7 @@
 
 namespace saltus::result {
 
-/// After accepted steps: how far it is.
+/// Says, after accepted steps: how far it is.
 struct Progress {
   double t = 0.0;
   long steps = 0;

@@ -4,123 +4,35 @@
 #include <cstddef>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/enum_names.hpp"
 
 namespace saltus::result {
+namespace {
 
-std::string_view name(EventKind kind) {
-  switch (kind) {
-    case EventKind::start:
-      return "start";
-    case EventKind::crossing:
-      return "crossing";
-    case EventKind::enter_sliding:
-      return "enter_sliding";
-    case EventKind::leave_sliding:
-      return "leave_sliding";
-    case EventKind::change_sliding:
-      return "change_sliding";
-    case EventKind::accumulation:
-      return "accumulation";
-    case EventKind::jump:
-      return "jump";
-    case EventKind::user:
-      return "user";
-    case EventKind::impact:
-      return "impact";
-    case EventKind::contact:
-      return "contact";
-    case EventKind::lift_off:
-      return "lift_off";
-    case EventKind::stick:
-      return "stick";
-    case EventKind::slip:
-      return "slip";
-  }
-  __builtin_unreachable();
-}
+constexpr EnumNames<EventKind::slip> event_kinds("start", "crossing", "enter_sliding", "leave_sliding",
+                                                 "change_sliding", "accumulation", "jump", "user", "impact", "contact",
+                                                 "lift_off", "stick", "slip");
+constexpr EnumNames<ContactMode::slip> contact_mode_names("open", "closed", "stick", "slip");
+constexpr EnumNames<FamilyKind::spiral> family_kinds("later_departure", "spiral");
+constexpr EnumNames<SurfaceRole::region> surface_roles("switching", "jump", "region");
+constexpr EnumNames<SelectionForm::stewart> selection_forms("step", "stewart");
 
-std::optional<EventKind> event_kind_named(std::string_view name_of_one) {
-  constexpr auto last = static_cast<int>(EventKind::slip);
-  for (int i = 0; i <= last; ++i) {
-    const auto kind = static_cast<EventKind>(i);
-    if (name(kind) == name_of_one) return kind;
-  }
-  return std::nullopt;
-}
+}  // namespace
 
-std::string_view name(ContactMode mode) {
-  switch (mode) {
-    case ContactMode::open:
-      return "open";
-    case ContactMode::closed:
-      return "closed";
-    case ContactMode::stick:
-      return "stick";
-    case ContactMode::slip:
-      return "slip";
-  }
-  __builtin_unreachable();
-}
+std::string_view name(EventKind kind) { return event_kinds(kind); }
+std::optional<EventKind> event_kind_named(std::string_view text) { return event_kinds.named(text); }
 
-std::optional<ContactMode> contact_mode_named(std::string_view name_of_one) {
-  for (const auto mode : {ContactMode::open, ContactMode::closed, ContactMode::stick, ContactMode::slip}) {
-    if (name(mode) == name_of_one) return mode;
-  }
-  return std::nullopt;
-}
+std::string_view name(ContactMode mode) { return contact_mode_names(mode); }
+std::optional<ContactMode> contact_mode_named(std::string_view text) { return contact_mode_names.named(text); }
 
-std::string_view name(FamilyKind kind) {
-  switch (kind) {
-    case FamilyKind::later_departure:
-      return "later_departure";
-    case FamilyKind::spiral:
-      return "spiral";
-  }
-  __builtin_unreachable();
-}
+std::string_view name(FamilyKind kind) { return family_kinds(kind); }
+std::optional<FamilyKind> family_kind_named(std::string_view text) { return family_kinds.named(text); }
 
-std::optional<FamilyKind> family_kind_named(std::string_view name_of_one) {
-  for (const auto kind : {FamilyKind::later_departure, FamilyKind::spiral}) {
-    if (name(kind) == name_of_one) return kind;
-  }
-  return std::nullopt;
-}
+std::string_view name(SurfaceRole role) { return surface_roles(role); }
+std::optional<SurfaceRole> surface_role_named(std::string_view text) { return surface_roles.named(text); }
 
-std::string_view name(SurfaceRole role) {
-  switch (role) {
-    case SurfaceRole::switching:
-      return "switching";
-    case SurfaceRole::jump:
-      return "jump";
-    case SurfaceRole::region:
-      return "region";
-  }
-  __builtin_unreachable();
-}
-
-std::optional<SurfaceRole> surface_role_named(std::string_view name_of_one) {
-  for (const auto role : {SurfaceRole::switching, SurfaceRole::jump, SurfaceRole::region}) {
-    if (name(role) == name_of_one) return role;
-  }
-  return std::nullopt;
-}
-
-std::string_view name(SelectionForm form) {
-  switch (form) {
-    case SelectionForm::step:
-      return "step";
-    case SelectionForm::stewart:
-      return "stewart";
-  }
-  __builtin_unreachable();
-}
-
-std::optional<SelectionForm> selection_form_named(std::string_view name_of_one) {
-  for (const auto form : {SelectionForm::step, SelectionForm::stewart}) {
-    if (name(form) == name_of_one) return form;
-  }
-  return std::nullopt;
-}
+std::string_view name(SelectionForm form) { return selection_forms(form); }
+std::optional<SelectionForm> selection_form_named(std::string_view text) { return selection_forms.named(text); }
 
 std::vector<std::string> region_labels(const std::vector<RegionGroup>& groups) {
   std::vector<std::string> labels;

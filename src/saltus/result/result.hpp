@@ -25,7 +25,7 @@
 
 namespace saltus::result {
 
-/// Rows; every event has two rows with the same time, before and behind it.
+/// Holds rows; every event has two rows with the same time, before and behind it.
 struct Trajectory {
   std::vector<double> t;
   Table<double> x, u;
@@ -43,7 +43,7 @@ struct Trajectory {
   void append(const Trajectory& from, std::size_t row);
 };
 
-/// 1 for a row behind another one at the same time, like the one behind an event; else 0.
+/// Returns 1 for a row behind another one at the same time, like the one behind an event; else 0.
 [[nodiscard]] inline int side(const Trajectory& trajectory, std::size_t row) {
   return row > 0 && trajectory.t[row - 1] == trajectory.t[row] ? 1 : 0;
 }
@@ -59,14 +59,14 @@ struct Final {
   std::vector<ContactMode> contact_modes{};
 };
 
-/// A file that the model file, or a setting, names.
+/// Holds a file that the model file, or a setting, names.
 struct NamedFile {
   std::string name;  ///< as it was opened
   std::string sha256;
   std::optional<std::string> text;  ///< not of files of more than 10^6 bytes
 };
 
-/// An equation of a model: left = right.
+/// Holds an equation of a model: left = right.
 struct StatedEquation {
   std::string left;   ///< "v'", "s", "v behind impact"
   std::string right;  ///< as it was read
@@ -88,30 +88,30 @@ struct ModelRecord {
   std::vector<StatedEquation> equations{};  ///< the first ones; its text has all
 };
 
-/// What a surface belongs to.
+/// Says what a surface belongs to.
 enum class SurfaceRole {
   switching,  ///< a switching function: psi = 0
   jump,       ///< a guard of a jump
   region,     ///< the border of two regions by `indicator`
 };
 [[nodiscard]] std::string_view name(SurfaceRole role);
-/// The inverse of name; nullopt if there is none of that name.
+/// Returns the inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<SurfaceRole> surface_role_named(std::string_view name);
 
-/// gradient . x + rate t + constant = 0, the gradient over Surface::states.
+/// Is gradient . x + rate t + constant = 0, the gradient over Surface::states.
 struct AffineSurface {
   std::vector<double> gradient;
   double rate = 0.0;
   double constant = 0.0;
 };
 
-/// One connected piece of a surface: coordinates[i][k] is the coordinate of point k along Surface::states[i].
+/// Holds one connected piece of a surface: coordinates[i][k] is the coordinate of point k along Surface::states[i].
 struct SurfaceCurve {
   std::vector<std::vector<double>> coordinates;
   std::optional<double> t{};  ///< when it lies there, for a surface that moves
 };
 
-/// Where a switching function or a guard is zero, or two regions meet, in the space of states: what a phase plane
+/// Is where a switching function or a guard is zero, or two regions meet, in the space of states: what a phase plane
 /// needs.
 struct Surface {
   std::string name;  ///< of the switching function, or of the jump; "a | b" of two regions
@@ -125,12 +125,12 @@ struct Surface {
   std::vector<SurfaceCurve> curves;
 };
 
-/// Arrows of a drawing: where they begin and along what.
+/// Holds the arrows of a drawing: where they begin and along what.
 struct Arrows {
   std::vector<double> x, y, dx, dy;
 };
 
-/// The field of a model with two states at one time: what a phase plane needs.
+/// Holds the field of a model with two states at one time: what a phase plane needs.
 struct VectorField {
   double t = 0.0;
   Arrows free;     ///< on a grid
@@ -148,11 +148,11 @@ enum class FamilyKind {
   spiral,           ///< a spiral that leaves may begin with any phase
 };
 [[nodiscard]] std::string_view name(FamilyKind kind);
-/// The inverse of name; nullopt if there is none of that name.
+/// Returns the inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<FamilyKind> family_kind_named(std::string_view name);
 
-/// A continuum of solutions beside the one that is shown, with one parameter: the time at which they leave its mode, or
-/// the phase of a spiral.
+/// Holds a continuum of solutions beside the one that is shown, with one parameter: the time at which they leave its
+/// mode, or the phase of a spiral.
 struct Family {
   FamilyKind kind = FamilyKind::later_departure;
   std::size_t event = 0;            ///< with which the mode, or the spiral, begins: number in the events, from 0
@@ -161,11 +161,11 @@ struct Family {
   std::optional<double> lap_ratio;  ///< of a spiral: from one cycle to the next; the phase is the part of it, 0 to 1
 };
 
-/// Where a branch leaves its parent: at an event, or as a member of a family.
+/// Says where a branch leaves its parent: at an event, or as a member of a family.
 struct Departure {
   std::size_t event = 0;        ///< number in the events of the parent, from 0
   std::size_t alternative = 0;  ///< number in the alternatives of that event, from 0
-  /// Of a member of a family: number in the families of the parent, and its time, or its phase.
+  /// Describes a member of a family: number in the families of the parent, and its time, or its phase.
   struct Member {
     std::size_t family = 0;
     double parameter = 0.0;
@@ -173,7 +173,7 @@ struct Departure {
   std::optional<Member> member{};
 };
 
-/// Of rows and events that were passed on while they were computed: what is known without them.
+/// Says, of rows and events that were passed on while they were computed: what is known without them.
 struct PassedOn {
   std::size_t rows = 0, events = 0;
   std::size_t alternatives = 0;              ///< in the events
@@ -181,7 +181,8 @@ struct PassedOn {
   std::vector<double> least, greatest;       ///< of every state, in rows and events; NaN left out
 };
 
-/// Columns that the rows of a trajectory have where those are not all: numbers in the lists of the result, ascending.
+/// Holds columns that the rows of a trajectory have where those are not all: numbers in the lists of the result,
+/// ascending.
 struct KeptColumns {
   std::vector<std::size_t> states;               ///< of x
   std::vector<std::size_t> switching_functions;  ///< of alpha and mode
@@ -226,16 +227,17 @@ struct Result {
   std::vector<Result> branches;
 };
 
-/// A trajectory of a tree of branches.
+/// Holds a trajectory of a tree of branches.
 struct TreeEntry {
   const Result* result = nullptr;
   std::string label;   ///< "2.1": first branch of the second branch; empty for the root
   std::size_t parent;  ///< number of the entry that it left; of the root its own, 0
 };
-/// A result and all its branches, parents before their branches, depth first.
+/// Returns a result and all its branches, parents before their branches, depth first.
 [[nodiscard]] std::vector<TreeEntry> tree(const Result& root);
 
-/// How many admissible continuations of the trajectory itself, not of its branches, were listed and not followed.
+/// Returns how many admissible continuations of the trajectory itself, not of its branches, were listed and not
+/// followed.
 [[nodiscard]] std::size_t not_followed(const Result& result);
 
 }  // namespace saltus::result

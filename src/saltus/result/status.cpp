@@ -1,47 +1,21 @@
 #include "saltus/result/status.hpp"
 
+#include "saltus/base/enum_names.hpp"
+
 namespace saltus::result {
+namespace {
 
-std::string_view name(Termination termination) {
-  switch (termination) {
-    case Termination::completed:
-      return "completed";
-    case Termination::stopped_by_user:
-      return "stopped_by_user";
-    case Termination::iteration_limit:
-      return "iteration_limit";
-    case Termination::time_limit:
-      return "time_limit";
-    case Termination::step_size_too_small:
-      return "step_size_too_small";
-    case Termination::no_admissible_mode:
-      return "no_admissible_mode";
-    case Termination::evaluation_failed:
-      return "evaluation_failed";
-    case Termination::factorization_failed:
-      return "factorization_failed";
-    case Termination::not_converged:
-      return "not_converged";
-    case Termination::infeasible:
-      return "infeasible";
-    case Termination::verification_failed:
-      return "verification_failed";
-    case Termination::outside_class:
-      return "outside_class";
-    case Termination::stopped_by_event:
-      return "stopped_by_event";
-  }
-  __builtin_unreachable();
-}
+constexpr EnumNames<Termination::stopped_by_event> terminations("completed", "stopped_by_user", "iteration_limit",
+                                                                "time_limit", "step_size_too_small",
+                                                                "no_admissible_mode", "evaluation_failed",
+                                                                "factorization_failed", "not_converged", "infeasible",
+                                                                "verification_failed", "outside_class",
+                                                                "stopped_by_event");
 
-std::optional<Termination> termination_named(std::string_view name_of_one) {
-  constexpr auto last = static_cast<int>(Termination::stopped_by_event);
-  for (int i = 0; i <= last; ++i) {
-    const auto termination = static_cast<Termination>(i);
-    if (name(termination) == name_of_one) return termination;
-  }
-  return std::nullopt;
-}
+}  // namespace
+
+std::string_view name(Termination termination) { return terminations(termination); }
+std::optional<Termination> termination_named(std::string_view text) { return terminations.named(text); }
 
 bool is_done(Termination termination) {
   return termination == Termination::completed || termination == Termination::stopped_by_event;

@@ -23,10 +23,10 @@ enum class Termination {
   stopped_by_event,
 };
 [[nodiscard]] std::string_view name(Termination termination);
-/// The inverse of name; nullopt if there is none of that name.
+/// Returns the inverse of name; nullopt if there is none of that name.
 [[nodiscard]] std::optional<Termination> termination_named(std::string_view name);
 
-/// Whether the command did what was asked (exit code 0): completed or stopped_by_event.
+/// Returns whether the command did what was asked (exit code 0): completed or stopped_by_event.
 [[nodiscard]] bool is_done(Termination termination);
 
 struct Status {

@@ -27,7 +27,7 @@ class NumberedIterator {
   using difference_type = std::ptrdiff_t;
   using value_type = std::decay_t<decltype(std::declval<const List&>()[0])>;
   using reference = decltype(std::declval<const List&>()[0]);
-  /// Where [] hands out values, one that lives as long as it is looked at.
+  /// Holds, where [] hands out values, one that lives as long as it is looked at.
   struct pointer {
     value_type value;
     const value_type* operator->() const { return &value; }
@@ -57,11 +57,11 @@ class NumberedIterator {
   std::size_t place_ = 0;
 };
 
-/// Rows of numbers, one after the other in one list.
+/// Holds rows of numbers, one after the other in one list.
 template <class Number>
 class Table {
  public:
-  /// Valid until the table changes.
+  /// Is valid until the table changes.
   class Row : public std::span<const Number> {
    public:
     using std::span<const Number>::span;
@@ -98,7 +98,7 @@ class Table {
   bool operator==(const Table& other) const {
     return rows_ == other.rows_ && width_ == other.width_ && numbers_ == other.numbers_;
   }
-  /// A row to be written.
+  /// Returns a row to be written.
   [[nodiscard]] std::span<Number> change(std::size_t row) { return {numbers_.data() + row * width_, width_}; }
 
   void reserve(std::size_t rows) { numbers_.reserve(rows * width_); }
@@ -153,11 +153,11 @@ class Table {
   std::vector<Number> numbers_;
 };
 
-/// A value for every row, kept where it changes.
+/// Holds a value for every row, kept where it changes.
 template <class Value>
 class SteadyColumn {
  public:
-  /// The value from this row on, which is behind all that were set.
+  /// Sets the value from this row on, which is behind all that were set.
   void set(std::size_t row, Value value) {
     if (!values_.empty() && same(values_.back(), value)) return;
     from_.push_back(static_cast<std::uint32_t>(row));
@@ -178,7 +178,7 @@ class SteadyColumn {
   void for_each_change(Visit visit) const {
     for (std::size_t k = 0; k < from_.size(); ++k) visit(std::size_t{from_[k]}, values_[k]);
   }
-  /// Bits, not values: NaN is NaN, and -0 is not 0.
+  /// Compares bits, not values: NaN is NaN, and -0 is not 0.
   [[nodiscard]] static bool same(const Value& a, const Value& b) {
     if constexpr (std::is_same_v<Value, double>) {
       return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -192,11 +192,11 @@ class SteadyColumn {
   std::vector<Value> values_;
 };
 
-/// Rows of numbers that seldom change from one row to the next: what a row takes are its changes.
+/// Holds rows of numbers that seldom change from one row to the next: what a row takes are its changes.
 template <class Number>
 class SteadyTable {
  public:
-  /// Valid until the table changes.
+  /// Is valid until the table changes.
   class Row {
    public:
     Row(const SteadyTable& table, std::size_t row) : table_(&table), row_(row) {}
@@ -282,7 +282,7 @@ class SteadyTable {
   std::vector<SteadyColumn<Number>> columns_;
 };
 
-/// Values that seldom change from one row to the next.
+/// Holds values that seldom change from one row to the next.
 template <class Value>
 class SteadyList {
  public:

@@ -9,21 +9,22 @@
 
 namespace saltus::smoothed {
 
-/// One side of the surfaces inside a nested function (the only one, if nothing is inside), and the corners of pi there.
+/// Holds one side of the surfaces inside a nested function (the only one, if nothing is inside), and the corners of pi
+/// there.
 struct Side {
   std::vector<int> values;  ///< 0 or 1, one per Layer::inner
   std::size_t lower = 0;    ///< column of psi = -epsilon in the regularised system
   std::size_t upper = 0;    ///< column of psi = epsilon; that of `lower` for a function that makes no jump
 };
 
-/// The layer of one switching function of the original system: one for each side of the surfaces inside it.
+/// Holds the layer of one switching function of the original system: one for each side of the surfaces inside it.
 struct Layer {
   std::vector<std::size_t> inner;  ///< layers with a smaller index
   std::vector<Side> sides;         ///< 2^(number of inner layers)
 };
 
-/// The modes of a group by `indicator`: names, and the columns of eps (log theta_i + weight_range) in the regularised
-/// system, positive where a region has a weight that matters.
+/// Holds the modes of a group by `indicator`: names, and the columns of eps (log theta_i + weight_range) in the
+/// regularised system, positive where a region has a weight that matters.
 struct SoftRegions {
   std::vector<std::string> names;
   std::vector<std::size_t> columns;
@@ -32,7 +33,7 @@ struct SoftRegions {
 /// A region is active from a weight of exp(-14), about 1e-6, on: less does not move the state by more than that.
 inline constexpr double weight_range = 14.0;
 
-/// The regularised system, and how to read its results.
+/// Holds the regularised system, and how to read its results.
 struct Regularisation {
   model::System system;       ///< its last outputs are the selections, one per column of `columns`, and
                               ///< the weights of all regions

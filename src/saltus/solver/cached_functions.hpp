@@ -5,14 +5,14 @@
 
 namespace saltus::solver {
 
-/// c(w) and the values of dc/dw of a problem, evaluated again only where w differs from the last one asked for. Solvers
-/// ask for values, Jacobian and Hessian at the same w one after the other. Refers to the problem.
+/// Keeps c(w) and the values of dc/dw of a problem, evaluated again only where w differs from the last one asked for.
+/// Solvers ask for values, Jacobian and Hessian at the same w one after the other. Refers to the problem.
 class CachedFunctions {
  public:
   explicit CachedFunctions(mpcc::Problem& problem)
       : problem_(&problem), c_(problem.rows()), jacobian_(problem.jacobian_pattern().entries()) {}
 
-  /// Valid until the next call.
+  /// Returns what is valid until the next call.
   [[nodiscard]] const Eigen::VectorXd& functions(mpcc::ConstVectorView w) {
     move_to(w);
     if (!has_functions_) problem_->functions(w_, c_);
@@ -25,7 +25,7 @@ class CachedFunctions {
     has_jacobian_ = true;
     return jacobian_;
   }
-  /// To be called when parameters of the problem have changed.
+  /// Is called when parameters of the problem have changed.
   void forget() { w_.resize(0); }
 
  private:

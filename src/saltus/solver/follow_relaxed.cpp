@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -51,22 +52,28 @@ class Path {
       if (is_last && !is_behind_last) sigma = schedule.sigma_final;
       is_behind_last = is_last;
       if (run_.is_over()) return PathEnd::stopped;
-      const bool is_solved = solve(sigma);
-      failures = is_solved ? 0 : failures + 1;
+      failures = solve(sigma) ? 0 : failures + 1;
       if (run_.is_over()) return PathEnd::stopped;
-      // A solver that fails near a solution fails for its last digits only.
-      const bool is_usable = is_solved || has_point_;
-      if (is_usable && run_.options.crossover && cross_over(sigma, is_last)) return PathEnd::crossed_over;
-      if (is_solved && has_settled()) return PathEnd::finished;
-      // Problems of larger sigma are not solved as sharply.
-      const bool is_sharp = is_solved && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
-      if (is_sharp && !run_.options.crossover) return PathEnd::finished;
-      if (failures >= failures_that_end) return PathEnd::failed;
-      if (is_last && !(is_solved && is_nearly_done(sigma))) return is_solved ? PathEnd::finished : PathEnd::failed;
+      if (const auto end = end_at(sigma, is_last, failures)) return *end;
     }
   }
 
  private:
+  /// Whether the path ends with the problem of this sigma; that many have failed in a row, 0: it was solved.
+  [[nodiscard]] std::optional<PathEnd> end_at(double sigma, bool is_last, int failures) {
+    const bool is_solved = failures == 0;
+    // A solver that fails near a solution fails for its last digits only.
+    const bool is_usable = is_solved || has_point_;
+    if (is_usable && run_.options.crossover && cross_over(sigma, is_last)) return PathEnd::crossed_over;
+    if (is_solved && has_settled()) return PathEnd::finished;
+    // Problems of larger sigma are not solved as sharply.
+    const bool is_sharp = is_solved && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
+    if (is_sharp && !run_.options.crossover) return PathEnd::finished;
+    if (failures >= failures_that_end) return PathEnd::failed;
+    if (is_last && !(is_solved && is_nearly_done(sigma))) return is_solved ? PathEnd::finished : PathEnd::failed;
+    return std::nullopt;
+  }
+
   [[nodiscard]] double infeasibility_of(const Eigen::VectorXd& w) {
     return std::max(certificate::scaled_infeasibility(run_.problem, w), certificate::complementarity(run_.problem, w));
   }

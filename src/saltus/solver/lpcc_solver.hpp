@@ -11,7 +11,8 @@
 
 namespace saltus::solver {
 
-/// A linear problem with disjunctions is
+/// States a linear problem with disjunctions, min cost'd   subject to   lower_row <= A d <= upper_row,   lower <= d <=
+/// upper.
 ///   min cost'd   subject to   lower_row <= A d <= upper_row,   lower <= d <= upper.
 /// A trust region is among the bounds, so they are finite. Of each disjunction (rows i, j) row i or row j of A d is at
 /// its lower bound.

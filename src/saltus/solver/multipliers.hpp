@@ -5,7 +5,7 @@
 
 namespace saltus::solver {
 
-/// Multipliers of L = f + rows'g + lower'(l - w) + upper'(w - u) - G'G - H'H, lower and upper >= 0.
+/// Holds multipliers of L = f + rows'g + lower'(l - w) + upper'(w - u) - G'G - H'H, lower and upper >= 0.
 struct MpccMultipliers {
   Eigen::VectorXd rows, lower, upper, G, H;
 };

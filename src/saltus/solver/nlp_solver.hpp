@@ -13,7 +13,7 @@ namespace saltus::solver {
 using mpcc::ConstVectorView;
 using mpcc::VectorView;
 
-/// A primal and dual point of min f(w), lower_w <= w <= upper_w, lower_g <= g(w) <= upper_g:
+/// Holds a primal and dual point of min f(w), lower_w <= w <= upper_w, lower_g <= g(w) <= upper_g:
 ///   grad f + (dg/dw)' y - z_lower + z_upper = 0.
 struct NlpPoint {
   Eigen::VectorXd w;
@@ -41,15 +41,14 @@ struct NlpReport {
   /// completed (also at the acceptable tolerance), infeasible, iteration_limit, time_limit, stopped_by_user,
   /// evaluation_failed, factorization_failed, step_size_too_small, not_converged.
   result::Termination termination = result::Termination::not_converged;
-  bool acceptable_only = false;  ///< completed, but only to the acceptable tolerance
-  bool diverging = false;        ///< not_converged, since the iterates grow without bounds
+  bool diverging = false;  ///< not_converged, since the iterates grow without bounds
   double objective = 0.0;
   int iterations = 0;
   double evaluation_seconds = 0.0;  ///< spent in functions of the problem
   std::string message;              ///< the solver's own words; empty if completed
 };
 
-/// A solver of smooth nonlinear programs: mpcc::Problems without pairs.
+/// Solves smooth nonlinear programs: mpcc::Problems without pairs.
 class NlpSolver {
  public:
   NlpSolver() = default;

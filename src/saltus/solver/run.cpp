@@ -25,8 +25,6 @@ Run::Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpc
       options(wanted),
       groups(crossover::groups_of(problem_to_solve)) {}
 
-double Run::seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
 bool Run::is_over() {
   if (stopped) return true;
   if (options.is_interrupted && options.is_interrupted()) {

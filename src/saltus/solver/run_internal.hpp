@@ -1,18 +1,18 @@
 // What the parts of one solution share: limits, log, and the branch that has been found.
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "saltus/base/stopwatch.hpp"
 #include "saltus/solver/certificate/classify.hpp"
 #include "saltus/solver/crossover/branch.hpp"
 #include "saltus/solver/solve.hpp"
 
 namespace saltus::solver {
 
-/// Where the relaxed problems have come to.
+/// Says where the relaxed problems have come to.
 struct RelaxedState {
   std::unique_ptr<homotopy::RelaxedProblem> problem;
   NlpPoint point;  ///< in its variables, multipliers included
@@ -24,10 +24,10 @@ class Run {
  public:
   Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpcc_solver, const SolveOptions& wanted);
 
-  [[nodiscard]] double seconds() const;
-  /// Whether a limit has been reached or the user wants an end; `stopped` says which.
+  [[nodiscard]] double seconds() const { return stopwatch_.seconds(); }
+  /// Returns whether a limit has been reached or the user wants an end; `stopped` says which.
   [[nodiscard]] bool is_over();
-  /// Limits of the next problem.
+  /// Returns the limits of the next problem.
   [[nodiscard]] NlpOptions nlp_options() const;
   void record(result::HomotopyStep step, const NlpReport* report, double started);
   /// Solves a branch problem, counts and records it. It may be given up where its objective is above `cutoff`.
@@ -50,10 +50,10 @@ class Run {
   bool is_infeasible = false;  ///< a relaxed problem was infeasible
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Stopwatch stopwatch_;
 };
 
-/// One attempt at the path: its start, its first sigma, its steering.
+/// Makes one attempt at the path: its start, its first sigma, its steering.
 struct Attempt {
   Eigen::VectorXd w;
   MpccMultipliers multipliers;  ///< may be empty
@@ -70,12 +70,13 @@ enum class PathEnd {
 /// Follows the relaxed problems, tries to cross over behind each.
 [[nodiscard]] PathEnd follow_relaxed(Run& run, const Attempt& attempt);
 
-/// From run.branch to better branches, until none is found: flips of biactive pairs with negative multipliers, then the
-/// linear program over them. Leaves certificate and multipliers in run.solution.
+/// Goes from run.branch to better branches, until none is found: flips of biactive pairs with negative multipliers,
+/// then the linear program over them. Leaves certificate and multipliers in run.solution.
 void descend(Run& run);
-/// Where no branch was accepted: the linear program at the relaxed point proposes sides. Leaves run.branch if it works.
+/// Helps where no branch was accepted: the linear program at the relaxed point proposes sides. Leaves run.branch if it
+/// works.
 void rescue(Run& run);
-/// Certificate and multipliers of the relaxed point.
+/// Finds certificate and multipliers of the relaxed point.
 void certify_relaxed(Run& run);
 
 }  // namespace saltus::solver

@@ -16,13 +16,13 @@
 
 namespace saltus::solver {
 
-/// The problem that a solution begins with.
+/// Names the problem that a solution begins with.
 enum class FirstProblem {
   relaxed,  ///< that of the first sigma
   branch,   ///< that of the sides of the start, which are right where it is a solution of a similar problem
 };
 
-/// [optimize.mpcc] (docs/options.md).
+/// Holds [optimize.mpcc] (docs/options.md).
 struct SolveOptions {
   homotopy::Relaxation relaxation = homotopy::Relaxation::scholtes;
   homotopy::Steering steering = homotopy::Steering::direct;
@@ -39,7 +39,7 @@ struct SolveOptions {
   std::function<void(const result::HomotopyStep&)> on_step = [](const result::HomotopyStep&) {};
 };
 
-/// The best point found, whatever the outcome; everything without the method's own terms.
+/// Holds the best point found, whatever the outcome; everything without the method's own terms.
 struct Solution {
   /// completed: residuals <= tolerance and B-stationary. infeasible, iteration_limit, time_limit, stopped_by_user,
   /// evaluation_failed, else not_converged (not stationary, not B-stationary, unbounded): `message` says which.
@@ -56,7 +56,7 @@ struct Solution {
   double evaluation_seconds = 0.0, solver_seconds = 0.0;
 };
 
-/// Where to begin; multipliers may be empty.
+/// Says where to begin; multipliers may be empty.
 struct Start {
   Eigen::VectorXd w;
   MpccMultipliers multipliers;

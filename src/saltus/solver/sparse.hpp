@@ -9,7 +9,7 @@
 
 namespace saltus::solver {
 
-/// Entries of the same place add up; entries that are zero stay.
+/// Makes a sparse matrix, in which entries of the same place add up; entries that are zero stay.
 template <int Order = Eigen::ColMajor>
 [[nodiscard]] Eigen::SparseMatrix<double, Order> sparse(const mpcc::Pattern& pattern, mpcc::ConstVectorView values,
                                                         int rows, int columns) {
@@ -25,7 +25,7 @@ template <int Order = Eigen::ColMajor>
 
 using RowMatrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// dc/dw at w, rows() x variables().
+/// Returns dc/dw at w, rows() x variables().
 [[nodiscard]] inline RowMatrix jacobian_matrix(mpcc::Problem& problem, mpcc::ConstVectorView w) {
   Eigen::VectorXd values(problem.jacobian_pattern().entries());
   problem.jacobian(w, values);

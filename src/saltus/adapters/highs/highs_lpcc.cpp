@@ -3,7 +3,6 @@
 #include <Highs.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +10,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/stopwatch.hpp"
 
 namespace saltus::adapters {
 namespace {
@@ -84,9 +84,7 @@ class Search {
  private:
   enum class Choice { open, first, second };
 
-  [[nodiscard]] bool out_of_time() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count() >= seconds_;
-  }
+  [[nodiscard]] bool out_of_time() const { return stopwatch_.seconds() >= seconds_; }
 
   /// 0 is a solution unless rows or bounds exclude it: a bound to begin with.
   [[nodiscard]] bool zero_is_feasible() const {
@@ -170,7 +168,7 @@ class Search {
   Highs highs_;
   LpccSolution best_;
   bool is_cut_short_ = false;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Stopwatch stopwatch_;
 };
 
 }  // namespace

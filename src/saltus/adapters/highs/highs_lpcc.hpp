@@ -7,9 +7,9 @@
 
 namespace saltus::adapters {
 
-/// Branch and bound over the disjunctions, depth first, on linear programs that begin from the basis of the one before;
-/// no big M. Exact if it ends before its limits: at most 2^(k + 1) programs for k disjunctions, few where d = 0 is the
-/// solution. Prints nothing; the same problem gives the same bits unless time runs out.
+/// Does branch and bound over the disjunctions, depth first, on linear programs that begin from the basis of the one
+/// before; no big M. Exact if it ends before its limits: at most 2^(k + 1) programs for k disjunctions, few where d = 0
+/// is the solution. Prints nothing; the same problem gives the same bits unless time runs out.
 class HighsLpcc final : public solver::LpccSolver {
  public:
   explicit HighsLpcc(int node_limit = 20000);

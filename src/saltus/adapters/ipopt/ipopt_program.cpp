@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/stopwatch.hpp"
 
 namespace saltus::adapters {
 namespace {
@@ -16,13 +16,13 @@ using Output = Eigen::Map<Eigen::VectorXd>;
 class Timer {
  public:
   explicit Timer(double& seconds) : seconds_(seconds) {}
-  ~Timer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  ~Timer() { seconds_ += stopwatch_.seconds(); }
   Timer(const Timer&) = delete;
   Timer& operator=(const Timer&) = delete;
 
  private:
   double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  Stopwatch stopwatch_;
 };
 
 void write_pattern(const mpcc::Pattern& pattern, Ipopt::Index* row, Ipopt::Index* column) {

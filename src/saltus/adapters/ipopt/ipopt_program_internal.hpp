@@ -12,13 +12,13 @@ namespace saltus::adapters {
 /// Hands every question on to the problem, and keeps the point that Ipopt ends with.
 class IpoptProgram final : public Ipopt::TNLP {
  public:
-  /// What the next solution is about; both outlive it.
+  /// Sets what the next solution is about; both outlive it.
   void set(mpcc::Problem& problem, solver::NlpPoint& point, const solver::NlpOptions& options);
-  /// Whether the last problem was stopped because its point did not move any more.
+  /// Returns whether the last problem was stopped because its point did not move any more.
   [[nodiscard]] bool stands_still() const;
-  /// Whether it was stopped because its objective did not, at a point that is acceptable.
+  /// Returns whether it was stopped because its objective did not, at a point that is acceptable.
   [[nodiscard]] bool is_exhausted() const;
-  /// Whether it was stopped because it was about to end above NlpOptions::objective_cutoff.
+  /// Returns whether it was stopped because it was about to end above NlpOptions::objective_cutoff.
   [[nodiscard]] bool is_cut_off() const { return is_cut_off_; }
   [[nodiscard]] double objective() const { return objective_; }
   [[nodiscard]] double evaluation_seconds() const { return evaluation_seconds_; }

@@ -48,14 +48,9 @@ Outcome outcome_of(Ipopt::ApplicationReturnStatus status) {
       return {Termination::evaluation_failed, "a function of the problem is not finite"};
     case Ipopt::Insufficient_Memory:
       return {Termination::factorization_failed, "Ipopt ran out of memory"};
-    case Ipopt::Invalid_Problem_Definition:
-    case Ipopt::Invalid_Option:
-    case Ipopt::Unrecoverable_Exception:
-    case Ipopt::NonIpopt_Exception_Thrown:
-    case Ipopt::Internal_Error:
-      break;
+    default:
+      return {Termination::not_converged, "Ipopt ended with an internal error"};
   }
-  return {Termination::not_converged, "Ipopt ended with an internal error"};
 }
 
 /// OpenBLAS spins with as many threads as there are cores, which only costs here: fronts are small.
@@ -160,7 +155,6 @@ solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point
     outcome = {Termination::not_converged, "its objective is too large"};
   solver::NlpReport report;
   report.termination = outcome.termination;
-  report.acceptable_only = is_exhausted || status == Ipopt::Solved_To_Acceptable_Level;
   report.diverging = status == Ipopt::Diverging_Iterates;
   report.objective = program->objective();
   report.evaluation_seconds = program->evaluation_seconds();

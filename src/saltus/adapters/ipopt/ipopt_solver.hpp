@@ -7,9 +7,9 @@
 
 namespace saltus::adapters {
 
-/// The interior-point method of [waechter2006] with the linear solver MUMPS, through Ipopt's own C++ interface. Keeps
-/// its application between solutions, whatever their outcome. Bounds are not relaxed; reads no option file; prints
-/// nothing.
+/// Solves by the interior-point method of [waechter2006] with the linear solver MUMPS, through Ipopt's own C++
+/// interface. Keeps its application between solutions, whatever their outcome. Bounds are not relaxed; reads no option
+/// file; prints nothing.
 class IpoptSolver final : public solver::NlpSolver {
  public:
   IpoptSolver();

@@ -12,7 +12,7 @@ namespace saltus::cli {
 /// Rows that a page draws; of a longer table the first ones, which the page says.
 inline constexpr std::size_t rows_of_page = 100'000;
 
-/// What the page says beside the table.
+/// Holds what the page says beside the table.
 struct SweepPage {
   std::string title;               ///< empty: not known
   std::string command;             ///< that runs one of them, without its values; empty: not known
@@ -20,7 +20,7 @@ struct SweepPage {
   bool grid = true;                ///< of two names every pair is there once
 };
 
-/// Values over one parameter as lines, over two as a map, number of events, status, values at events (bifurcation
+/// Draws values over one parameter as lines, over two as a map, number of events, status, values at events (bifurcation
 /// diagram); a click on a run shows its command.
 [[nodiscard]] std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& page);
 

@@ -13,20 +13,20 @@
 
 namespace saltus::cli {
 
-/// One of `of` shares, from 1: consecutive runs, as equal in number as can be.
+/// Holds one of `of` shares, from 1: consecutive runs, as equal in number as can be.
 struct Share {
   std::size_t number = 1, of = 1;
   [[nodiscard]] std::size_t begin(std::size_t runs) const { return (number - 1) * runs / of; }
   [[nodiscard]] std::size_t end(std::size_t runs) const { return number * runs / of; }
 };
 
-/// Of I/N; a share without a run is refused.
+/// Reads a share from I/N; a share without a run is refused.
 [[nodiscard]] Expected<Share> parse_share(const std::string& text, std::size_t runs);
 
-/// What tells the shares of one sweep from those of another: model, settings, plan and what is kept.
+/// Returns what tells the shares of one sweep from those of another: model, settings, plan and what is kept.
 [[nodiscard]] std::string sweep_mark(const ModelInput& model, const SweepRequest& request, const std::string& keep);
 
-/// The heading of the first column of a share's table, which says whose it is, and what the page of all says.
+/// Returns the heading of the first column of a share's table, which says whose it is, and what the page of all says.
 [[nodiscard]] std::string share_heading(const Share& share, const std::string& mark, const SweepPage& page);
 
 struct JoinedShares {
@@ -34,8 +34,8 @@ struct JoinedShares {
   SweepPage page;  ///< without title and command where the shares do not say them (older ones)
 };
 
-/// The table and page of the whole sweep from the files (.csv) of all its shares, in any order: what one run of it
-/// would have written. Fails for a file that is no share, shares of different sweeps, a missing one and one that is
+/// Returns the table and page of the whole sweep from the files (.csv) of all its shares, in any order: what one run of
+/// it would have written. Fails for a file that is no share, shares of different sweeps, a missing one and one that is
 /// there twice.
 [[nodiscard]] Expected<JoinedShares> join_shares(const std::vector<std::string>& files);
 

@@ -10,10 +10,10 @@
 
 namespace saltus::cli {
 
-/// The model with the values of one run; fails as `saltus simulate` does with the same settings.
+/// Returns the model with the values of one run; fails as `saltus simulate` does with the same settings.
 [[nodiscard]] Expected<ModelInput> input_of_run(const ModelInput& model, const SweepPlan& plan, std::size_t run);
 
-/// The same as a system. To be called under the symbolic lock.
+/// Returns the same as a system. To be called under the symbolic lock.
 [[nodiscard]] Expected<pipeline::StatedRun> state_run(const ModelInput& model, const SweepPlan& plan, std::size_t run);
 
 }  // namespace saltus::cli

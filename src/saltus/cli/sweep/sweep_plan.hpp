@@ -22,7 +22,8 @@ struct SweepRequest {
 
 inline constexpr std::size_t unconfirmed_runs = 10'000'000;
 
-/// The values of all runs, made when they are asked for. The last axis of a grid changes fastest, samples within it.
+/// Holds the values of all runs, made when they are asked for. The last axis of a grid changes fastest, samples within
+/// it.
 class SweepPlan {
  public:
   /// Fails (parse_failure, invalid_option) for these:
@@ -32,9 +33,9 @@ class SweepPlan {
   [[nodiscard]] static Expected<SweepPlan> make(const SweepRequest& request);
 
   [[nodiscard]] std::size_t runs() const { return runs_; }
-  /// What is changed, as it was typed: axes, then samples.
+  /// Returns what is changed, as it was typed: axes, then samples.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  /// As text, one per name; depends on seed and run only.
+  /// Returns values as text, one per name; depends on seed and run only.
   [[nodiscard]] std::vector<std::string> values(std::size_t run) const;
 
  private:

@@ -11,14 +11,14 @@
 
 namespace saltus::cli {
 
-/// A column of numbers or of words.
+/// Holds a column of numbers or of words.
 struct TableColumn {
   std::string name;
   std::variant<std::vector<double>, std::vector<std::string>> values;
 };
 
-/// A row for every run (Keep::final), event or row of a trajectory: `run` from 1, what was changed ("v(0)" if v is a
-/// state, whose value has the column "v"), `status`, then
+/// Returns a row for every run (Keep::final), event or row of a trajectory: `run` from 1, what was changed ("v(0)" if v
+/// is a state, whose value has the column "v"), `status`, then
 ///   final:       t, states, outputs at the end, `events` (their number);
 ///   events:      `event` from 1, t, kind, name, surfaces, states before, states behind ("v(after)");
 ///   trajectory:  t, states, controls, outputs, modes.
@@ -30,9 +30,9 @@ struct TableColumn {
   return std::visit([](const auto& values) { return values.size(); }, column.values);
 }
 
-/// RFC 4180, numbers as the shortest text that reads back the same.
+/// Writes RFC 4180, numbers as the shortest text that reads back the same.
 [[nodiscard]] std::string to_csv(const std::vector<TableColumn>& table);
-/// NumPy's archive of arrays, one per column, of any size; false if the sink did not take everything.
+/// Writes NumPy's archive of arrays, one per column, of any size; false if the sink did not take everything.
 bool write_npz(const std::vector<TableColumn>& table, io::Sink sink);
 
 }  // namespace saltus::cli

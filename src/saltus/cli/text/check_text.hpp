@@ -12,14 +12,14 @@
 
 namespace saltus::cli {
 
-/// Quantities, equations, switching functions, what every method makes of them, sizes of [optimize], warnings.
+/// Writes quantities, equations, switching functions, what every method makes of them, sizes of [optimize], warnings.
 /// Simulates nothing.
 /// @param system  of the input, with its overview and the sizes of [optimize]
 [[nodiscard]] std::string check_text(const ModelInput& input, const model::System& system,
                                      const io::ModelOverview& overview,
                                      const std::optional<pipeline::OcpOverview>& optimization);
 
-/// The same of a model alone. Fails where it states no system.
+/// Writes the same of a model alone. Fails where it states no system.
 [[nodiscard]] Expected<std::string> check_text(const ModelInput& input);
 
 }  // namespace saltus::cli

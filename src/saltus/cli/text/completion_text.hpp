@@ -7,7 +7,7 @@
 
 namespace saltus::cli {
 
-/// A subcommand with its options, without those for the tool itself.
+/// Holds a subcommand with its options, without those for the tool itself.
 struct ShownCommand {
   std::string name, about;
   std::vector<std::pair<std::string, std::string>> options{};

@@ -8,7 +8,8 @@
 
 namespace saltus::cli {
 
-/// Whether a drawing can be written as this file: .svg always, .pdf and .png where librsvg's program is installed.
+/// Checks whether a drawing can be written as this file: .svg always, .pdf and .png where librsvg's program is
+/// installed.
 [[nodiscard]] Expected<void> check_figure(const std::string& file);
 
 /// Writes an SVG document as the format of the file's suffix, whole or not at all.

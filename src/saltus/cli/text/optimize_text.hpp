@@ -10,11 +10,11 @@
 
 namespace saltus::cli {
 
-/// Sizes per interval and of the problem, and warnings, those of the statement first; nothing for a model without
-/// [optimize]. Fails for bad input as saltus optimize does.
+/// Counts sizes per interval and of the problem, and warnings, those of the statement first; nothing for a model
+/// without [optimize]. Fails for bad input as saltus optimize does.
 [[nodiscard]] Expected<std::optional<pipeline::OcpOverview>> optimize_overview(const ModelInput& input);
 
-/// The same for people.
+/// Writes the same for people.
 [[nodiscard]] std::string optimize_text(const pipeline::OcpOverview& overview);
 
 }  // namespace saltus::cli

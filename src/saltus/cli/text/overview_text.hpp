@@ -7,7 +7,7 @@
 
 namespace saltus::cli {
 
-/// Quantities, equations, surfaces, jumps, events, inclusion; each part with its heading.
+/// Writes quantities, equations, surfaces, jumps, events, inclusion; each part with its heading.
 [[nodiscard]] std::string overview_text(const io::ModelOverview& overview, const std::string& path);
 
 [[nodiscard]] std::string warnings_text(const io::ModelOverview& overview);

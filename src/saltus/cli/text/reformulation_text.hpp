@@ -14,13 +14,13 @@ namespace saltus::cli {
 /// Switching functions up to which a check makes the complementarity systems: their cost grows faster than the model.
 inline constexpr std::size_t most_reformulated = 100;
 
-/// The sizes of Table 4 of [nurkanovic2024] for every form, in total and per group, or why there is none.
+/// Returns the sizes of Table 4 of [nurkanovic2024] for every form, in total and per group, or why there is none.
 [[nodiscard]] std::string reformulation_text(const model::System& system);
 
-/// Lists the totals of the same table as plain data.
+/// Returns lists the totals of the same table as plain data.
 [[nodiscard]] std::vector<io::OverviewForm> complementarity_forms(const model::System& system);
 
-/// The ranks of the systems for the multipliers along the solution of the model's [simulate].
+/// Returns the ranks of the systems for the multipliers along the solution of the model's [simulate].
 [[nodiscard]] std::string ranks_text(const model::System& system, const pipeline::SimulateOptions& options,
                                      const pipeline::Observers& observers);
 

@@ -8,7 +8,8 @@
 
 namespace saltus::cli {
 
-/// to_text(error), with the source line and a caret behind its first line; without them for a place outside the text.
+/// Returns to_text(error), with the source line and a caret behind its first line; without them for a place outside the
+/// text.
 [[nodiscard]] std::string with_source(const Error& error, const ModelText& source);
 
 }  // namespace saltus::cli

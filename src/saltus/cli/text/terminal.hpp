@@ -12,7 +12,7 @@ namespace saltus::cli {
 /// Writes to standard output. A reader that went away (a closed pipe) is no error.
 void print(std::string_view text);
 
-/// Whether something of what was printed could not be written, a closed pipe aside.
+/// Returns whether something of what was printed could not be written, a closed pipe aside.
 [[nodiscard]] std::optional<Error> lost_output();
 
 /// Writes one line to standard error.

@@ -11,14 +11,15 @@
 
 namespace saltus::discretization {
 
-/// A row of a path or terminal constraint: of constraint number `constraint`, with its slack if it is soft.
+/// Holds a row of a path or terminal constraint: of constraint number `constraint`, with its slack if it is soft.
 struct ConstraintRow {
   int constraint = 0;
   double lower = 0.0, upper = 0.0;
   int soft = -1;  ///< number of the slack among those of the point
 };
 
-/// Sizes of the shared inputs of an interval, in their order: controls, free parameters, held values, T, s, samples.
+/// Holds sizes of the shared inputs of an interval, in their order: controls, free parameters, held values, T, s,
+/// samples.
 struct SharedSizes {
   int controls = 0, parameters = 0, held = 0, samples = 0;
   [[nodiscard]] int size() const { return controls + parameters + held + 2 + samples; }
@@ -53,7 +54,7 @@ struct OcpKernel::Implementation {
   evaluation::NativeFunctions native;
 };
 
-/// Symbols and expressions on the way to the functions.
+/// Holds symbols and expressions on the way to the functions.
 struct OcpExpressions {
   casadi::SX known;       ///< p, held, u
   casadi::SX shared;      ///< SharedSizes

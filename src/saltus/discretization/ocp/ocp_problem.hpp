@@ -22,7 +22,7 @@ struct Dcs;
 
 namespace saltus::discretization {
 
-/// An element with what its interval shares, costs, constraints and boundaries, compiled.
+/// Holds an element with what its interval shares, costs, constraints and boundaries, compiled.
 class OcpKernel {
  public:
   struct Implementation;
@@ -40,7 +40,7 @@ class OcpKernel {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// What an optimisation begins with. Rows of `states` belong to OcpProblem::start_fractions().
+/// Holds what an optimisation begins with. Rows of `states` belong to OcpProblem::start_fractions().
 struct OcpGuessValues {
   double horizon = 0.0;
   std::vector<double> parameters;             ///< all of System::p
@@ -50,7 +50,7 @@ struct OcpGuessValues {
   bool simulated = false;  ///< selections and multipliers by the signs of psi at these states, else neutral
 };
 
-/// A point of the problem in the user's quantities.
+/// Holds a point of the problem in the user's quantities.
 struct OcpSolution {
   double horizon = 0.0;
   std::vector<double> parameters;             ///< all of System::p
@@ -61,9 +61,9 @@ struct OcpSolution {
   std::vector<std::vector<SolvedElement>> elements;
 };
 
-/// min f, g = 0, 0 <= G _|_ H >= 0 of fesd.md (Optimal control), [nurkanovic2024] eq. (45). Variables: horizon and free
-/// parameters; free initial states and their multipliers; per interval controls, speed of time, lengths
-/// hhat (h = hhat s T/N, sum hhat = 1), then its elements.
+/// States min f, g = 0, 0 <= G _|_ H >= 0 of fesd.md (Optimal control), [nurkanovic2024] eq. (45). Variables: horizon
+/// and free parameters; free initial states and their multipliers; per interval controls, speed of time, lengths hhat
+/// (h = hhat s T/N, sum hhat = 1), then its elements.
 ///
 /// Building and one evaluation cost a multiple of the number of elements. One problem per kernel and thread at a time.
 class OcpProblem final : public mpcc::Problem {
@@ -76,18 +76,18 @@ class OcpProblem final : public mpcc::Problem {
                                                                   const std::vector<int>& elements);
   ~OcpProblem() override;
 
-  /// Times of stages and ends of equal elements as fractions of the horizon, in the order of the elements.
+  /// Returns times of stages and ends of equal elements as fractions of the horizon, in the order of the elements.
   [[nodiscard]] std::vector<double> start_fractions() const;
   void set_start(const OcpGuessValues& guess);
   void set_start(Eigen::VectorXd w);
   [[nodiscard]] OcpSolution read(mpcc::ConstVectorView w) const;
-  /// Parts of the user's objective at w.
+  /// Returns parts of the user's objective at w.
   [[nodiscard]] result::ObjectiveTerms objective_terms(mpcc::ConstVectorView w);
-  /// Multipliers of path, terminal and boundary constraints from those of rows and bounds (upper minus lower).
+  /// Returns multipliers of path, terminal and boundary constraints from those of rows and bounds (upper minus lower).
   [[nodiscard]] std::vector<result::ConstraintMultiplier> constraint_multipliers(mpcc::ConstVectorView w,
                                                                                  mpcc::ConstVectorView rows,
                                                                                  mpcc::ConstVectorView bounds) const;
-  /// The name of a cost or constraint that is not finite at w; empty if all are.
+  /// Returns the name of a cost or constraint that is not finite at w; empty if all are.
   [[nodiscard]] std::string not_finite(mpcc::ConstVectorView w);
 
   [[nodiscard]] int variables() const override;

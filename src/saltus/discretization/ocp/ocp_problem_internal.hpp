@@ -10,7 +10,7 @@
 
 namespace saltus::discretization {
 
-/// A fixed parameter that the relaxed problems follow from one value to another.
+/// Holds a fixed parameter that the relaxed problems follow from one value to another.
 struct FollowedParameter {
   Eigen::Index place = 0;  ///< among the parameters of the local functions
   double initial = 0.0, last = 0.0;
@@ -29,7 +29,7 @@ struct OcpProblem::Implementation {
 
   Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp);
   void find_patterns();
-  /// factor of a function's objective: 1, or that of the method.
+  /// Returns factor of a function's objective: 1, or that of the method.
   [[nodiscard]] double factor(const Placed& placed) const { return placed.term == Term::method ? method_scale : 1.0; }
   [[nodiscard]] double term(Term wanted, mpcc::ConstVectorView w);
   [[nodiscard]] double mean_term(mpcc::ConstVectorView w) const;

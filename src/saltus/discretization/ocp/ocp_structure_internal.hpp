@@ -14,10 +14,10 @@
 
 namespace saltus::discretization {
 
-/// Which part of the objective a function belongs to.
+/// Says which part of the objective a function belongs to.
 enum class Term { none, running, terminal, least_squares, method };
 
-/// Copies of one function of the kernel, each with where it belongs.
+/// Holds copies of one function of the kernel, each with where it belongs.
 struct Placed {
   struct Copy {
     int interval = 0, element = 0;  ///< numbers over the whole problem; -1: none
@@ -35,21 +35,21 @@ struct Placed {
   std::unique_ptr<PlacedFunction> placed{};
 };
 
-/// sum coefficient w_variable = right-hand side.
+/// States sum coefficient w_variable = right-hand side.
 struct LinearRow {
   std::vector<std::pair<int, double>> entries;
   double value = 0.0;
   std::string name;
 };
 
-/// A slack of a soft constraint: factor v or factor v^2 in the objective.
+/// Holds a slack of a soft constraint: factor v or factor v^2 in the objective.
 struct Penalty {
   int variable = 0;
   double factor = 0.0;
   bool squared = false;
 };
 
-/// One element: its variables but the length stand together.
+/// Holds one element: its variables but the length stand together.
 struct OcpElement {
   int interval = 0;
   int number = 0;         ///< within the interval
@@ -72,7 +72,7 @@ struct OcpInterval {
   int t_left = 0;            ///< place of the time at its left end, if time matters
 };
 
-/// The whole problem without its functions' values.
+/// Holds the whole problem without its functions' values.
 struct OcpStructure {
   std::shared_ptr<OcpKernel> owner;
   OcpKernel::Implementation& kernel;
@@ -98,13 +98,13 @@ struct OcpStructure {
 
   explicit OcpStructure(std::shared_ptr<OcpKernel> kernel_owner)
       : owner(std::move(kernel_owner)), kernel(owner->parts()) {}
-  /// The place of a boundary's left lambda: right end of the element before, or the start.
+  /// Returns the place of a boundary's left lambda: right end of the element before, or the start.
   [[nodiscard]] std::vector<int> left_lambda(int element_number) const;
   [[nodiscard]] std::vector<int> element_places(int element_number) const;
   [[nodiscard]] std::vector<int> end_places(int element_number) const;  ///< t, x, selections of its last stage
 };
 
-/// Variables of the state at the right end of an element.
+/// Returns variables of the state at the right end of an element.
 [[nodiscard]] std::vector<int> right_state(const OcpStructure& made, const OcpElement& element);
 
 [[nodiscard]] Expected<std::unique_ptr<OcpStructure>> ocp_structure(std::shared_ptr<OcpKernel> kernel,
@@ -112,7 +112,7 @@ struct OcpStructure {
                                                                     const reformulation::Dcs& dcs,
                                                                     const std::vector<int>& elements);
 
-/// Values of Dcs::held in every interval, rows; an error where one changes inside an interval.
+/// Returns values of Dcs::held in every interval, rows; an error where one changes inside an interval.
 [[nodiscard]] Expected<Eigen::MatrixXd> held_in_intervals(const model::Ocp& ocp, const reformulation::Dcs& dcs,
                                                           const casadi::Function& arguments, int intervals);
 

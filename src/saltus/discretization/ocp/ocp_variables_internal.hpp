@@ -27,7 +27,7 @@ class OcpVariables {
     made_.names.push_back(std::move(name));
     return next() - 1;
   }
-  /// So many more without names, unbounded.
+  /// Adds so many more without names, unbounded.
   void add(int count) {
     lower_.resize(lower_.size() + static_cast<std::size_t>(count), -std::numeric_limits<double>::infinity());
     upper_.resize(lower_.size(), std::numeric_limits<double>::infinity());
@@ -39,7 +39,7 @@ class OcpVariables {
   }
   [[nodiscard]] int next() const { return static_cast<int>(lower_.size()); }
 
-  /// The variable of the largest violation of each soft constraint, -1 where each point has a slack of its own.
+  /// Returns the variable of the largest violation of each soft constraint, -1 where each point has a slack of its own.
   [[nodiscard]] std::vector<int> largest(const std::vector<model::OcpConstraint>& constraints) {
     std::vector<int> places;
     for (const auto& constraint : constraints) {
@@ -49,7 +49,7 @@ class OcpVariables {
     }
     return places;
   }
-  /// Slacks of the soft constraints at one more point.
+  /// Returns slacks of the soft constraints at one more point.
   [[nodiscard]] std::vector<int> slacks(const std::vector<model::OcpConstraint>& constraints,
                                         const std::vector<int>& largest_places) {
     std::vector<int> places;

@@ -8,14 +8,15 @@
 
 namespace saltus::evaluation {
 
-/// Row by row: on which states and selections the components of f depend, and on which states the switching functions.
+/// Says what each row depends on: on which states and selections the components of f depend, and on which states the
+/// switching functions.
 struct FieldDependencies {
   std::vector<std::vector<int>> field_on_states, field_on_alpha, functions_on_states;
   std::vector<std::vector<int>> neighbours;  ///< of switching functions
 };
 
-/// The pattern of d/dx f(x, alpha(x)), where the selections of sliding surfaces are functions of x: those of surfaces
-/// that influence each other, of all that moves one of them. Nothing where a dense matrix is as good.
+/// Returns the pattern of d/dx f(x, alpha(x)), where the selections of sliding surfaces are functions of x: those of
+/// surfaces that influence each other, of all that moves one of them. Nothing where a dense matrix is as good.
 [[nodiscard]] std::optional<ode::JacobianPattern> field_pattern(const FieldDependencies& dependencies);
 
 }  // namespace saltus::evaluation

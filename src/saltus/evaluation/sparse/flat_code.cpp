@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include <casadi/core/sx.hpp>
@@ -15,51 +16,40 @@ namespace {
 /// Statements of one part: compilers need more than linear time for longer ones.
 constexpr casadi_int part_length = 400;
 
-/// An expression with {0} and {1} for the operands; empty for what is not known.
+/// An operation as an expression with {0} and {1} for the operands.
+struct OperationForm {
+  casadi_int operation;
+  const char* text;
+};
+
+constexpr std::array operation_forms{
+    OperationForm{casadi::OP_ASSIGN, "{0}"},
+    OperationForm{casadi::OP_ADD, "{0}+{1}"},
+    OperationForm{casadi::OP_SUB, "{0}-{1}"},
+    OperationForm{casadi::OP_MUL, "{0}*{1}"},
+    OperationForm{casadi::OP_DIV, "{0}/{1}"},
+    OperationForm{casadi::OP_NEG, "-{0}"},
+    OperationForm{casadi::OP_SQ, "{0}*{0}"},
+    OperationForm{casadi::OP_TWICE, "2.*{0}"},
+    OperationForm{casadi::OP_INV, "1./{0}"},
+    OperationForm{casadi::OP_SQRT, "sqrt({0})"},
+    OperationForm{casadi::OP_EXP, "exp({0})"},
+    OperationForm{casadi::OP_LOG, "log({0})"},
+    OperationForm{casadi::OP_SIN, "sin({0})"},
+    OperationForm{casadi::OP_COS, "cos({0})"},
+    OperationForm{casadi::OP_TANH, "tanh({0})"},
+    OperationForm{casadi::OP_FABS, "fabs({0})"},
+    OperationForm{casadi::OP_POW, "pow({0},{1})"},
+    OperationForm{casadi::OP_CONSTPOW, "pow({0},{1})"},
+    OperationForm{casadi::OP_NE, "({0}!={1})"},
+    OperationForm{casadi::OP_IF_ELSE_ZERO, "({0}?{1}:0)"},
+};
+
+/// Empty for what is not known.
 std::string form_of(casadi_int operation) {
-  switch (operation) {
-    case casadi::OP_ASSIGN:
-      return "{0}";
-    case casadi::OP_ADD:
-      return "{0}+{1}";
-    case casadi::OP_SUB:
-      return "{0}-{1}";
-    case casadi::OP_MUL:
-      return "{0}*{1}";
-    case casadi::OP_DIV:
-      return "{0}/{1}";
-    case casadi::OP_NEG:
-      return "-{0}";
-    case casadi::OP_SQ:
-      return "{0}*{0}";
-    case casadi::OP_TWICE:
-      return "2.*{0}";
-    case casadi::OP_INV:
-      return "1./{0}";
-    case casadi::OP_SQRT:
-      return "sqrt({0})";
-    case casadi::OP_EXP:
-      return "exp({0})";
-    case casadi::OP_LOG:
-      return "log({0})";
-    case casadi::OP_SIN:
-      return "sin({0})";
-    case casadi::OP_COS:
-      return "cos({0})";
-    case casadi::OP_TANH:
-      return "tanh({0})";
-    case casadi::OP_FABS:
-      return "fabs({0})";
-    case casadi::OP_POW:
-    case casadi::OP_CONSTPOW:
-      return "pow({0},{1})";
-    case casadi::OP_NE:
-      return "({0}!={1})";
-    case casadi::OP_IF_ELSE_ZERO:
-      return "({0}?{1}:0)";
-    default:
-      return "";
-  }
+  const auto* const found = std::find_if(operation_forms.begin(), operation_forms.end(),
+                                         [&](const auto& form) { return form.operation == operation; });
+  return found == operation_forms.end() ? "" : found->text;
 }
 
 /// One statement; empty for an operation that is not known.

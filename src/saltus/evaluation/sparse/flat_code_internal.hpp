@@ -7,8 +7,8 @@
 
 namespace saltus::evaluation {
 
-/// A function of CasADi's signature under the name of `function` (of SX, dense), which does the same operations in the
-/// same order; empty if one of them is not known here.
+/// Returns a function of CasADi's signature under the name of `function` (of SX, dense), which does the same operations
+/// in the same order; empty if one of them is not known here.
 [[nodiscard]] std::string flat_code(const casadi::Function& function);
 
 }  // namespace saltus::evaluation

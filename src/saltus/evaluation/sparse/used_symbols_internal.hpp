@@ -9,12 +9,12 @@
 
 namespace saltus::evaluation {
 
-/// The symbols of a model.
+/// Holds the symbols of a model.
 struct ModelSymbols {
   casadi::SX t, x, p, alpha;
 };
 
-/// Symbols of one kind, by ascending place among all of that kind.
+/// Holds symbols of one kind, by ascending place among all of that kind.
 struct UsedOfKind {
   casadi::SX symbols;
   std::vector<std::size_t> place;

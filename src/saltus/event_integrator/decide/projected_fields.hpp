@@ -23,8 +23,8 @@ inline constexpr double sign_tolerance = 1e-10;
 /// Velocities below this fraction of their scale are rounding.
 inline constexpr double velocity_rounding = 1e-14;
 
-/// All values are at one point (switching_point.t, switching_point.x); not finite where a field is undefined there and
-/// also just beside the surfaces, on the side that belongs to the selections.
+/// Evaluates fields, all at one point (switching_point.t, switching_point.x); not finite where a field is undefined
+/// there and also just beside the surfaces, on the side that belongs to the selections.
 class ProjectedFields {
  public:
   ProjectedFields(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point);

@@ -9,7 +9,7 @@
 
 namespace saltus::event_integrator {
 
-/// A Rate is dg/dt with what its rounding follows from.
+/// Holds dg/dt with what its rounding follows from.
 struct Rate {
   double value = 0.0;
   double terms = 0.0;      ///< the sum of the sizes of its terms

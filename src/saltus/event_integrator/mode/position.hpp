@@ -12,8 +12,8 @@
 
 namespace saltus::event_integrator {
 
-/// A Position is one point of a run, which owns it; the parts of a run read it. Time and state go on by move_to() only,
-/// the mode by change_mode() only; projections and jumps correct the state where it is.
+/// Holds one point of a run, which owns it; the parts of a run read it. Time and state go on by move_to() only, the
+/// mode by change_mode() only; projections and jumps correct the state where it is.
 struct Position {
   double t = 0.0;
   std::vector<double> x;
@@ -24,7 +24,7 @@ struct Position {
 
   Position(double begin, std::vector<double> initial) : t(begin), x(std::move(initial)), slope(x.size()) {}
 
-  /// Along a step, or to what an event or a limit leads to; new_x has n_x entries.
+  /// Moves along a step, or to what an event or a limit leads to; new_x has n_x entries.
   void move_to(double new_t, const double* new_x) {
     t = new_t;
     std::copy_n(new_x, x.size(), x.begin());

@@ -19,7 +19,7 @@
 
 namespace saltus::event_integrator {
 
-/// States and modes on both sides of an event.
+/// Holds states and modes on both sides of an event.
 struct Passage {
   const std::vector<double>& x;
   const std::vector<double>& x_after;
@@ -54,8 +54,8 @@ class Recorder {
  public:
   Recorder(const evaluation::ModelKernel& kernel, const model::System& system);
 
-  /// From now on every row widens these: states, inputs, outputs (of which the last `selections` are cut to [0, 1]),
-  /// selections by switching function. They must outlive this.
+  /// Lets every row from now on widen these: states, inputs, outputs (of which the last `selections` are cut to [0,
+  /// 1]), selections by switching function. They must outlive this.
   void widen(ode::ColumnRanges& ranges, std::size_t selections) {
     ranges_ = &ranges;
     cut_outputs_ = selections;

@@ -50,7 +50,7 @@ class OutputRows {
     each_until(here_.t, here_.t, [](double) {});
   }
 
-  /// An event is about to be recorded here.
+  /// Says whether an event about to be recorded here has its row.
   enum class Arrival { written, missing };
   void arrive(Arrival row) { arrival_ = recorder_.rows() - (row == Arrival::written ? 1 : 0); }
   /// Returns the number of the row before the event.

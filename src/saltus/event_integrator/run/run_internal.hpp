@@ -53,7 +53,7 @@ namespace saltus::event_integrator {
 inline constexpr const char* resting_reason =
     "the jump leaves its guard at 0 without a velocity: the limit of its sequence at once";
 
-/// A Run owns its parts and its position, which only it moves. There is one object per call of integrate().
+/// Owns the parts of a run and its position, which only it moves. There is one object per call of integrate().
 class Run {
  public:
   /// Says how switches are decided and entered: the ordinary ones by the fast path, or all by the one that covers

@@ -43,7 +43,7 @@ class Cells {
 
   /// Returns whether a function holds constants of a cell that moved last.
   [[nodiscard]] bool moved_in(int function) const;
-  /// Names of the cells that moved last and jump, joined by commas.
+  /// Returns the names of the cells that moved last and jump, joined by commas.
   [[nodiscard]] std::string moved_names(const model::System& system) const;
 
  private:

@@ -37,7 +37,7 @@ class ProjectedField {
   [[nodiscard]] bool in_no_equation(std::size_t k) const { return in_no_equation_[k]; }
   /// Gives those of `selections` that are in no equation the values they have in `known` (n_selections each).
   void take_undetermined(const ActiveSet& set, const double* known, double* selections) const;
-  /// values() at selections that are known.
+  /// Evaluates values() at selections that are known.
   void evaluate(double t, const double* x, const double* held, const double* selections) {
     kernel_.evaluate(t, x, selections, held, values_);
   }

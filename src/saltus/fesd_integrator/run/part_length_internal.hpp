@@ -5,7 +5,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// A simulation step of length H is divided into parts of `elements` equal elements each. Parts that are too coarse get
+/// Divides a simulation step of length H into parts of `elements` equal elements each. Parts that are too coarse get
 /// shorter by the rule of step controls, h (0.8 / share)^(1/n_s), and longer again behind them; [hairer1993].
 class PartLength {
  public:

@@ -10,8 +10,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// A position changes in three ways only: along an element (move_to), to another set in place (continue_with), and to
-/// the limit of a sequence of switches (jump_to).
+/// Changes in three ways only: along an element (move_to), to another set in place (continue_with), and to the limit of
+/// a sequence of switches (jump_to).
 class Position {
  public:
   Position() = default;

@@ -10,7 +10,7 @@
 
 namespace saltus::fesd_integrator {
 
-/// The first reason to stop is the status; a run without one is completed.
+/// Keeps the first reason to stop, which is the status; a run without one is completed.
 class RunStatus {
  public:
   /// Both must outlive it.

@@ -46,7 +46,7 @@ class Watch {
   /// Returns whether a condition of the element last looked at, which holds along its polynomial, may end along the
   /// solution all the same: it comes nearer to zero than twice the error.
   [[nodiscard]] bool may_miss() const { return may_miss_; }
-  /// Return the value of a condition at the left and at the right end of the element last looked at, and its rounding.
+  /// Returns the value of a condition at the left and at the right end of the element last looked at, and its rounding.
   [[nodiscard]] double left_value(const ActiveSet& set, const Condition& condition) const;
   [[nodiscard]] double end_value(const ActiveSet& set, const Condition& condition) const;
   [[nodiscard]] double noise(const Condition& condition) const;

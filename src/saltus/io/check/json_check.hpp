@@ -11,7 +11,8 @@
 
 namespace saltus::io {
 
-/// One object on one or more lines: file, valid, errors, and of a valid model what it says. Infinite bounds are null.
+/// Writes one object on one or more lines: file, valid, errors, and of a valid model what it says. Infinite bounds are
+/// null.
 /// @param overview      null for a model with errors
 /// @param optimization  sizes of [optimize]; null without it
 [[nodiscard]] std::string check_json(const std::string& file, const std::vector<Error>& errors,

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/enum_names.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/check/jump_words_internal.hpp"
 #include "saltus/model/switched_rates.hpp"
@@ -100,21 +101,7 @@ std::vector<OverviewMode> modes_of(const model::Description& description) {
   return modes;
 }
 
-std::string_view role_of(model::SwitchingRole role) {
-  switch (role) {
-    case model::SwitchingRole::listed:
-      return "listed";
-    case model::SwitchingRole::kink:
-      return "kink";
-    case model::SwitchingRole::time_event:
-      return "time event";
-    case model::SwitchingRole::discrete:
-      return "discrete";
-    case model::SwitchingRole::region:
-      return "region";
-  }
-  __builtin_unreachable();
-}
+constexpr EnumNames<model::SwitchingRole::region> roles("listed", "kink", "time event", "discrete", "region");
 
 /// What happens on a surface, in words.
 std::string meaning_of(const model::SwitchingFunction& function, const std::vector<std::string>& rates) {
@@ -160,7 +147,7 @@ std::vector<OverviewSurface> surfaces_of(const model::Description& description, 
   for (std::size_t j = 0; j < system.switching.size(); ++j) {
     const auto& function = system.switching[j];
     OverviewSurface surface{
-        function.name, functions.expression_of(function.name), std::string(role_of(function.role)), "", {}, {}, "",
+        function.name, functions.expression_of(function.name), std::string(roles(function.role)), "", {}, {}, "",
         false};
     for (const int state : switched[j]) surface.rates.push_back(system.state_names[at(state)]);
     for (const int index : function.inner) surface.inner.push_back(system.switching[at(index)].name);

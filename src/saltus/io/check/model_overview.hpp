@@ -11,7 +11,7 @@
 
 namespace saltus::io {
 
-/// A state, a parameter or a control.
+/// Holds a state, a parameter or a control.
 struct OverviewQuantity {
   std::string name;
   double value = 0.0;  ///< at the start
@@ -20,14 +20,14 @@ struct OverviewQuantity {
   std::string remark{};  ///< of a state that does not move: why
 };
 
-/// name = text, as it was read.
+/// Holds name = text, as it was read.
 struct OverviewEquation {
   std::string name;
   std::string text;
   result::Caption caption{};
 };
 
-/// One of [[modes]]: where it holds and what it adds.
+/// Holds one of [[modes]]: where it holds and what it adds.
 struct OverviewMode {
   std::string group, name;
   std::string when;  ///< a condition, "otherwise", or "indicator" and its expression
@@ -57,7 +57,7 @@ struct OverviewEvent {
   bool stops = false;
 };
 
-/// The size of one stage as a complementarity system: Table 4 of [nurkanovic2024].
+/// Holds the size of one stage as a complementarity system: Table 4 of [nurkanovic2024].
 struct OverviewForm {
   std::string name;      ///< step; step, lifted; stewart
   std::string reason{};  ///< why there is none; empty if there is one, whose numbers follow
@@ -82,7 +82,7 @@ struct ModelOverview {
   std::vector<OverviewForm> forms;  ///< filled by who knows them; none where nothing switches with the state
 };
 
-/// How expressions are written.
+/// Says how expressions are written.
 enum class Notation { text, latex };
 
 /// Lists the equations of a model in the order of its file: motion, modes, definitions, switching functions, jumps,

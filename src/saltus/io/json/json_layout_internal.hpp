@@ -8,11 +8,11 @@
 
 namespace saltus::io {
 
-/// One name, one row of a table, one event field per line: small to store and still to be read by people.
+/// Writes one name, one row of a table, one event field per line: small to store and still to be read by people.
 [[nodiscard]] std::string laid_out(const Json& json);
-/// The same inside something that is indented by so much, without a line's end.
+/// Appends the same inside something that is indented by so much, without a line's end.
 void append_laid_out(const Json& json, std::size_t indent, std::string& text);
-/// On one line.
+/// Writes on one line.
 [[nodiscard]] std::string compact(const Json& json);
 
 }  // namespace saltus::io

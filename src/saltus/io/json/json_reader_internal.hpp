@@ -38,7 +38,7 @@ class JsonReader {
                    {}};
   }
 
-  /// The member of an object, or null and an error.
+  /// Returns the member of an object, or null and an error.
   const Json* member(const Json& object, const std::string& path, const char* key) {
     if (!object.is_object()) {
       mismatch(path, "an object", object);
@@ -56,20 +56,19 @@ class JsonReader {
     if (const auto* json = member(object, path, key)) read(*json, path + "/" + key, target);
   }
 
-  /// A word of a fixed set; `named` gives its value, or nullopt where it is no `what`.
-  template <class Named, class Target>
-  void read_word(const Json& object, const std::string& path, const char* key, Named named, const char* what,
-                 Target& target) {
+  /// Reads a word of a fixed set; words.named gives its value, or nullopt where it is no words.what.
+  template <class Words, class Target>
+  void read_word(const Json& json, const std::string& path, const Words& words, Target& target) {
     std::string word;
-    read_member(object, path, key, word);
-    if (const auto value = named(word)) {
+    read(json, path, word);
+    if (const auto value = words.named(word)) {
       target = *value;
     } else {
-      fail(path + "/" + key, fmt::format("'{}' is no {}", word, what));
+      fail(path, fmt::format("'{}' is no {}", word, words.what));
     }
   }
 
-  /// Only models of some kinds have this member.
+  /// Reads a member that only models of some kinds have.
   template <class Target>
   void read_if_there(const Json& object, const std::string& path, const char* key, Target& target) {
     if (object.is_object() && object.contains(key)) read(object[key], path + "/" + key, target);

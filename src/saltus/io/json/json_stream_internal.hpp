@@ -19,7 +19,7 @@ namespace saltus::io {
 
 inline void append_json(std::string& text, int number) { fmt::format_to(std::back_inserter(text), "{}", number); }
 
-/// The shortest text that reads as the same double, with a point or an exponent; null if it is not finite.
+/// Appends the shortest text that reads as the same double, with a point or an exponent; null if it is not finite.
 inline void append_json(std::string& text, double number) {
   if (!std::isfinite(number)) {
     text += "null";
@@ -49,7 +49,7 @@ void append_json(std::string& text, const std::optional<Value>& value) {
   text += "null";
 }
 
-/// The members of an object, each on a line of its own, as laid_out has them.
+/// Writes the members of an object, each on a line of its own, as laid_out has them.
 class ObjectStream {
  public:
   /// @param indent  of the object's braces
@@ -66,7 +66,7 @@ class ObjectStream {
     return text;
   }
   void member(const char* name, const Json& json) { append_laid_out(json, margin_.size(), key(name)); }
-  /// A list, each element on a line of its own, by append_one(element, indent).
+  /// Writes a list, each element on a line of its own, by append_one(element, indent).
   template <class List, class Append>
   void list(const char* name, const List& elements, Append append_one) {
     key(name) += '[';
@@ -81,7 +81,7 @@ class ObjectStream {
     if (!empty) stream_.text().append("\n").append(margin_);
     stream_.text() += ']';
   }
-  /// Numbers on one line.
+  /// Writes numbers on one line.
   void line(const char* name, const std::vector<double>& numbers) {
     key(name) += '[';
     for (std::size_t i = 0; i < numbers.size() && stream_.pass(); ++i) {

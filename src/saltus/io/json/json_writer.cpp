@@ -7,22 +7,13 @@
 #include <utility>
 
 #include "saltus/base/version.hpp"
-#include "saltus/io/json/json_optimization_internal.hpp"
-#include "saltus/io/json/json_parts_internal.hpp"
+#include "saltus/io/json/json_record_members_internal.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/json/json_stream_internal.hpp"
 #include "saltus/result/kept_columns.hpp"
 
 namespace saltus::io {
 namespace {
-
-Json named_file_json(const result::NamedFile& file) {
-  Json json = Json::object();
-  json["name"] = file.name;
-  json["sha256"] = file.sha256;
-  json["text"] = or_null(file.text);
-  return json;
-}
 
 Json model_json(const result::ModelRecord& model) {
   Json json = Json::object();
@@ -31,46 +22,13 @@ Json model_json(const result::ModelRecord& model) {
   json["parameters"] = numbers_json(model.parameters);
   json["initial_state"] = numbers_json(model.initial_state);
   json["description"] = model.description;
-  for (const auto& [name, caption] : model.captions) {
-    json["captions"][name] = {{"unit", caption.unit}, {"label", caption.label}};
-  }
-  for (const auto& [left, right, where] : model.equations) {
-    json["equations"].push_back({{"left", left}, {"right", right}, {"where", where}});
-  }
+  for (const auto& [name, caption] : model.captions) json["captions"][name] = record_json(caption);
+  if (!model.equations.empty()) json["equations"] = value_json(model.equations);
   if (model.text.empty()) return json;
   json["file"] = model.file;
   json["text"] = model.text;
-  json["files"] = Json::array();
-  for (const auto& file : model.files) json["files"].push_back(named_file_json(file));
+  json["files"] = value_json(model.files);
   json["set"] = model.settings;
-  return json;
-}
-
-Json intersection_json(const result::Intersection& intersection) {
-  Json json = Json::object();
-  json["surfaces"] = intersection.surfaces;
-  json["velocities"] = intersection.velocities;
-  json["alpha_before"] = or_null(intersection.alpha_before);
-  json["alpha_after"] = intersection.alpha_after;
-  return json;
-}
-
-Json alternative_json(const result::Alternative& other) {
-  Json json = Json::object();
-  json["mode"] = other.mode;
-  json["alpha"] = other.alpha;
-  if (!other.regions.empty()) json["regions"] = other.regions;
-  return json;
-}
-
-Json family_json(const result::Family& family) {
-  Json json = Json::object();
-  json["kind"] = name(family.kind);
-  json["event"] = family.event;
-  json["from"] = family.from;
-  json["until"] = family.until;
-  json["to"] = alternative_json(family.to);
-  if (family.lap_ratio) json["lap_ratio"] = *family.lap_ratio;
   return json;
 }
 
@@ -83,12 +41,6 @@ Json departure_json(const result::Departure& departure) {
   }
   json["family"] = departure.member->family;
   json["parameter"] = departure.member->parameter;
-  return json;
-}
-
-Json contact_modes_json(const std::vector<result::ContactMode>& modes) {
-  Json json = Json::array();
-  for (const auto mode : modes) json.push_back(name(mode));
   return json;
 }
 
@@ -106,34 +58,17 @@ void append_event(TextStream& stream, const result::Event& event, std::size_t in
   if (event.regions_before) object.member("regions_before", *event.regions_before);
   if (event.regions_after) object.member("regions_after", *event.regions_after);
   if (!event.contact_modes_before.empty()) {
-    object.member("contact_modes_before", contact_modes_json(event.contact_modes_before));
-    object.member("contact_modes_after", contact_modes_json(event.contact_modes_after));
+    object.member("contact_modes_before", value_json(event.contact_modes_before));
+    object.member("contact_modes_after", value_json(event.contact_modes_after));
   }
   if (event.impulse) object.member("impulse", *event.impulse);
   put("x", event.x);
   put("x_after", event.x_after);
   object.key("unique") += !event.unique ? "null" : *event.unique ? "true" : "false";
-  Json alternatives = Json::array();
-  for (const auto& other : event.alternatives) alternatives.push_back(alternative_json(other));
-  object.member("alternatives", alternatives);
+  object.member("alternatives", value_json(event.alternatives));
   put("reason", event.reason);
-  if (event.intersection) object.member("intersection", intersection_json(*event.intersection));
+  if (event.intersection) object.member("intersection", record_json(*event.intersection));
   object.end();
-}
-
-Json final_json(const result::Final& final) {
-  Json json = Json::object();
-  json["t"] = final.t;
-  json["x"] = final.x;
-  json["mode"] = final.mode;
-  json["alpha"] = final.alpha;
-  json["outputs"] = final.outputs;
-  if (!final.regions.empty()) {
-    json["regions"] = final.regions;
-    json["theta"] = final.theta;
-  }
-  if (!final.contact_modes.empty()) json["contact_modes"] = contact_modes_json(final.contact_modes);
-  return json;
 }
 
 /// The lists of a trajectory but for its times: append_rows(name, table, append_row).
@@ -150,8 +85,9 @@ void for_each_list(const result::Trajectory& trajectory, Rows append_rows) {
     append_rows("theta", trajectory.theta, numbers);
   }
   if (!trajectory.contact_modes.empty()) {
-    append_rows("contact_modes", trajectory.contact_modes,
-                [](std::string& text, const auto& row) { text += contact_modes_json(row).dump(); });
+    append_rows("contact_modes", trajectory.contact_modes, [](std::string& text, const auto& row) {
+      text += value_json(std::vector<result::ContactMode>(row)).dump();
+    });
   }
 }
 
@@ -162,44 +98,6 @@ void append_trajectory(TextStream& stream, const result::Trajectory& trajectory,
     object.list(key, table, [&](const auto& row, std::size_t) { append_row(stream.text(), row); });
   });
   object.end();
-}
-
-Json affine_json(const result::AffineSurface& affine) {
-  Json json = Json::object();
-  json["gradient"] = affine.gradient;
-  json["rate"] = affine.rate;
-  json["constant"] = affine.constant;
-  return json;
-}
-
-Json surface_json(const result::Surface& surface) {
-  Json curves = Json::array();
-  for (const auto& curve : surface.curves) {
-    Json piece = Json::object();
-    piece["t"] = or_null(curve.t);
-    piece["coordinates"] = curve.coordinates;
-    curves.push_back(std::move(piece));
-  }
-  Json json = Json::object();
-  json["name"] = surface.name;
-  json["role"] = name(surface.role);
-  json["states"] = surface.states;
-  json["depends_on_time"] = surface.depends_on_time;
-  json["affine"] = surface.affine ? affine_json(*surface.affine) : Json();
-  for (const auto& form : surface.within) json["within"].push_back(affine_json(form));
-  json["curves"] = std::move(curves);
-  return json;
-}
-
-Json arrows_json(const result::Arrows& arrows) {
-  return {{"x", arrows.x}, {"y", arrows.y}, {"dx", arrows.dx}, {"dy", arrows.dy}};
-}
-
-Json vector_field_json(const result::VectorField& field) {
-  return {{"t", field.t},
-          {"free", arrows_json(field.free)},
-          {"sides", arrows_json(field.sides)},
-          {"sliding", arrows_json(field.sliding)}};
 }
 
 Json options_json(const result::OptionRecord& options) {
@@ -223,8 +121,7 @@ void append_drawing(TextStream& stream, const result::Drawing& drawing, std::siz
 
 /// What an optimisation has found, as members of the result.
 void append_optimum(ObjectStream& object, const result::Optimization& optimization) {
-  Json found = Json::object();
-  add_optimization(found, optimization);
+  const Json found = record_json(optimization);
   for (const auto& [key, value] : found.items()) object.member(key.c_str(), value);
 }
 
@@ -235,7 +132,7 @@ void append_head(ObjectStream& object, const result::Result& result) {
   object.member("command", result.command);
   if (!result.command_line.empty()) object.member("command_line", result.command_line);
   object.member("method", result.method);
-  object.member("status", status_json(result.status));
+  object.member("status", record_json(result.status));
   object.member("states", result.states);
   object.member("controls", result.controls);
   object.member("switching_functions", result.switching_functions);
@@ -244,11 +141,9 @@ void append_head(ObjectStream& object, const result::Result& result) {
     object.member("kept_columns",
                   {{"states", states_in_rows(result)}, {"switching_functions", functions_in_rows(result)}});
   }
-  Json groups = Json::array();
-  for (const auto& group : result.region_groups) groups.push_back({{"name", group.name}, {"modes", group.modes}});
-  if (!groups.empty()) object.member("region_groups", groups);
+  if (!result.region_groups.empty()) object.member("region_groups", value_json(result.region_groups));
   if (!result.contacts.empty()) object.member("contacts", result.contacts);
-  object.member("final", final_json(result.final));
+  object.member("final", record_json(result.final));
 }
 
 /// What grows with a run: events and trajectory, as members of the result.
@@ -266,21 +161,17 @@ void append_with(AppendLists append_lists, TextStream& stream, const result::Res
   }
   if (result.penetration) object.member("penetration", *result.penetration);
   if (result.optimization) append_optimum(object, *result.optimization);
-  Json surfaces = Json::array();
-  for (const auto& surface : result.surfaces) surfaces.push_back(surface_json(surface));
-  object.member("surfaces", surfaces);
-  if (result.vector_field) object.member("vector_field", vector_field_json(*result.vector_field));
-  object.member("statistics", result.optimization ? optimization_statistics_json(result.optimization->statistics)
-                                                  : statistics_json(result.statistics));
+  object.member("surfaces", value_json(result.surfaces));
+  if (result.vector_field) object.member("vector_field", record_json(*result.vector_field));
+  object.member("statistics",
+                result.optimization ? record_json(result.optimization->statistics) : record_json(result.statistics));
   object.member("options", options_json(result.options));
-  if (result.sensitivities) object.member("sensitivities", sensitivities_json(*result.sensitivities));
-  if (result.optimization) object.member("start_values", start_values_json(*result.optimization));
-  if (result.elements) object.member("elements", elements_json(*result.elements));
+  if (result.sensitivities) object.member("sensitivities", record_json(*result.sensitivities));
+  if (result.optimization) object.member("start_values", members_json(*result.optimization, StartValues::list));
+  if (result.elements) object.member("elements", record_json(*result.elements));
   if (result.comparison) object.member("comparison", comparison_json(*result.comparison));
-  if (result.order) object.member("order", order_json(*result.order));
-  Json families = Json::array();
-  for (const auto& family : result.families) families.push_back(family_json(family));
-  if (!families.empty()) object.member("families", families);
+  if (result.order) object.member("order", record_json(*result.order));
+  if (!result.families.empty()) object.member("families", value_json(result.families));
   if (result.left_at) object.member("left_at", departure_json(*result.left_at));
   if (!result.branches.empty()) {
     object.list("branches", result.branches,

@@ -69,12 +69,7 @@ class ContactReader {
 }  // namespace
 
 void read_contacts(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
-  const auto* array = std::get_if<TomlArray>(&entry.value.value);
-  if (array == nullptr) {
-    reader.wrong_type("tables that begin with [[contacts]]", entry.value);
-    return;
-  }
-  for (const auto& value : *array) {
+  for (const auto& value : reader.tables(entry.value, "contacts")) {
     const auto* table = reader.table(value, "a table with `name` and `gap`");
     if (table == nullptr) return;
     model.description.contacts.push_back(ContactReader(reader, value.location).read(*table));

@@ -44,12 +44,7 @@ model::HysteresisDescription read_hysteresis_entry(TomlReader& reader, const Tom
 }  // namespace
 
 void read_hysteresis(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
-  const auto* array = std::get_if<TomlArray>(&entry.value.value);
-  if (array == nullptr) {
-    reader.wrong_type("tables that begin with [[hysteresis]]", entry.value);
-    return;
-  }
-  for (const auto& value : *array) {
+  for (const auto& value : reader.tables(entry.value, "hysteresis")) {
     const auto* table = reader.table(value, "a table with `name`, `input`, `on` and `off`");
     if (table == nullptr) return;
     model.description.hysteresis.push_back(read_hysteresis_entry(reader, *table, value.location));

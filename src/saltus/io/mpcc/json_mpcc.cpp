@@ -4,7 +4,7 @@
 
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_layout_internal.hpp"
-#include "saltus/io/json/json_optimization_internal.hpp"
+#include "saltus/io/json/json_record_members_internal.hpp"
 
 namespace saltus::io {
 namespace {
@@ -15,7 +15,6 @@ constexpr const char* mpcc_format = "saltus-mpcc/1";
 
 std::string to_json(const result::MpccResult& result) {
   const auto& status = result.status;
-  const auto& multipliers = result.multipliers;
   return laid_out({{"format", mpcc_format},
                    {"file", result.file},
                    {"sha256", result.sha256},
@@ -23,15 +22,10 @@ std::string to_json(const result::MpccResult& result) {
                    {"objective", result.objective},
                    {"x", result.x},
                    {"names", result.names},
-                   {"certificate", certificate_json(result.certificate)},
-                   {"multipliers",
-                    {{"rows", multipliers.rows},
-                     {"lower", multipliers.lower},
-                     {"upper", multipliers.upper},
-                     {"G", multipliers.G},
-                     {"H", multipliers.H}}},
-                   {"homotopy", homotopy_json(result.homotopy)},
-                   {"statistics", optimization_statistics_json(result.statistics)}});
+                   {"certificate", record_json(result.certificate)},
+                   {"multipliers", record_json(result.multipliers)},
+                   {"homotopy", value_json(result.homotopy)},
+                   {"statistics", record_json(result.statistics)}});
 }
 
 Expected<std::vector<double>> read_mpcc_start(const std::filesystem::path& file) {

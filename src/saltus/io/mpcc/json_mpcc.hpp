@@ -10,10 +10,10 @@
 
 namespace saltus::io {
 
-/// Numbers as shortest round trip, non-finite ones as null.
+/// Writes numbers as shortest round trip, non-finite ones as null.
 [[nodiscard]] std::string to_json(const result::MpccResult& result);
 
-/// `x` of a stored result. Fails for other formats, and where a value is not finite.
+/// Reads `x` of a stored result. Fails for other formats, and where a value is not finite.
 [[nodiscard]] Expected<std::vector<double>> read_mpcc_start(const std::filesystem::path& file);
 
 }  // namespace saltus::io

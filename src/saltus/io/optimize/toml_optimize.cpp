@@ -100,12 +100,7 @@ void read_guess(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
 }
 
 void read_all_least_squares(TomlReader& reader, const TomlEntry& entry, model::OcpDescription& problem) {
-  const auto* array = std::get_if<TomlArray>(&entry.value.value);
-  if (array == nullptr) {
-    reader.wrong_type("tables that begin with [[optimize.least_squares]]", entry.value);
-    return;
-  }
-  for (const auto& value : *array) problem.least_squares.push_back(read_least_squares(reader, value));
+  for (const auto& value : reader.tables(entry.value, "optimize.least_squares")) problem.least_squares.push_back(read_least_squares(reader, value));
 }
 
 /// What is minimised and constrained; whether the key was one of those.

@@ -11,23 +11,24 @@
 
 namespace saltus::io {
 
-/// Where a list of constraints holds.
+/// Says where a list of constraints holds.
 enum class ConstraintPlace { path, terminal };
 
-/// ["q <= 3", "-1 <= v <= 2", { constraint = "v == 0", penalty = 1e3, norm = "l1" }].
+/// Reads ["q <= 3", "-1 <= v <= 2", { constraint = "v == 0", penalty = 1e3, norm = "l1" }].
 [[nodiscard]] std::vector<model::ConstraintDescription> read_constraints(TomlReader& reader, const TomlEntry& entry,
                                                                          ConstraintPlace place);
 
-/// One of [[optimize.least_squares]].
+/// Reads one of [[optimize.least_squares]].
 [[nodiscard]] model::LeastSquaresDescription read_least_squares(TomlReader& reader, const TomlValue& value);
 
-/// A number or { free = true, initial, lower, upper }.
+/// Reads a number or { free = true, initial, lower, upper }.
 [[nodiscard]] model::HorizonDescription read_horizon(TomlReader& reader, const TomlEntry& entry);
 
-/// A key of [optimize], which the model has.
+/// Reads a key of [optimize], which the model has.
 void read_optimize_key(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
-/// What is free has two bounds, and its initial value is within; only numbers are compared, expressions later.
+/// Checks that what is free has two bounds, and its initial value is within; only numbers are compared, expressions
+/// later.
 /// @param what  "the horizon", "'k'"
 void check_free(TomlReader& reader, const std::string& what, const expression::NodePtr& initial,
                 const expression::NodePtr& lower, const expression::NodePtr& upper, const SourceLocation& location);

@@ -17,7 +17,7 @@ struct TomlValue;
 using TomlTable = std::vector<TomlEntry>;
 using TomlArray = std::vector<TomlValue>;
 
-/// `start` is the place of the first character of the content, behind the quotes.
+/// Holds `start`, the place of the first character of the content, behind the quotes.
 struct TomlString {
   std::string text;
   SourceLocation start;
@@ -42,7 +42,7 @@ struct TomlEntry {
 ///         refused with a message of its own.
 [[nodiscard]] Expected<TomlTable> parse_toml(std::string_view text, const std::string& file);
 
-/// "the number 3", "a string", "a table": what was found in the place of what was expected.
+/// Returns "the number 3", "a string", "a table": what was found in the place of what was expected.
 [[nodiscard]] std::string description_of(const TomlValue& value);
 
 }  // namespace saltus::io

@@ -127,12 +127,7 @@ class JumpReader {
 }  // namespace
 
 void read_jumps(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
-  const auto* array = std::get_if<TomlArray>(&entry.value.value);
-  if (array == nullptr) {
-    reader.wrong_type("tables that begin with [[jumps]]", entry.value);
-    return;
-  }
-  for (const auto& value : *array) {
+  for (const auto& value : reader.tables(entry.value, "jumps")) {
     const auto* table = reader.table(value, "a table with `when` and `set`");
     if (table == nullptr) return;
     model.description.jumps.push_back(JumpReader(reader, value).read(*table));

@@ -39,7 +39,7 @@ struct ModelFile {
 /// standard input. Of a stored result (JSON) it is the model that is in it.
 [[nodiscard]] Expected<ModelFile> read_model(const std::filesystem::path& file);
 
-/// What parse_model and diagnose_model take.
+/// Holds what parse_model and diagnose_model take.
 struct ModelText {
   std::string name;  ///< for messages: the path of the model file, or "<standard input>"
   std::string text;
@@ -47,15 +47,16 @@ struct ModelText {
   std::vector<std::string> settings{};     ///< NAME=VALUE: with which it was computed
   std::string path{};                      ///< what was read: the model file, or the result
 };
-/// The text of a model file, or the model in a stored result. "-" is standard input.
+/// Reads the text of a model file, or the model in a stored result. "-" is standard input.
 [[nodiscard]] Expected<ModelText> read_model_text(const std::filesystem::path& file);
 
-/// The same for text in memory; `file` is used in messages, and the folder it is in to find files that the model names.
+/// Does the same for text in memory; `file` is used in messages, and the folder it is in to find files that the model
+/// names.
 /// @param files  taken in place of those of these names
 [[nodiscard]] Expected<ModelFile> parse_model(std::string_view text, const std::string& file,
                                               std::vector<result::NamedFile> files = {});
 
-/// A model file with all its mistakes.
+/// Holds a model file with all its mistakes.
 struct Diagnosis {
   ModelFile model;            ///< as far as it could be read
   std::vector<Error> errors;  ///< in the order of the file; empty for one that parse_model takes
@@ -100,7 +101,7 @@ inline constexpr std::size_t max_model_bytes = std::size_t{16} << 20;
 /// ("in simulate.initial_mode.slip", "in [states]"). A table the file does not have is missed at its beginning.
 [[nodiscard]] Error located(Error error, const ModelFile& model);
 
-/// `--set a.b=value` for the options of a simulation: KEY is a dotted path below the file's root
+/// Does what `--set a.b=value` does for the options of a simulation: KEY is a dotted path below the file's root
 /// ("simulate.rtol", "simulate.event.integrator"); a bare word is a string.
 [[nodiscard]] Expected<pipeline::SimulateOptions> with_option(pipeline::SimulateOptions options, std::string_view key,
                                                               std::string_view value);

@@ -73,6 +73,13 @@ const TomlTable* TomlReader::table(const TomlValue& value, std::string_view expe
   return table;
 }
 
+const TomlArray& TomlReader::tables(const TomlValue& value, std::string_view name) {
+  static const TomlArray none;
+  const auto* array = std::get_if<TomlArray>(&value.value);
+  if (array == nullptr) wrong_type(fmt::format("tables that begin with [[{}]]", name), value);
+  return array != nullptr ? *array : none;
+}
+
 expression::NodePtr TomlReader::expression(const TomlValue& value) {
   if (const auto number = number_in(value)) {
     if (std::isfinite(*number)) return expression::number(*number, value.location);

@@ -24,13 +24,13 @@ class TomlReader {
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::vector<result::NamedFile>& files() { return *files_; }
   [[nodiscard]] const std::vector<Error>& errors() const { return errors_; }
-  /// Whether something of the table that was entered last is wrong.
+  /// Returns whether something of the table that was entered last is wrong.
   [[nodiscard]] bool failed() const { return errors_.size() > errors_before_; }
 
-  /// Names of tables of the model, which expressions may call; set before the first expression is read.
+  /// Sets the names of tables of the model, which expressions may call; set before the first expression is read.
   void set_functions(std::vector<std::string> names) { functions_ = std::move(names); }
 
-  /// The table that errors are in, as a context frame; empty for none.
+  /// Sets the table that errors are in, as a context frame; empty for none.
   void enter(std::string table) {
     table_ = std::move(table);
     errors_before_ = errors_.size();
@@ -39,19 +39,21 @@ class TomlReader {
   /// Keeps the error, with the table it is in; of several at one place the first.
   void fail(Error error);
   void wrong_type(std::string_view expected, const TomlValue& found);
-  /// An unknown key, with the nearest of `known`.
+  /// Notes an unknown key, with the nearest of `known`.
   void unknown_key(const TomlEntry& entry, const std::vector<std::string>& known);
   void not_available(const SourceLocation& location, std::string_view what);
 
-  /// The value as a table, or null and an error.
+  /// Reads the value as a table, or null and an error.
   const TomlTable* table(const TomlValue& value, std::string_view expected);
-  /// A number or an expression in quotes; after an error expression::unreadable.
+  /// Reads the value as tables that begin with [[name]], none and an error where it is not.
+  const TomlArray& tables(const TomlValue& value, std::string_view name);
+  /// Reads a number or an expression in quotes; after an error expression::unreadable.
   expression::NodePtr expression(const TomlValue& value);
-  /// A part of a string as an expression, for texts that are no expression as a whole; as above.
+  /// Reads a part of a string as an expression, for texts that are no expression as a whole; as above.
   expression::NodePtr expression_in(const TomlString& text, std::size_t offset, std::size_t length);
-  /// As `expression`, but plus or minus infinity means no bound: null.
+  /// Reads as `expression`, but plus or minus infinity means no bound: null.
   expression::NodePtr bound(const TomlValue& value);
-  /// A number, not an expression; nothing after an error.
+  /// Reads a number, not an expression; nothing after an error.
   std::optional<double> number(const TomlValue& value);
   std::string string(const TomlValue& value, std::string_view expected);
   bool boolean(const TomlValue& value);
@@ -65,7 +67,7 @@ class TomlReader {
   std::size_t errors_before_ = 0;  ///< when the table was entered
 };
 
-/// Where a byte of a string stands in the file.
+/// Returns where a byte of a string stands in the file.
 [[nodiscard]] SourceLocation place_in_string(const TomlString& text, std::size_t offset);
 
 }  // namespace saltus::io

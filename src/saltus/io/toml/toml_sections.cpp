@@ -263,21 +263,11 @@ void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
 }
 
 void read_events(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
-  const auto* array = std::get_if<TomlArray>(&entry.value.value);
-  if (array == nullptr) {
-    reader.wrong_type("tables that begin with [[events]]", entry.value);
-    return;
-  }
-  for (const auto& value : *array) read_event(reader, value, model);
+  for (const auto& value : reader.tables(entry.value, "events")) read_event(reader, value, model);
 }
 
 void read_modes(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
-  const auto* array = std::get_if<TomlArray>(&entry.value.value);
-  if (array == nullptr) {
-    reader.wrong_type("tables that begin with [[modes]]", entry.value);
-    return;
-  }
-  for (const auto& value : *array) read_mode(reader, value, model);
+  for (const auto& value : reader.tables(entry.value, "modes")) read_mode(reader, value, model);
 }
 
 }  // namespace saltus::io

@@ -26,23 +26,23 @@ void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& m
 
 void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
-/// Names of the tables [tables.NAME]: expressions anywhere in the file may call them.
+/// Returns names of the tables [tables.NAME]: expressions anywhere in the file may call them.
 [[nodiscard]] std::vector<std::string> table_names(const TomlTable& document);
-/// A file named in a model file, relative to it.
+/// Returns a file named in a model file, relative to it.
 [[nodiscard]] std::filesystem::path beside(const std::string& model, const std::string& file);
-/// Samples of a control from a file of numbers (source "file") or a stored result ("result").
+/// Reads samples of a control from a file of numbers (source "file") or a stored result ("result").
 [[nodiscard]] Expected<model::SampledInput> sampled_input(const std::string& control, std::string_view source,
                                                           const std::filesystem::path& file,
                                                           const SourceLocation& location,
                                                           std::vector<result::NamedFile>& files);
 
-/// The value of an option: truth, number, word or list of numbers; nullopt and an error for anything else.
+/// Reads the value of an option: truth, number, word or list of numbers; nullopt and an error for anything else.
 [[nodiscard]] std::optional<result::OptionValue> read_option_value(TomlReader& reader, const TomlValue& value);
 
-/// A table of name = expression.
+/// Reads a table of name = expression.
 void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<model::NamedExpression>& expressions);
 
-/// The inclusion a word names, or an error without location.
+/// Returns the inclusion a word names, or an error without location.
 [[nodiscard]] Expected<model::Inclusion> inclusion_named(const std::string& word);
 
 }  // namespace saltus::io

@@ -12,7 +12,7 @@
 
 namespace saltus::io {
 
-/// The value that a word names, or an error without location.
+/// Returns the value that a word names, or an error without location.
 template <class Enum>
 Expected<Enum> enum_named(const std::string& word, const std::vector<std::pair<std::string, Enum>>& choices) {
   std::vector<std::string> known;

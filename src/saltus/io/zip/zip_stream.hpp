@@ -11,14 +11,15 @@
 
 namespace saltus::io {
 
-/// Deflated entries one after the other, in the form that has room for any size (zip64). Reference: APPNOTE.TXT 6.3.
+/// Writes deflated entries one after the other, in the form that has room for any size (zip64). Reference: APPNOTE.TXT
+/// 6.3.
 class ZipStream {
  public:
   /// The sink must outlive it.
   explicit ZipStream(Sink sink) : sink_(sink) {}
-  /// An entry of what the writer writes; false if the sink wants no more. Memory: a few pieces.
+  /// Writes an entry of what the writer writes; false if the sink wants no more. Memory: a few pieces.
   bool add(const std::string& name, Writer content);
-  /// The list of the entries; false if the sink did not take everything.
+  /// Writes the list of the entries; false if the sink did not take everything.
   bool finish();
 
  private:

@@ -3,7 +3,7 @@
 
 namespace saltus::model {
 
-/// Whether an operation (casadi::Operation) gives finite results for finite arguments of moderate size.
+/// Returns whether an operation (casadi::Operation) gives finite results for finite arguments of moderate size.
 [[nodiscard]] bool stays_finite(int operation);
 
 }  // namespace saltus::model

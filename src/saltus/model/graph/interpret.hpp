@@ -36,7 +36,7 @@ std::vector<Value> interpret(const casadi::Function& function, Input input, Oper
   return result;
 }
 
-/// The value of one operation.
+/// Returns the value of one operation.
 template <class Value>
 Value operated(casadi_int operation, const Value& first, const Value& second) {
   Value value{};

@@ -14,8 +14,8 @@
 
 namespace saltus::model {
 
-/// One of several copies with work space of their own; what they run is shared, and any thread may run one. Making,
-/// copying and dropping take the symbolic lock of the caller.
+/// Holds one of several copies with work space of their own; what they run is shared, and any thread may run one.
+/// Making, copying and dropping take the symbolic lock of the caller.
 class ModelFunction {
  public:
   ModelFunction() = default;
@@ -47,9 +47,9 @@ class ModelFunction {
   using Native = int (*)(const double** arguments, double** results, casadi_int* integers, double* work, int memory);
   void use_native(Native native) { native_ = native; }
   [[nodiscard]] const casadi::Function& function() const { return function_; }
-  /// Null where the function calls others.
+  /// Makes the program, null where the function calls others.
   [[nodiscard]] const std::shared_ptr<const Program>& program() const { return program_; }
-  /// Elementary operations of one interpreted evaluation.
+  /// Returns the number of elementary operations of one interpreted evaluation.
   [[nodiscard]] long operations() const { return operations_; }
 
   [[nodiscard]] bool is_null() const { return function_.is_null(); }

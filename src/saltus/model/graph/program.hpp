@@ -12,10 +12,11 @@ namespace saltus::model {
 /// counts of references and memory objects, which are not for several threads.
 class Program {
  public:
-  /// Null where the function calls others. Under the symbolic lock.
+  /// Makes the program, null where the function calls others. Under the symbolic lock.
   [[nodiscard]] static std::shared_ptr<const Program> of(const casadi::Function& function);
 
-  /// As of CasADi: null arguments are zeros, null results are left out; `work` has room for sz_w() numbers.
+  /// Evaluates with the signature of CasADi: null arguments are zeros, null results are left out; `work` has room for
+  /// sz_w() numbers.
   void operator()(const double* const* arguments, double* const* results, double* work) const;
 
  private:

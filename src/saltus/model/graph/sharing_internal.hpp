@@ -12,10 +12,10 @@
 
 namespace saltus::model {
 
-/// A repeatable number in (-1, 1) for every (point, variable): splitmix64, so that no state is kept and results never
-/// depend on the order of declarations.
+/// Returns a repeatable number in (-1, 1) for every (point, variable): splitmix64, so that no state is kept and results
+/// never depend on the order of declarations.
 [[nodiscard]] double seeded_draw(std::uint64_t point, std::uint64_t variable);
-/// What the draws of a variable are seeded with.
+/// Returns what the draws of a variable are seeded with.
 [[nodiscard]] inline std::uint64_t seed_of(const Tape& tape, std::size_t variable) {
   return static_cast<std::uint64_t>(tape.variables()[variable].number);
 }
@@ -29,8 +29,8 @@ inline constexpr int extreme_points = 12;
 /// positive coordinates (where logarithms and roots are defined). Parameters and alphas stay as they are.
 void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& point);
 
-/// The value of a polynomial expression that does not change with t, x, u, whatever its alphas (corners) are; with the
-/// parameters' values, to rounding. A value that is 0 to rounding is 0.
+/// Returns the value of a polynomial expression that does not change with t, x, u, whatever its alphas (corners) are;
+/// with the parameters' values, to rounding. A value that is 0 to rounding is 0.
 [[nodiscard]] std::optional<double> constant_value(const Tape& tape, int node);
 
 struct SharedFunction {
@@ -38,12 +38,12 @@ struct SharedFunction {
   int orientation = +1;  ///< -1: the factor is negative
 };
 
-/// The switching functions met so far, found again by their values.
-/// Cost: logarithmic in their number for functions that are finite at the first two points, else linear.
+/// Holds the switching functions met so far, found again by their values. Cost: logarithmic in their number for
+/// functions that are finite at the first two points, else linear.
 class SharingIndex {
  public:
   void insert(const Tape& tape, int psi, int function);
-  /// The first-met function that is a multiple of psi and that `accepts` takes.
+  /// Finds the first-met function that is a multiple of psi and that `accepts` takes.
   [[nodiscard]] std::optional<SharedFunction> find(const Tape& tape, int psi,
                                                    const std::function<bool(const SharedFunction&)>& accepts) const;
 
@@ -62,16 +62,17 @@ class SharingIndex {
   std::vector<int> irregular_;           ///< those without such a ratio
 };
 
-/// For every psi the position of the first one that it is a multiple of (its own, if of none before).
+/// Returns for every psi the position of the first one that it is a multiple of (its own, if of none before).
 [[nodiscard]] std::vector<std::size_t> first_multiples(const Tape& tape, const std::vector<int>& psi);
 
-/// A switching function at the first points of the pool where it is finite or not (NaN).
+/// Holds a switching function at the first points of the pool where it is finite or not (NaN).
 struct ThresholdSamples {
   std::array<double, pool_points> value{};
 };
 [[nodiscard]] ThresholdSamples threshold_samples(const Tape& tape, int psi);
 
-/// The signs (true: positive) that two parallel thresholds, a = c b + d with constants c and d, cannot have together.
+/// Returns the signs (true: positive) that two parallel thresholds, a = c b + d with constants c and d, cannot have
+/// together.
 /// @return nothing if they are not parallel: equal to 1e-12 relative at 16 points where both are finite
 [[nodiscard]] std::optional<std::pair<bool, bool>> impossible_signs(const ThresholdSamples& a,
                                                                     const ThresholdSamples& b);

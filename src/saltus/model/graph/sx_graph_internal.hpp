@@ -20,7 +20,7 @@ namespace saltus::model {
 
 using casadi::SXElem;
 
-/// A place where a table, or floor, is applied: one symbol per constant of the cell its argument lies in.
+/// Holds a place where a table, or floor, is applied: one symbol per constant of the cell its argument lies in.
 struct CellUse {
   std::string name;  ///< "floor(t/T)"
   SXElem argument;
@@ -37,37 +37,37 @@ class SxGraph {
   SXElem symbol(const std::string& name, const Variable& variable);
   SXElem alpha_symbol(const std::string& name, int index, int psi);
 
-  /// The constants of the cell in which `argument` (added before, free of alphas) lies; the same ones for the same
+  /// Adds the constants of the cell in which `argument` (added before, free of alphas) lies; the same ones for the same
   /// argument and table.
   const CellUse& cell(const SXElem& argument, const std::shared_ptr<const CellTable>& table, const std::string& name);
-  /// In the order they were met, hence arguments of arguments first.
+  /// Returns cells in the order they were met, hence arguments of arguments first.
   [[nodiscard]] const std::vector<CellUse>& cells() const { return cells_; }
 
-  /// The number of an expression made of this graph's symbols.
+  /// Returns the number of an expression made of this graph's symbols.
   /// @return the node, or invalid_model for a foreign symbol, a function call or a nonsmooth CasADi operation: those
   ///         would pass for smooth ones; the remedy names the builder function to use.
   [[nodiscard]] Expected<int> add(const SXElem& expression);
 
-  /// A node's number for an expression that was made here.
+  /// Returns a node's number for an expression that was made here.
   [[nodiscard]] int node(const SXElem& expression);
-  /// A copy: what is made with it may add nodes, which moves those that are there.
+  /// Returns a copy: what is made with it may add nodes, which moves those that are there.
   [[nodiscard]] SXElem expression(int node) const { return expressions_[at(node)]; }
 
-  /// The expression with some alphas (by node) fixed.
+  /// Returns the expression with some alphas (by node) fixed.
   [[nodiscard]] SXElem with_alphas(int node, const std::map<int, double>& fixed);
 
-  /// c a + (1 - c) b for c in [0, 1]. Exactly a where c is 1 and b where c is 0, also if the other is NaN or infinite;
-  /// a branch that cannot be is multiplied plainly, so that derivatives with respect to c are right at c = 0 and 1,
-  /// too.
+  /// Returns c a + (1 - c) b for c in [0, 1]. Exactly a where c is 1 and b where c is 0, also if the other is NaN or
+  /// infinite; a branch that cannot be is multiplied plainly, so that derivatives with respect to c are right at c = 0
+  /// and 1, too.
   [[nodiscard]] SXElem blend(const SXElem& c, const SXElem& a, const SXElem& b);
 
-  /// weight * branch, and 0 where the weight is 0 whatever the branch is; the weight is made of alphas.
+  /// Returns weight * branch, and 0 where the weight is 0 whatever the branch is; the weight is made of alphas.
   [[nodiscard]] SXElem weighted(const SXElem& weight, const SXElem& branch);
 
-  /// The multi-affine polynomial of a condition in the selections of its literals.
+  /// Returns the multi-affine polynomial of a condition in the selections of its literals.
   [[nodiscard]] SXElem polynomial(const TruthDiagram& diagram, Truth truth, const std::vector<SXElem>& literals);
 
-  /// The multi-affine interpolation of values at the corners; entry i has bit k of i as the value of alphas[k].
+  /// Returns the multi-affine interpolation of values at the corners; entry i has bit k of i as the value of alphas[k].
   [[nodiscard]] SXElem interpolation(const std::vector<SXElem>& alphas, const std::vector<double>& values);
 
  private:
@@ -81,10 +81,10 @@ class SxGraph {
   std::vector<CellUse> cells_;
 };
 
-/// The only entry of a scalar; nothing for other shapes.
+/// Returns the only entry of a scalar; nothing for other shapes.
 [[nodiscard]] std::optional<SXElem> scalar(const casadi::SX& expression);
 
-/// A dense column.
+/// Returns a dense column.
 [[nodiscard]] casadi::SX column(const std::vector<SXElem>& entries);
 
 }  // namespace saltus::model

@@ -61,33 +61,33 @@ struct TapeNode {
 /// A constant of the cell in which the operand `left` lies; its variable holds it (NaN: looked up at the point).
 inline constexpr int cell_operation = 1000;
 
-/// Whether the walk down an expression stops at an alpha or goes on into its switching function.
+/// Says whether the walk down an expression stops at an alpha or goes on into its switching function.
 enum class Links { written, through_alpha };
 
-/// Operations in topological order; equal ones (same operation, same operands) get the same number.
+/// Holds operations in topological order; equal ones (same operation, same operands) get the same number.
 class Tape {
  public:
   int constant(double value);
   int variable(const Variable& variable);
   int alpha(int index, int psi);
   int operation(int operation, int left, int right);
-  /// Constant number `column` of the cell of a table in which `argument` lies.
+  /// Returns constant number `column` of the cell of a table in which `argument` lies.
   int cell(int argument, const std::shared_ptr<const CellTable>& table, int column);
 
   [[nodiscard]] const TapeNode& operator[](int node) const { return nodes_[at(node)]; }
   [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
-  /// The value of an operation for given operands; a constant of a cell by looking it up.
+  /// Returns the value of an operation for given operands; a constant of a cell by looking it up.
   [[nodiscard]] double operate(const TapeNode& node, double left, double right) const;
   void set_value(int variable, double value) { variables_[at(variable)].value = value; }
 
-  /// All nodes the roots consist of, ascending (hence in order of evaluation). Negative roots are skipped.
+  /// Returns all nodes the roots consist of, ascending (hence in order of evaluation). Negative roots are skipped.
   [[nodiscard]] std::vector<int> cone(std::span<const int> roots, Links links) const;
 
-  /// The nodes of a cone (through alphas) as a tape of their own, in the same order: what is asked of it costs as much
-  /// as they are, however long this one is. Nothing is to be added to it.
+  /// Returns the nodes of a cone (through alphas) as a tape of their own, in the same order: what is asked of it costs
+  /// as much as they are, however long this one is. Nothing is to be added to it.
   [[nodiscard]] Tape part(std::span<const int> roots) const;
-  /// In a part: where node `number` of the whole tape is, -1 if it is not in it.
+  /// Returns the place in a part: where node `number` of the whole tape is, -1 if it is not in it.
   [[nodiscard]] int place_of(int number) const;
 
  private:
@@ -103,18 +103,19 @@ class Tape {
   std::unordered_map<std::uint64_t, std::vector<int>> by_key_;
 };
 
-/// Whether the nodes of a cone are polynomials in t, x, u (for fixed selections): two that agree at seeded points are
-/// then the same, which a narrow bell exp(-(x - 30)^2) is not to a constant.
+/// Returns whether the nodes of a cone are polynomials in t, x, u (for fixed selections): two that agree at seeded
+/// points are then the same, which a narrow bell exp(-(x - 30)^2) is not to a constant.
 [[nodiscard]] bool is_polynomial(const Tape& tape, std::span<const int> cone);
 
 /// One value per variable of a tape. NaN for an alpha means: the step of its switching function at this point; for a
 /// constant of a cell: that of the cell in which the argument lies at this point.
 using Point = std::vector<double>;
 
-/// Parameters at their values, alphas by the sign of their psi, cells where their arguments are, everything else 0.
+/// Returns parameters at their values, alphas by the sign of their psi, cells where their arguments are, everything
+/// else 0.
 [[nodiscard]] Point blank_point(const Tape& tape);
 
-/// Values by node number; meaningful for the nodes of the cone evaluated last.
+/// Holds values by node number; meaningful for the nodes of the cone evaluated last.
 struct TapeValues {
   std::vector<double> value;
   std::vector<double> bound;  ///< first-order bound, see evaluate_with_bounds
@@ -122,16 +123,17 @@ struct TapeValues {
 
 void evaluate(const Tape& tape, std::span<const int> cone, const Point& point, TapeValues& values);
 
-/// Values, and bounds b = sum |d node / d operand| b_operand + local |value|, plus `scale` at a variable (empty: 0).
-/// No scale and local = machine epsilon bound the rounding error; a scale of the variables' size bounds what an error
-/// in the position does. The bound of an alpha is 0.
+/// Evaluates values, and bounds b = sum |d node / d operand| b_operand + local |value|, plus `scale` at a variable
+/// (empty: 0). No scale and local = machine epsilon bound the rounding error; a scale of the variables' size bounds
+/// what an error in the position does. The bound of an alpha is 0.
 void evaluate_with_bounds(const Tape& tape, std::span<const int> cone, const Point& point,
                           std::span<const double> scale, double local, TapeValues& values);
 
-/// d root / d variable, one entry per variable, alphas held fixed; `values` must be those of a cone that contains root.
+/// Returns d root / d variable, one entry per variable, alphas held fixed; `values` must be those of a cone that
+/// contains root.
 [[nodiscard]] std::vector<double> gradient(const Tape& tape, const TapeValues& values, int root);
 
-/// step of the paper's Table 1 at a point: 1, 1/2, 0 (NaN stays NaN).
+/// Returns step of the paper's Table 1 at a point: 1, 1/2, 0 (NaN stays NaN).
 [[nodiscard]] double step_value(double psi);
 
 }  // namespace saltus::model

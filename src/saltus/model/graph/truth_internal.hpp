@@ -14,9 +14,9 @@ namespace saltus::model {
 /// A diagram node: the two terminals are 0 (false) and 1 (true).
 using Truth = int;
 
-/// Nodes are unique, so two conditions with the same truth table are the same number. The multi-affine polynomial of a
-/// table is read off the diagram: P(node) = alpha P(high) + (1 - alpha) P(low). A conjunction of m independent literals
-/// has m nodes, not 2^m entries.
+/// Keeps nodes unique, so two conditions with the same truth table are the same number. The multi-affine polynomial of
+/// a table is read off the diagram: P(node) = alpha P(high) + (1 - alpha) P(low). A conjunction of m independent
+/// literals has m nodes, not 2^m entries.
 class TruthDiagram {
  public:
   struct Node {
@@ -31,12 +31,14 @@ class TruthDiagram {
   Truth negation(Truth a);
   Truth conjunction(Truth a, Truth b);
   Truth disjunction(Truth a, Truth b);
-  /// The table of a function of the literals: entry i has bit k of i as the value of literals[k]; literals ascending.
+  /// Returns the table of a function of the literals: entry i has bit k of i as the value of literals[k]; literals
+  /// ascending.
   Truth table(std::span<const int> literals, const std::vector<bool>& entries);
 
   [[nodiscard]] const Node& operator[](Truth node) const { return nodes_[at(node)]; }
   [[nodiscard]] int size() const { return static_cast<int>(nodes_.size()); }
-  /// More nodes than any condition a person writes: further operations give `false`, and the caller reports it.
+  /// Returns whether there are more nodes than any condition a person writes: further operations give `false`, and the
+  /// caller reports it.
   [[nodiscard]] bool overflowed() const { return size() >= node_limit; }
 
  private:

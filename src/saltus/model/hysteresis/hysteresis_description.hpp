@@ -8,8 +8,8 @@
 
 namespace saltus::model {
 
-/// One of [[hysteresis]]: a name that is 0 or 1. With on > off it becomes 1 where the input rises through `on` and 0
-/// where it falls through `off`; with on < off the other way round.
+/// Holds one of [[hysteresis]]: a name that is 0 or 1. With on > off it becomes 1 where the input rises through `on`
+/// and 0 where it falls through `off`; with on < off the other way round.
 struct HysteresisDescription {
   std::string name;
   expression::NodePtr input;    ///< over states and parameters

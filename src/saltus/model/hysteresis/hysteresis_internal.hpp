@@ -10,7 +10,7 @@
 
 namespace saltus::model {
 
-/// The thresholds and the start of one hysteresis, in numbers.
+/// Holds the thresholds and the start of one hysteresis, in numbers.
 struct HysteresisThresholds {
   std::string name;
   double on = 0.0, off = 0.0;
@@ -28,14 +28,14 @@ void declare_hysteresis(const Description& description, Recognition& recognition
 [[nodiscard]] std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& statement, int state,
                                                     const SXElem& input, const HysteresisThresholds& thresholds);
 
-/// The same, and appends the jump that changes it.
+/// Does the same, and appends the jump that changes it.
 [[nodiscard]] std::optional<Error> state_hysteresis(Recognition& recognition, Statement& statement, int state,
                                                     const SXElem& input, const HysteresisThresholds& thresholds);
 
 /// What is done with one: its state, its input, its thresholds.
 using StateHysteresis = std::function<std::optional<Error>(int, const SXElem&, const HysteresisThresholds&)>;
 
-/// The same for every entry of a description.
+/// Does the same for every entry of a description.
 /// @param initial  the value of one at the start that replaces the one of the file, by name
 [[nodiscard]] std::optional<Error> state_all_hysteresis(const Description& description, ModelScope& scope,
                                                         const std::map<std::string, double>& initial,

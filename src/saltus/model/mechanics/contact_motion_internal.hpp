@@ -7,7 +7,8 @@
 
 namespace saltus::model {
 
-/// Gaps, normals, tangents and the response of the motion to them; the entries of `contacts` have name and friction.
+/// Finds gaps, normals, tangents and the response of the motion to them; the entries of `contacts` have name and
+/// friction.
 /// @return the mistake: a gap of more than positions, parameters and time, one that is negative at the start or has no
 ///         position; friction or restitution out of range, friction without a tangent
 [[nodiscard]] Expected<ContactSystem> contact_motion(Recognition& recognition, Statement& statement,

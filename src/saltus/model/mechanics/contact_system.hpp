@@ -8,7 +8,8 @@
 
 namespace saltus::model {
 
-/// A unilateral constraint gap >= 0 with a normal force, and with friction along a tangent, or in the plane of two.
+/// Holds a unilateral constraint gap >= 0 with a normal force, and with friction along a tangent, or in the plane of
+/// two.
 ///
 /// Its mode is kept in discrete states of the system, behind all others: each is 0 or 1, but for `share` and those
 /// behind it.
@@ -28,11 +29,11 @@ struct Contact {
   int speeds = -1;   ///< two states, in a plane: squares of speeds between which a slip goes on
   int impulse = -1;  ///< state: of the normal impulse at this time, and behind it of the tangential one
 
-  /// Tangents that have states.
+  /// Returns the number of tangents that have states.
   [[nodiscard]] int tangents() const { return in_plane ? 2 : 1; }
 };
 
-/// The contacts of a mechanical system M dv/dt = h + N lambda_n + T lambda_t, dq/dt = v, with m contacts and n
+/// Holds the contacts of a mechanical system M dv/dt = h + N lambda_n + T lambda_t, dq/dt = v, with m contacts and n
 /// positions. N = grad gap, T the tangents as written (0 without friction). Rows are ordered by normals, first
 /// tangents, second tangents if there are any: r = 2 m or 3 m. All expressions are over the symbols of the system;
 /// those of forces are for the modes that the discrete states say.

@@ -15,7 +15,7 @@ namespace saltus::model {
                                                                   const Statement& statement,
                                                                   const MechanicsStatement& mechanics);
 
-/// What the contacts of a mechanical system need of it.
+/// Holds what the contacts of a mechanical system need of it.
 struct MotionWithoutContacts {
   const std::vector<int>& positions;
   const std::vector<int>& velocities;

@@ -5,7 +5,7 @@
 
 namespace saltus::model {
 
-/// A line through points of the plane, or a disc around one; over the positions and parameters of the system.
+/// Holds a line through points of the plane, or a disc around one; over the positions and parameters of the system.
 struct DrawnShape {
   casadi::SX points;  ///< 2 x n: x and y of every point
   casadi::SX radius;  ///< of a disc; 0 x 0 for a line

@@ -11,33 +11,33 @@
 
 namespace saltus::model {
 
-/// Where the terms of a mass matrix that depends on the positions come from.
+/// Says where the terms of a mass matrix that depends on the positions come from.
 enum class Coriolis {
   in_force,   ///< the user's `force` has them
   from_mass,  ///< dM/dt v - grad_q(v'M v)/2 is subtracted
 };
 
-/// A state named in a list.
+/// Holds a state named in a list.
 struct StateName {
   std::string name;
   SourceLocation location;
 };
 
-/// A generalised force on a velocity.
+/// Holds a generalised force on a velocity.
 struct ForceDescription {
   std::string velocity;
   expression::NodePtr force;
   SourceLocation location;
 };
 
-/// A line through points of the plane, or a disc around one; for the report.
+/// Holds a line through points of the plane, or a disc around one; for the report.
 struct DrawnDescription {
   std::vector<std::array<expression::NodePtr, 2>> points;
   expression::NodePtr radius;  ///< null for a line
   SourceLocation location;
 };
 
-/// M(q) dv/dt = force - grad potential - coriolis, dq/dt = v.
+/// States M(q) dv/dt = force - grad potential - coriolis, dq/dt = v.
 struct MechanicsDescription {
   std::vector<StateName> positions, velocities;        ///< in the same order
   std::vector<std::vector<expression::NodePtr>> mass;  ///< rows; empty: identity
@@ -48,14 +48,14 @@ struct MechanicsDescription {
   SourceLocation location, mass_location;
 };
 
-/// An entry of a tangent: a position and its coefficient.
+/// Holds an entry of a tangent: a position and its coefficient.
 struct TangentEntry {
   std::string position;
   expression::NodePtr value;
   SourceLocation location;
 };
 
-/// One of [[contacts]]: gap >= 0, friction along the tangents.
+/// Holds one of [[contacts]]: gap >= 0, friction along the tangents.
 struct ContactDescription {
   std::string name;
   expression::NodePtr gap;

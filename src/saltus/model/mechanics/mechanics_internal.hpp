@@ -9,7 +9,7 @@
 
 namespace saltus::model {
 
-/// One contact in expressions of the statement it belongs to.
+/// Holds one contact in expressions of the statement it belongs to.
 struct ContactStatement {
   std::string name;
   casadi::SX gap{};
@@ -18,13 +18,13 @@ struct ContactStatement {
   SourceLocation location{}, gap_location{}, friction_location{}, restitution_location{};
 };
 
-/// What is drawn, and where it is written.
+/// Holds what is drawn, and where it is written.
 struct DrawnStatement {
   DrawnShape shape;
   SourceLocation location{};
 };
 
-/// A mechanical system in expressions of the statement it belongs to.
+/// Holds a mechanical system in expressions of the statement it belongs to.
 struct MechanicsStatement {
   std::vector<int> positions{}, velocities{};  ///< states, in the same order
   casadi::SX mass{};                           ///< n x n
@@ -36,7 +36,7 @@ struct MechanicsStatement {
   SourceLocation location{}, mass_location{}, potential_location{};
 };
 
-/// The symbols of some states, as a column.
+/// Returns the symbols of some states, as a column.
 [[nodiscard]] casadi::SX symbols_of(const Statement& statement, const std::vector<int>& states);
 
 /// Resolves [mechanics] and [[contacts]] of a description; nothing without.

@@ -9,7 +9,7 @@
 
 namespace saltus::model {
 
-/// An expression of positions and parameters, smooth.
+/// Holds an expression of positions and parameters, smooth.
 struct SmoothOf {
   const std::vector<int>& positions;
   bool and_time = false;

@@ -5,15 +5,15 @@
 
 namespace saltus::model {
 
-/// M = L D L', L with ones on its diagonal: no square roots, no pivots, and no operation on an entry that is 0.
+/// Holds M = L D L', L with ones on its diagonal: no square roots, no pivots, and no operation on an entry that is 0.
 class SymbolicLdl {
  public:
   /// @param m  n x n; its lower triangle is read
   explicit SymbolicLdl(const casadi::SX& m);
 
-  /// M^-1 B. @param right  n x k
+  /// Returns M^-1 B. @param right  n x k
   [[nodiscard]] casadi::SX solve(const casadi::SX& right) const;
-  /// The entries of D: M is positive definite where all are positive.
+  /// Returns the entries of D: M is positive definite where all are positive.
   [[nodiscard]] const casadi::SX& pivots() const { return pivots_; }
 
  private:
@@ -21,7 +21,7 @@ class SymbolicLdl {
   casadi::SX pivots_;  ///< n
 };
 
-/// A^-1 b by elimination in the order of the rows: for matrices whose leading minors are not 0.
+/// Solves A^-1 b by elimination in the order of the rows: for matrices whose leading minors are not 0.
 /// @param matrix  n x n  @param right  n x 1
 [[nodiscard]] casadi::SX eliminate(const casadi::SX& matrix, const casadi::SX& right);
 

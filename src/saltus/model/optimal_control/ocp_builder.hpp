@@ -13,7 +13,7 @@
 
 namespace saltus::model {
 
-/// How a constraint is held: hard, or by `penalty` times a norm of its violations in the objective.
+/// Says how a constraint is held: hard, or by `penalty` times a norm of its violations in the objective.
 struct Softness {
   ConstraintNorm norm = ConstraintNorm::hard;
   double penalty = 0.0;
@@ -41,7 +41,7 @@ class OcpBuilder {
   OcpBuilder(OcpBuilder&&) noexcept;
   OcpBuilder& operator=(OcpBuilder&&) noexcept;
 
-  /// The time that the problem begins at; 0 by default.
+  /// Sets the time that the problem begins at; 0 by default.
   void start_time(double from);
   void horizon(double length);  ///< > 0
   void free_horizon(double initial, double lower, double upper);
@@ -49,23 +49,23 @@ class OcpBuilder {
   void minimize_time(double weight = 1.0);
   void running_cost(const casadi::SX& cost);   ///< L(t, x, u, p), integrated
   void terminal_cost(const casadi::SX& cost);  ///< E(x(T), T, p)
-  /// r'W r with r = of - reference, summed over the points.
+  /// Adds r'W r with r = of - reference, summed over the points.
   /// @param reference  expressions of time and parameters, one each; empty: 0
   /// @param weight  symmetric, n x n; 0 x 0 for the identity
   void least_squares(const std::vector<casadi::SX>& of, const std::vector<casadi::SX>& reference = {},
                      const Eigen::MatrixXd& weight = {}, CostPoints at = CostPoints::intervals);
-  /// lower <= e <= upper; one of them may be infinite.
+  /// Adds lower <= e <= upper; one of them may be infinite.
   void path_constraint(const std::string& name, double lower, const casadi::SX& e, double upper,
                        const Softness& soft = {});
   void path_constraints_at(ConstraintPoints points);
   void terminal_constraint(const std::string& name, double lower, const casadi::SX& e, double upper,
                            const Softness& soft = {});
-  /// 0 <= a _|_ b >= 0 along the path.
+  /// Adds 0 <= a _|_ b >= 0 along the path.
   void complementarity(const casadi::SX& a, const casadi::SX& b);
-  /// The initial value is chosen between the bounds of the state.
+  /// Lets the initial value be chosen between the bounds of the state.
   void free_state(const std::string& name);
   void free_parameter(const std::string& name, double lower, double upper);
-  /// Where the solution of a state, a control or a free parameter is looked for first: an expression of time and
+  /// Says where the solution of a state, a control or a free parameter is looked for first: an expression of time and
   /// parameters.
   void guess(const std::string& name, const casadi::SX& e);
 

@@ -9,7 +9,7 @@
 namespace saltus::model {
 
 [[nodiscard]] std::optional<Error> check_horizon(const OcpHorizon& horizon, const SourceLocation& location);
-/// lower <= initial <= upper, both finite: what is free needs both.
+/// Checks lower <= initial <= upper, both finite: what is free needs both.
 [[nodiscard]] std::optional<Error> check_range(const std::string& what, double initial, double lower, double upper,
                                                const SourceLocation& location);
 [[nodiscard]] std::optional<Error> check_constraint(const OcpConstraint& constraint, const SourceLocation& location);
@@ -17,10 +17,10 @@ namespace saltus::model {
 [[nodiscard]] std::optional<Error> check_least_squares(const OcpLeastSquares& term,
                                                        const LeastSquaresDescription& stated);
 [[nodiscard]] Error unknown_guess(const GuessDescription& stated, const Ocp& ocp);
-/// A guess speaks of t and parameters only.
+/// Checks that a guess speaks of t and parameters only.
 [[nodiscard]] std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& stated, const Ocp& ocp);
 [[nodiscard]] std::optional<Error> check_initial_states(const Ocp& ocp, const Description& description);
-/// What the method does not cover: jumps, discrete states, switching functions of a control, t beside a clock,
+/// Refuses what the method does not cover: jumps, discrete states, switching functions of a control, t beside a clock,
 /// selections of controls in costs.
 [[nodiscard]] std::optional<Error> check(Ocp& ocp, const Description& description);
 

@@ -21,16 +21,16 @@ class OcpQuantities {
   int add(const expression::NodePtr& expression, const std::string& name);
   [[nodiscard]] const std::vector<NamedExpression>& expressions() const { return expressions_; }
 
-  /// Whether an expression is made of numbers and parameters that are not free.
+  /// Returns whether an expression is made of numbers and parameters that are not free.
   [[nodiscard]] bool is_constant(const expression::NodePtr& expression) const;
 
   /// Builds the system with these quantities; frozen with contacts or hysteresis.
   [[nodiscard]] Expected<System> build(const std::vector<Override>& overrides);
-  /// The same for the event engine, which freezes nothing.
+  /// Does the same for the event engine, which freezes nothing.
   [[nodiscard]] Expected<System> build_physical(const std::vector<Override>& overrides) const;
-  /// The value of a quantity that is constant, once built; an error that names it otherwise.
+  /// Returns the value of a quantity that is constant, once built; an error that names it otherwise.
   [[nodiscard]] Expected<double> value(int quantity) const;
-  /// The output that a quantity is in the system.
+  /// Returns the output that a quantity is in the system.
   [[nodiscard]] int output(int quantity) const { return user_outputs_ + quantity; }
   [[nodiscard]] int user_outputs() const { return user_outputs_; }
 

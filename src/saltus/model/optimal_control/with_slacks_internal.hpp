@@ -8,14 +8,14 @@
 
 namespace saltus::model {
 
-/// What an expression may be replaced by at its kinks of controls.
+/// Says what an expression may be replaced by at its kinks of controls.
 enum class Curvature {
   convex,   ///< something above it: it is minimised, or bounded from above
   concave,  ///< something below it
   linear,   ///< nothing
 };
 
-/// A row e <= 0 of a slack.
+/// Holds a row e <= 0 of a slack.
 struct SlackRow {
   expression::NodePtr expression;
   bool at_stages = false;  ///< of a slack with a value per stage
@@ -39,11 +39,11 @@ class ControlSlacks {
   [[nodiscard]] Expected<std::vector<expression::NodePtr>> in_constraint(const expression::NodePtr& expression,
                                                                          Curvature curvature, const std::string& place);
 
-  /// The description with a control per slack behind its own, and without inputs of a simulation.
+  /// Returns the description with a control per slack behind its own, and without inputs of a simulation.
   [[nodiscard]] const Description& description() const { return description_; }
   [[nodiscard]] const std::vector<SlackRow>& rows() const { return rows_; }
   [[nodiscard]] int user_controls() const { return user_controls_; }
-  /// Numbers of the controls that are slacks with a value per stage.
+  /// Returns numbers of the controls that are slacks with a value per stage.
   [[nodiscard]] const std::vector<int>& stage_slacks() const { return stage_slacks_; }
 
  private:

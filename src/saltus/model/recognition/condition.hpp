@@ -9,18 +9,18 @@
 
 namespace saltus::model {
 
-/// Value of a comparison where both sides are equal: > and < are false there, >= and <= are true. It matters for
-/// constants, for discrete states and for the guards of events and jumps; on the surface of a switching function that
-/// moves the selection is set-valued all the same.
+/// Says the value of a comparison where both sides are equal: > and < are false there, >= and <= are true. It matters
+/// for constants, for discrete states and for the guards of events and jumps; on the surface of a switching function
+/// that moves the selection is set-valued all the same.
 enum class AtEquality { is_false, is_true };
 
-/// Which quantities may stand in a comparison.
+/// Says which quantities may stand in a comparison.
 enum class Sides {
   any,
   still,  ///< only what is constant between jumps: a moving quantity is equal to something for an instant at most
 };
 
-/// difference > 0; `name` is what the switching function is called if it has no name yet.
+/// States difference > 0; `name` is what the switching function is called if it has no name yet.
 struct Comparison {
   casadi::SX difference;
   AtEquality at_equality = AtEquality::is_false;
@@ -28,13 +28,13 @@ struct Comparison {
   Sides sides = Sides::any;
 };
 
-/// A condition as it was written; which switching functions it consists of is decided where it is used.
+/// Holds a condition as it was written; which switching functions it consists of is decided where it is used.
 class Condition {
  public:
   enum class Kind { comparison, conjunction, disjunction, negation, constant };
 
   explicit Condition(Comparison comparison);
-  /// A condition that always or never holds.
+  /// Returns a condition that always or never holds.
   static Condition always();
   static Condition never();
 
@@ -55,14 +55,14 @@ class Condition {
   std::shared_ptr<const Node> node_;
 };
 
-/// a > b and so on, for scalar a and b; the switching function is a - b (greater) or b - a (less), named by its text
-/// unless a name is given.
+/// States a > b and so on, for scalar a and b; the switching function is a - b (greater) or b - a (less), named by its
+/// text unless a name is given.
 [[nodiscard]] Condition greater(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
 [[nodiscard]] Condition greater_equal(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
 [[nodiscard]] Condition less(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
 [[nodiscard]] Condition less_equal(const casadi::SX& a, const casadi::SX& b, const std::string& name = "");
 
-/// a == b, for constants, parameters and discrete states: a >= b and b >= a, named by their texts.
+/// States a == b, for constants, parameters and discrete states: a >= b and b >= a, named by their texts.
 [[nodiscard]] Condition equal(const casadi::SX& a, const casadi::SX& b, const std::string& name = "",
                               const std::string& reverse_name = "");
 [[nodiscard]] Condition not_equal(const casadi::SX& a, const casadi::SX& b);

@@ -7,7 +7,7 @@
 
 namespace saltus::model {
 
-/// Two literals (functions by their numbers) that do not have these values at once.
+/// Holds two literals (functions by their numbers) that do not have these values at once.
 struct ExcludedSigns {
   int a = 0;
   bool a_holds = false;
@@ -15,9 +15,9 @@ struct ExcludedSigns {
   bool b_holds = false;
 };
 
-/// What parallel thresholds exclude, and discrete functions that are the same but for their value at 0. Of parallel
-/// ones only neighbours are paired, in the order of their thresholds: the rest follows, and n of them make n - 1 pairs.
-/// Cost: quadratic in the number of literals, 64 comparisons a pair.
+/// Returns what parallel thresholds exclude, and discrete functions that are the same but for their value at 0. Of
+/// parallel ones only neighbours are paired, in the order of their thresholds: the rest follows, and n of them make n -
+/// 1 pairs. Cost: quadratic in the number of literals, 64 comparisons a pair.
 [[nodiscard]] std::vector<ExcludedSigns> excluded_signs(const Tape& tape, const std::vector<MetFunction>& functions,
                                                         const std::vector<int>& literals);
 

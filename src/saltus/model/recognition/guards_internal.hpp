@@ -13,7 +13,7 @@ class Guards {
  public:
   explicit Guards(Recognition& recognition) : recognition_(recognition) {}
 
-  /// Where the condition holds, as a function of the guards.
+  /// Returns where the condition holds, as a function of the guards.
   [[nodiscard]] Expected<Truth> truth(const Condition& condition);
   /// Fills guards, guard_alpha, true_at_equality and value of a UserEvent or Jump.
   template <class Entry>
@@ -23,7 +23,7 @@ class Guards {
     entry.guard_alpha = column(symbols);
     entry.value = recognition_.graph.polynomial(diagram_, truth, symbols);
   }
-  /// The condition is too large for a table of its truth.
+  /// Returns whether the condition is too large for a table of its truth.
   [[nodiscard]] bool overflowed() const { return diagram_.overflowed(); }
 
  private:

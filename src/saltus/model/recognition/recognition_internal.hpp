@@ -12,7 +12,7 @@
 
 namespace saltus::model {
 
-/// A switching function in the order it was met; the alphas in psi belong to smaller numbers.
+/// Holds a switching function in the order it was met; the alphas in psi belong to smaller numbers.
 struct MetFunction {
   std::string name;
   SXElem psi;
@@ -27,7 +27,7 @@ struct MetFunction {
   std::optional<double> alpha_at_zero{};
 };
 
-/// A name of [switching]: a function, seen with this orientation.
+/// Holds a name of [switching]: a function, seen with this orientation.
 struct DeclaredFunction {
   std::string name;
   SharedFunction function;
@@ -46,33 +46,33 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> step(const SXElem& e, const std::string& name);
   [[nodiscard]] Expected<SXElem> sign(const SXElem& e, const std::string& name);
   [[nodiscard]] Expected<SXElem> abs(const SXElem& e, const std::string& name);
-  /// `name` is the text of a - b.
+  /// Takes `name`, the text of a - b.
   [[nodiscard]] Expected<SXElem> max(const SXElem& a, const SXElem& b, const std::string& name);
   [[nodiscard]] Expected<SXElem> min(const SXElem& a, const SXElem& b, const std::string& name);
   [[nodiscard]] Expected<SXElem> select(const Condition& condition, const SXElem& a, const SXElem& b);
 
-  /// From now on floor and mod may be of states and controls, too, or no longer: where nothing but a record has them.
+  /// Lets floor and mod from now on be of states and controls, too, or no longer: where nothing but a record has them.
   void take_whole_parts_of_all(bool all) { whole_parts_of_all_ = all; }
-  /// floor(e): e of time and parameters only.
+  /// Returns floor(e): e of time and parameters only.
   [[nodiscard]] Expected<SXElem> floor(const SXElem& e, const std::string& name);
-  /// e - m floor(e/m): m a constant other than 0, e of time and parameters only.
+  /// Returns e - m floor(e/m): m a constant other than 0, e of time and parameters only.
   [[nodiscard]] Expected<SXElem> mod(const SXElem& e, const SXElem& m, const std::string& name);
-  /// The value of a table at e. Alphas in e are taken out of it: the tables at e with them at 0 and 1, blended.
+  /// Returns the value of a table at e. Alphas in e are taken out of it: the tables at e with them at 0 and 1, blended.
   [[nodiscard]] Expected<SXElem> lookup(const std::shared_ptr<const CellTable>& table, const SXElem& e,
                                         const std::string& name);
 
-  /// Where a condition holds, over the functions it consists of (literals by their numbers).
+  /// Returns where a condition holds, over the functions it consists of (literals by their numbers).
   [[nodiscard]] Expected<Truth> truth(TruthDiagram& diagram, const Condition& condition);
 
   /// Declares a named switching function. Its scaling is kept, even if an unnamed multiple was met before.
   [[nodiscard]] Expected<DeclaredFunction> declare(const std::string& name, const SXElem& psi);
 
   [[nodiscard]] const std::vector<MetFunction>& functions() const { return functions_; }
-  /// Whether an expression is constant between jumps: made of constants, parameters and discrete states.
+  /// Returns whether an expression is constant between jumps: made of constants, parameters and discrete states.
   [[nodiscard]] Expected<bool> changes_by_jumps_only(const SXElem& expression);
-  /// The scalar difference of a comparison; refused where its sides move and must not.
+  /// Returns the scalar difference of a comparison; refused where its sides move and must not.
   [[nodiscard]] Expected<SXElem> difference_of(const Comparison& comparison);
-  /// The value of an expression of constants and parameters; nothing if it is none.
+  /// Returns the value of an expression of constants and parameters; nothing if it is none.
   [[nodiscard]] std::optional<double> parameter_value(const SXElem& expression);
 
  private:

@@ -9,11 +9,11 @@
 
 namespace saltus::model {
 
-/// The alphas (by node) in which an expression is not affine as it is written, ascending. Decided on the form of the
-/// expression: a product of two factors with the same alpha counts, whatever it simplifies to.
+/// Returns the alphas (by node) in which an expression is not affine as it is written, ascending. Decided on the form
+/// of the expression: a product of two factors with the same alpha counts, whatever it simplifies to.
 [[nodiscard]] std::vector<int> nonaffine_alphas(const Tape& tape, int node);
 
-/// The expression with every additive term replaced by its interpolation between alpha = 0 and 1 in those of the given
+/// Replaces every additive term of the expression by its interpolation between alpha = 0 and 1 in those of the given
 /// alphas in which it is not affine: f -> alpha f|1 + (1 - alpha) f|0.
 /// @param alphas  nodes of the alphas that can take values between 0 and 1 where it matters
 /// @param name    of the state, for the error

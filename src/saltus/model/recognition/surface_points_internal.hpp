@@ -10,17 +10,17 @@
 
 namespace saltus::model {
 
-/// Of a list with an entry for each node, or for each variable.
+/// Returns an entry of a list with one for each node, or for each variable.
 [[nodiscard]] inline double entry(const std::vector<double>& values, int index) { return values[saltus::at(index)]; }
 
-/// The variables t, x, u below the roots, also through alphas.
+/// Returns the variables t, x, u below the roots, also through alphas.
 [[nodiscard]] std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots);
 
-/// The alphas (nodes) below the roots, ascending.
+/// Returns the alphas (nodes) below the roots, ascending.
 [[nodiscard]] std::vector<int> alpha_nodes(const Tape& tape, std::span<const int> roots, Links links);
 
-/// Start number k with the given variables set: every second one around the initial state, the others around 0; sizes
-/// from 1e-3 to 1e3, some down to 1e-30.
+/// Returns the start number k with the given variables set: every second one around the initial state, the others
+/// around 0; sizes from 1e-3 to 1e3, some down to 1e-30.
 [[nodiscard]] Point start_point(const Tape& tape, std::span<const int> variables, int k);
 
 /// Moves points onto psi = level by Newton's method along the gradient; coordinates move in proportion to their size.
@@ -32,7 +32,7 @@ class Projection {
   ///         through (0 for those psi does not depend on).
   bool onto(double level, Point& point, std::vector<double>& scale);
 
-  /// psi at a point, and the size of its terms there.
+  /// Holds psi at a point, and the size of its terms there.
   struct Value {
     double psi, size;
   };

@@ -10,7 +10,7 @@
 
 namespace saltus::model {
 
-/// One switching function, by node numbers.
+/// Holds one switching function, by node numbers.
 struct Surface {
   int psi = 0;
   int alpha = 0;
@@ -21,7 +21,7 @@ struct SurfaceClass {
   bool jumps = true;  ///< something jumps on it
 };
 
-/// Which surfaces are kinks, which depend on time only, and which make something jump.
+/// Finds which surfaces are kinks, which depend on time only, and which make something jump.
 ///
 /// Everything that can jump is in `targets`, the other psi among them. The targets that contain alpha_j are evaluated
 /// at up to 64 points on psi_j = 0, around the initial state and far from it. There alpha_j is 0 and 1, and the other
@@ -35,7 +35,7 @@ struct SurfaceClass {
 [[nodiscard]] std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>& surfaces,
                                                  const Selections& discrete, const std::vector<int>& targets);
 
-/// Whether the value of `target` on psi_j = 0 at alpha_j = 1/2 is other than the mean of those at 0 and 1.
+/// Returns whether the value of `target` on psi_j = 0 at alpha_j = 1/2 is other than the mean of those at 0 and 1.
 [[nodiscard]] bool bends_on_surface(const Tape& tape, const Surface& surface, const Selections& discrete, int target);
 
 }  // namespace saltus::model

@@ -10,10 +10,10 @@
 
 namespace saltus::model {
 
-/// Whether contacts and hysteresis are events, or time stands still there (time_freezing/time_freezing.hpp).
+/// Says whether contacts and hysteresis are events, or time stands still there (time_freezing/time_freezing.hpp).
 enum class TimeForm { physical, frozen };
 
-/// What a problem about a system asks for beside it.
+/// Holds what a problem about a system asks for beside it.
 struct Quantities {
   /// Become outputs behind those of the description; they may speak of outputs, too. The name is for messages.
   std::vector<NamedExpression> expressions;
@@ -21,10 +21,10 @@ struct Quantities {
   TimeForm time = TimeForm::physical;
 };
 
-/// Whether a description has contacts or hysteresis.
+/// Returns whether a description has contacts or hysteresis.
 [[nodiscard]] bool stands_still(const Description& description);
 
-/// build(), with the quantities; null: none.
+/// Returns build(), with the quantities; null: none.
 [[nodiscard]] Expected<System> build_with(const Description& description, const std::vector<Override>& overrides,
                                           const Quantities* quantities);
 

@@ -11,7 +11,7 @@ namespace saltus::model {
 
 struct UserEvent;
 
-/// When an entry of [[events]] fires.
+/// Holds when an entry of [[events]] fires.
 struct EventRule {
   bool condition = false;              ///< else an expression
   std::vector<bool> true_at_equality;  ///< by guard of a condition
@@ -24,7 +24,8 @@ struct EventRule {
 /// whose sign has changed in its direction, a condition whose truth has.
 class EventStates {
  public:
-  /// Of the signs handed to update(): entry by entry, or those of all expressions and then the guards of conditions.
+  /// Says the order of the signs handed to update(): entry by entry, or those of all expressions and then the guards of
+  /// conditions.
   enum class Order { by_entry, expressions_first };
   EventStates(std::vector<EventRule> rules, Order order);
 

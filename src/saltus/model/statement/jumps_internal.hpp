@@ -15,7 +15,7 @@ class ModelScope;
 /// Resolves the jumps of a description and appends them to the statement.
 [[nodiscard]] std::optional<Error> state_jumps(const Description& description, ModelScope& scope, Statement& statement);
 
-/// A stated jump in the form of a System.
+/// Returns a stated jump in the form of a System.
 /// @param position  from 1, for the default name
 /// @return the jump, or an error: a set that is empty or assigns twice, times that do not ascend, a negative delay
 [[nodiscard]] Expected<Jump> jump_of(Recognition& recognition, const JumpStatement& stated, int position,

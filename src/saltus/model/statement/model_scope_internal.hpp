@@ -14,7 +14,7 @@
 
 namespace saltus::model {
 
-/// What an expression may speak of.
+/// Says what an expression may speak of.
 enum class Reach {
   constants,           ///< numbers and pi (--set)
   earlier_parameters,  ///< parameters declared so far, too
@@ -26,35 +26,36 @@ class ModelScope {
  public:
   ModelScope(const Description& description, Recognition& recognition, Statement& statement);
 
-  /// From now on a mistake does not end the work: it goes into the list.
+  /// Lets a mistake from now on not end the work: it goes into the list.
   void collect_mistakes(std::vector<Error>& found) { found_ = &found; }
-  /// What a step says of a mistake: the error, which ends the work, or nothing, as it is in the list. Errors without
-  /// message follow from others.
+  /// Returns what a step says of a mistake: the error, which ends the work, or nothing, as it is in the list. Errors
+  /// without message follow from others.
   [[nodiscard]] std::optional<Error> end_at(Error error);
-  /// Also if they follow from others that stand in no list: the statement is not complete.
+  /// Returns whether there are mistakes, also if they follow from others that stand in no list: the statement is not
+  /// complete.
   [[nodiscard]] bool has_mistakes() const { return follows_mistake_ || (found_ != nullptr && !found_->empty()); }
-  /// What a name means could not be worked out: expressions with it follow suit in silence.
+  /// Notes that what a name means could not be worked out: expressions with it follow suit in silence.
   void give_up(const std::string& name) { given_up_.insert(name); }
   [[nodiscard]] bool is_given_up(const std::string& name) const { return name.empty() || given_up_.contains(name); }
 
-  /// All names of the description, in the order of the file; a clash is an error.
+  /// Returns all names of the description, in the order of the file; a clash is an error.
   [[nodiscard]] std::optional<Error> declare_names();
 
   ModelScope(const ModelScope&) = delete;  // the translation refers to it
   ModelScope& operator=(const ModelScope&) = delete;
   ~ModelScope() = default;
 
-  /// The expression a name stands for (pi excepted, which the translation knows).
+  /// Returns the expression a name stands for (pi excepted, which the translation knows).
   [[nodiscard]] Expected<SXElem> number(const std::string& name, const SourceLocation& location);
-  /// The cells of a table of the description; only for names the parser took for one.
+  /// Returns the cells of a table of the description; only for names the parser took for one.
   [[nodiscard]] Expected<std::shared_ptr<const CellTable>> table(const std::string& name);
-  /// The condition a name stands for; only for names of which is_condition is true.
+  /// Returns the condition a name stands for; only for names of which is_condition is true.
   [[nodiscard]] Expected<Condition> condition(const std::string& name, const SourceLocation& location);
   [[nodiscard]] bool is_condition(const std::string& name) const;
 
-  /// The whole expression of an entry.
+  /// Returns the whole expression of an entry.
   [[nodiscard]] Expected<SXElem> expression(const saltus::expression::Node& node, Reach reach = Reach::everything);
-  /// The value of an expression of constants and parameters.
+  /// Returns the value of an expression of constants and parameters.
   /// @param what  "the initial value of 'q'", for the error
   [[nodiscard]] Expected<double> value(const saltus::expression::Node& node, Reach reach, const std::string& what);
 
@@ -63,7 +64,7 @@ class ModelScope {
   /// Works out a definition that nothing has used, for its errors.
   [[nodiscard]] std::optional<Error> resolve_definition(int index);
 
-  /// Names that occur in some expression of the description, replaced ones (--set) included.
+  /// Notes names that occur in some expression of the description, replaced ones (--set) included.
   void note_names(const saltus::expression::NodePtr& node);
   [[nodiscard]] bool is_used(const std::string& name) const { return used_.contains(name); }
   [[nodiscard]] bool is_table_used(std::size_t index) const { return index < tables_.size() && tables_[index]; }

@@ -2,38 +2,21 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/enum_names.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/statement/names_internal.hpp"
 
 namespace saltus::model {
 
-std::string with_article(NameKind kind) {
-  switch (kind) {
-    case NameKind::parameter:
-      return "a parameter";
-    case NameKind::state:
-      return "a state";
-    case NameKind::control:
-      return "a control";
-    case NameKind::definition:
-      return "a definition";
-    case NameKind::switching:
-      return "a switching function";
-    case NameKind::output:
-      return "an output";
-    case NameKind::event:
-      return "an event";
-    case NameKind::jump:
-      return "a jump";
-    case NameKind::table:
-      return "a table";
-    case NameKind::hysteresis:
-      return "a hysteresis";
-    case NameKind::contact:
-      return "a contact";
-  }
-  return "";
-}
+namespace {
+
+constexpr EnumNames<NameKind::contact> kinds_with_article("a parameter", "a state", "a control", "a definition",
+                                                          "a switching function", "an output", "an event", "a jump",
+                                                          "a table", "a hysteresis", "a contact");
+
+}  // namespace
+
+std::string with_article(NameKind kind) { return std::string(kinds_with_article(kind)); }
 
 std::optional<Error> NameTable::declare(const std::string& name, const Meaning& meaning) {
   if (expression::is_reserved(name)) {

@@ -24,7 +24,7 @@ enum class NameKind {
   contact
 };
 
-/// "a parameter", "a state" and the like.
+/// Returns "a parameter", "a state" and the like.
 [[nodiscard]] std::string with_article(NameKind kind);
 
 struct Meaning {
@@ -38,7 +38,7 @@ class NameTable {
   /// Refuses names that are reserved, not made of letters, digits and underscores, or taken.
   [[nodiscard]] std::optional<Error> declare(const std::string& name, const Meaning& meaning);
   [[nodiscard]] const Meaning* find(const std::string& name) const;
-  /// Names of these kinds, in alphabetical order.
+  /// Returns names of these kinds, in alphabetical order.
   [[nodiscard]] std::vector<std::string> of(const std::vector<NameKind>& kinds) const;
 
  private:

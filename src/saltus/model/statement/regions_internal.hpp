@@ -11,13 +11,13 @@
 
 namespace saltus::model {
 
-/// The indicators of all modes that have one, with their places.
+/// Returns the indicators of all modes that have one, with their places.
 [[nodiscard]] std::vector<std::pair<SXElem, SourceLocation>> indicators(const Statement& statement);
 
-/// What all modes by `indicator` add to right-hand sides, each before it is weighted.
+/// Returns what all modes by `indicator` add to right-hand sides, each before it is weighted.
 [[nodiscard]] std::vector<ModeRate> region_rates(const Statement& statement);
 
-/// By state: whether a mode by `indicator` moves it.
+/// Returns for each state: whether a mode by `indicator` moves it.
 [[nodiscard]] std::vector<bool> moved_by_regions(const Statement& statement);
 
 /// Adds to a system its groups by `indicator` (see ModeGroup): a switching function and a selection per region behind

@@ -7,8 +7,8 @@
 
 namespace saltus::model {
 
-/// The value of an expression of states and parameters with the states at their initial values, which are known. Time
-/// and controls count as 0. @param node  its number in the graph of `recognition`
+/// Returns the value of an expression of states and parameters with the states at their initial values, which are
+/// known. Time and controls count as 0. @param node  its number in the graph of `recognition`
 [[nodiscard]] inline double value_at_start(const Recognition& recognition, const Statement& statement, int node) {
   const auto& tape = recognition.graph.tape();
   Point point = blank_point(tape);

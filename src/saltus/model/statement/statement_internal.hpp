@@ -12,7 +12,7 @@
 
 namespace saltus::model {
 
-/// Lower and upper bound; infinite if absent.
+/// Holds the lower and upper bound; infinite if absent.
 struct Bounds {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
@@ -49,7 +49,7 @@ struct OutputStatement {
   SXElem expression;
 };
 
-/// Either an expression (its zeros) or a condition (its edges).
+/// Holds either an expression (its zeros) or a condition (its edges).
 struct EventStatement {
   std::optional<std::string> name;
   std::optional<SXElem> expression{};
@@ -59,7 +59,7 @@ struct EventStatement {
   SourceLocation location{};
 };
 
-/// State number `state` <- value.
+/// Holds the state number `state` <- value.
 struct AssignmentStatement {
   int state = 0;
   SXElem value;
@@ -71,7 +71,7 @@ struct TimeStatement {
   SourceLocation location{};
 };
 
-/// By its trigger: a condition, a guard, or times.
+/// Holds a jump by its trigger: a condition, a guard, or times.
 struct JumpStatement {
   std::optional<std::string> name{};
   JumpTrigger trigger = JumpTrigger::condition;
@@ -96,7 +96,7 @@ struct SwitchingStatement {
   bool referenced = false;  ///< by its name
 };
 
-/// What a mode adds to the right-hand side of state number `state`.
+/// Holds what a mode adds to the right-hand side of state number `state`.
 struct ModeRate {
   int state = 0;
   SXElem rate;
@@ -148,13 +148,13 @@ struct Statement {
 [[nodiscard]] std::optional<Error> check_values(const std::string& what, double initial, const Bounds& bounds,
                                                 const SourceLocation& location, std::vector<std::string>& warnings);
 
-/// The error with this place, unless it says one itself.
+/// Returns the error with this place, unless it says one itself.
 [[nodiscard]] inline Error with_location(Error error, const SourceLocation& location) {
   if (error.location.line == 0) error.location = location;
   return error;
 }
 
-/// "file:line: text", as far as the place is known.
+/// Returns "file:line: text", as far as the place is known.
 [[nodiscard]] std::string located(const SourceLocation& location, const std::string& text);
 
 }  // namespace saltus::model

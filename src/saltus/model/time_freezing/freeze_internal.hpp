@@ -15,7 +15,7 @@ namespace saltus::model {
 
 enum class FrozenFor { simulation, optimisation };
 
-/// Numbers of [time_freezing] (docs/model-file.md).
+/// Holds numbers of [time_freezing] (docs/model-file.md).
 struct FreezingNumbers {
   double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
   double stabilisation_initial = 0.0;
@@ -23,13 +23,13 @@ struct FreezingNumbers {
   double correction = 0.1;  ///< largest speed with which a held gap is corrected
 };
 
-/// A rate that is added to that of a state.
+/// Holds a rate that is added to that of a state.
 struct AddedRate {
   int state = 0;
   casadi::SX rate;
 };
 
-/// The input, scaled to 0 and 1 at the lower and the upper threshold, and the state, 1 on the upper side.
+/// Holds the input, scaled to 0 and 1 at the lower and the upper threshold, and the state, 1 on the upper side.
 struct HysteresisPlane {
   std::string name;
   casadi::SX scaled, above;
@@ -37,7 +37,7 @@ struct HysteresisPlane {
   bool rises = true;  ///< the state is 1 on the upper side
 };
 
-/// What is gathered on the way from a description to a frozen system.
+/// Holds what is gathered on the way from a description to a frozen system.
 struct FreezingPlan {
   FrozenFor purpose = FrozenFor::simulation;
   FreezingNumbers numbers{};
@@ -71,13 +71,13 @@ struct FreezingPlan {
                                                    const std::vector<ContactStatement>& contacts,
                                                    const MotionWithoutContacts& motion, FreezingPlan& plan);
 
-/// Right-hand sides of a plan with a plane: regions between which the state waits at 0 or 1 by sliding.
+/// Adds right-hand sides of a plan with a plane: regions between which the state waits at 0 or 1 by sliding.
 void freeze_in_plane(Statement& statement, const FreezingPlan& plan);
 
-/// All right-hand sides are there: makes them those of numerical time.
+/// Is called when all right-hand sides are there: makes them those of numerical time.
 void freeze_rates(Statement& statement, const FreezingPlan& plan);
 
-/// The numbers of selections in the system that was made of the plan.
+/// Finds the numbers of selections in the system that was made of the plan.
 void find_selections(const System& system, FreezingPlan& plan);
 
 }  // namespace saltus::model

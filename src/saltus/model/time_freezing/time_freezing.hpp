@@ -9,14 +9,14 @@
 
 namespace saltus::model {
 
-/// The selection of a switching function that freezing has added.
+/// Holds the selection of a switching function that freezing has added.
 struct FrozenSelection {
   int function = -1;     ///< in System::switching; -1: none
   int orientation = +1;  ///< -1 if it is 1 less that one
 };
 
-/// A contact of a frozen system. Inelastic, it is open where its gap is positive or opens, and else a force along the
-/// normal stops it, or holds the gap. Elastic, an oscillator of the depth takes the velocity and gives it back.
+/// Holds a contact of a frozen system. Inelastic, it is open where its gap is positive or opens, and else a force along
+/// the normal stops it, or holds the gap. Elastic, an oscillator of the depth takes the velocity and gives it back.
 struct FrozenContact {
   std::string name;
   bool is_elastic = false;
@@ -32,7 +32,7 @@ struct FrozenHysteresis {
   int state = 0;  ///< goes from 0 to 1 and back while time stands still
 };
 
-/// dt/dtau = clock's rate, 1 or less; states move in physical time where it is positive [nurkanovic2022].
+/// States dt/dtau = clock's rate, 1 or less; states move in physical time where it is positive [nurkanovic2022].
 struct TimeFreezing {
   int clock = 0;                ///< state: physical time; the last one
   int first_hidden = 0;         ///< states from here on are in no column of a result
@@ -45,7 +45,7 @@ struct TimeFreezing {
   double penetration = 0.0;            ///< gaps of an optimum are at least -penetration; infinite: whatever they are
 };
 
-/// What a system with contacts or hysteresis is when it is frozen, or why it cannot be.
+/// Holds what a system with contacts or hysteresis is when it is frozen, or why it cannot be.
 struct FrozenSystem {
   Expected<System> system;
 };

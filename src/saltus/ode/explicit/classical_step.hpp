@@ -7,7 +7,7 @@
 
 namespace saltus::ode {
 
-/// The classical method of order 4 [hairer1993, II.1, table 1.2]; owns its work space.
+/// Holds the classical method of order 4 [hairer1993, II.1, table 1.2]; owns its work space.
 class ClassicalStep {
  public:
   /// @param n  states

@@ -29,7 +29,7 @@ inline std::size_t size_of(const ExplicitStep& step) {
   }
 }
 
-/// x + h times the sum of the stages with the weights of a row of the tableau.
+/// Evaluates x + h times the sum of the stages with the weights of a row of the tableau.
 template <class Tableau, std::size_t row, class Size>
 inline void advance(const ExplicitStep& step, double* __restrict result) {
   const std::size_t n = size_of<Size>(step);
@@ -56,15 +56,15 @@ inline bool evaluate_stage(const ExplicitStep& step, const StageWork& work, doub
   return all_finite(slope, n);
 }
 
-/// Stages first, first + 1, ...; stops at the first one that is not finite.
+/// Evaluates stages first, first + 1, ...; stops at the first one that is not finite.
 template <class Tableau, std::size_t first, class Size, std::size_t... offset>
 inline bool evaluate_stages(const ExplicitStep& step, const StageWork& work, std::index_sequence<offset...>) {
   return (evaluate_stage<Tableau, first + offset, Size>(step, work, work.argument) && ...);
 }
 
-/// Largest component of an embedded error estimate in units of its scale. The largest, not the mean: a state that
-/// slides or rests has no error and must not buy the others a larger one. NaN if a component is (overflow), which a
-/// comparison would pass over.
+/// Returns the largest component of an embedded error estimate in units of its scale. The largest, not the mean: a
+/// state that slides or rests has no error and must not buy the others a larger one. NaN if a component is (overflow),
+/// which a comparison would pass over.
 template <const auto& rows, std::size_t row, class Size>
 inline double largest_error(const ExplicitStep& step, const Tolerances& tolerances) {
   const std::size_t n = size_of<Size>(step);
@@ -81,7 +81,7 @@ inline double largest_error(const ExplicitStep& step, const Tolerances& toleranc
   return std::isnan(sum) ? sum : largest;
 }
 
-/// Coefficients 0 to 3 of the nested form: the cubic Hermite interpolant of both ends.
+/// Evaluates coefficients 0 to 3 of the nested form: the cubic Hermite interpolant of both ends.
 template <std::size_t last, class Size>
 inline void hermite_coefficients(const ExplicitStep& step, double* __restrict result) {
   const std::size_t n = size_of<Size>(step);
@@ -99,7 +99,7 @@ inline void hermite_coefficients(const ExplicitStep& step, double* __restrict re
 }
 constexpr std::size_t hermite_count = 4;
 
-/// Row `row` of the dense output's own weights, times h.
+/// Evaluates row `row` of the dense output's own weights, times h.
 template <class Tableau, std::size_t row, class Size>
 inline void dense_row(const ExplicitStep& step, double* __restrict result) {
   const std::size_t n = size_of<Size>(step);
@@ -115,7 +115,7 @@ inline void dense_rows(const ExplicitStep& step, double* result, std::index_sequ
   (dense_row<Tableau, row, Size>(step, result + row * size_of<Size>(step)), ...);
 }
 
-/// The functions of one method; `Method` has its Tableau, error_norm, bounds, mean_slopes and stability_limit.
+/// Holds the functions of one method; `Method` has its Tableau, error_norm, bounds, mean_slopes and stability_limit.
 template <class Method, class Size>
 struct ExplicitKernel {
   using Tableau = typename Method::Tableau;
@@ -141,7 +141,7 @@ struct ExplicitKernel {
     return true;
   }
 
-  /// h |k_last - k_before| / |x_new - x_before|, both stages at t + h: about h times the largest eigenvalue.
+  /// Returns h |k_last - k_before| / |x_new - x_before|, both stages at t + h: about h times the largest eigenvalue.
   static double stability_ratio(const ExplicitStep& step) {
     const std::size_t n = size_of<Size>(step);
     const double* stages = step.stages;

@@ -7,7 +7,7 @@
 
 namespace saltus::ode {
 
-/// An attempt, made or under way. All vectors have n doubles.
+/// Holds an attempt, made or under way. All vectors have n doubles.
 struct ExplicitStep {
   double t;
   double h;
@@ -17,7 +17,7 @@ struct ExplicitStep {
   const double* stages;  ///< k_1 = f(t, start), k_2, ..., one after the other
 };
 
-/// What evaluating its stages needs besides.
+/// Holds what evaluating its stages needs besides.
 struct StageWork {
   RightHandSide f;
   long& evaluations;  ///< counted up
@@ -26,16 +26,16 @@ struct StageWork {
   double* argument;  ///< n doubles, of nobody else
 };
 
-/// The operations of Stepper, which says what they mean. Their results do not depend on the n they are made for.
+/// Holds the operations of Stepper, which says what they mean. Their results do not depend on the n they are made for.
 struct ExplicitMethod {
-  /// The stages behind the first one up to that at x_new, and the error norm (NaN where it overflows); false at the
-  /// first stage that is not finite.
+  /// Evaluates the stages behind the first one up to that at x_new, and the error norm (NaN where it overflows); false
+  /// at the first stage that is not finite.
   bool (*take)(const ExplicitStep& step, const StageWork& work, const Tolerances& tolerances, double& error_norm);
-  /// The error norm alone, of a step whose stages are there.
+  /// Evaluates the error norm alone, of a step whose stages are there.
   double (*error_norm)(const ExplicitStep& step, const Tolerances& tolerances);
   void (*bounds)(const ExplicitStep& step, double* low, double* high);
   void (*mean_slopes)(const ExplicitStep& step, double* low, double* high);
-  /// Coefficients of the dense output; false if a further stage is not finite, and then those of the cubic.
+  /// Evaluates coefficients of the dense output; false if a further stage is not finite, and then those of the cubic.
   bool (*dense)(const ExplicitStep& step, const StageWork& work, double* coefficients);
   double (*stability_ratio)(const ExplicitStep& step);
   std::size_t last_stage;  ///< f(t + h, x_new) is k_last, counted from 0
@@ -47,7 +47,7 @@ inline constexpr std::size_t few_states = 8;
 [[nodiscard]] const ExplicitMethod& dopri5_for_few(std::size_t n);
 [[nodiscard]] const ExplicitMethod& dop853_for_few(std::size_t n);
 
-/// For any number.
+/// Returns the method for any number.
 [[nodiscard]] const ExplicitMethod& dopri5_for_any();
 [[nodiscard]] const ExplicitMethod& dop853_for_any();
 

@@ -19,8 +19,8 @@ struct Dopri5 {
     return largest_error<Tableau::error, 0, Size>(step, tolerances);
   }
 
-  /// Of the nested form of the dense output of one component: x + theta (difference + (1 - theta) (bend + theta (twist
-  /// + (1 - theta) h last))).
+  /// Holds the coefficients of the nested form of the dense output of one component: x + theta (difference + (1 -
+  /// theta) (bend + theta (twist + (1 - theta) h last))).
   template <class Value>
   struct Nested {
     Value start, end, difference, bend, twist, last;
@@ -35,7 +35,7 @@ struct Dopri5 {
     return {start, end, difference, bend, twist, stage_sum<Tableau::dense, 0, Value>(step.stages, n, i)};
   }
 
-  /// The chord, widened by the largest values of the other terms.
+  /// Evaluates the chord, widened by the largest values of the other terms.
   template <class Size>
   static void bounds(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
     const std::size_t n = size_of<Size>(step);
@@ -48,8 +48,8 @@ struct Dopri5 {
     });
   }
 
-  /// (p(theta) - x) / (theta h) = d + (1 - theta) (bend + theta (twist + (1 - theta) h last)) / h with the chord's
-  /// slope d: between d and the slope at the start, but for the last two terms.
+  /// Bounds (p(theta) - x) / (theta h) = d + (1 - theta) (bend + theta (twist + (1 - theta) h last)) / h with the
+  /// chord's slope d: between d and the slope at the start, but for the last two terms.
   template <class Size>
   static void mean_slopes(const ExplicitStep& step, double* __restrict low, double* __restrict high) {
     const std::size_t n = size_of<Size>(step);
@@ -69,8 +69,8 @@ struct Dop853 {
   using Tableau = Dop853Tableau;
   static constexpr double stability_limit = 6.1;  ///< of code DOP853
 
-  /// The estimate of order 5, damped where it is small against a tenth of the one of order 3: Hairer, Norsett & Wanner,
-  /// (10.17) of chapter II, with the largest component in place of their mean.
+  /// Returns the estimate of order 5, damped where it is small against a tenth of the one of order 3: Hairer, Norsett &
+  /// Wanner, (10.17) of chapter II, with the largest component in place of their mean.
   template <class Size>
   static double error_norm(const ExplicitStep& step, const Tolerances& tolerances) {
     const double fifth = largest_error<Tableau::error, 0, Size>(step, tolerances);

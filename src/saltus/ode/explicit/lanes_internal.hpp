@@ -16,7 +16,7 @@ using PairBits = std::uint64_t __attribute__((vector_size(16)));
 template <class Value>
 struct Lanes {};
 
-/// body(Lanes<Pair>, i) for components i and i + 1, body(Lanes<double>, i) for one that is left.
+/// Calls body(Lanes<Pair>, i) for components i and i + 1, body(Lanes<double>, i) for one that is left.
 template <class Body>
 inline void for_lanes(std::size_t n, Body&& body) {
   std::size_t i = 0;
@@ -45,7 +45,7 @@ constexpr Value in_all_lanes(double value) {
   }
 }
 
-/// Those of the standard library, lane by lane.
+/// Does what the function of the standard library does, lane by lane.
 inline double absolute(double value) { return __builtin_fabs(value); }
 inline Pair absolute(Pair value) {
   constexpr PairBits all_but_sign{INT64_MAX, INT64_MAX};
@@ -63,7 +63,7 @@ inline Value smaller(Value a, Value b) {
 inline double largest_lane(double value) { return value; }
 inline double largest_lane(Pair value) { return larger(value[0], value[1]); }
 
-/// NaN if any of the values that were added is NaN, as a sum is; otherwise anything.
+/// Returns NaN if any of the values that were added is NaN, as a sum is; otherwise anything.
 inline double sum_of_lanes(double value) { return value; }
 inline double sum_of_lanes(Pair value) { return value[0] + value[1]; }
 

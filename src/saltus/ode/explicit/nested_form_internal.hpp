@@ -7,13 +7,14 @@
 
 namespace saltus::ode {
 
-/// Value and derivative with respect to theta.
+/// Holds the value and derivative with respect to theta.
 struct Jet {
   double value;
   double slope;
 };
 
-/// c_first + factor (c_first+1 + ...), factors s and r in turn: s behind even coefficients, r behind odd ones.
+/// Evaluates c_first + factor (c_first+1 + ...), factors s and r in turn: s behind even coefficients, r behind odd
+/// ones.
 template <std::size_t first, std::size_t last>
 inline double nested(const double* coefficients, std::size_t n, std::size_t i, double s, double r) {
   const double own = coefficients[first * n + i];
@@ -39,12 +40,12 @@ inline Jet nested_jet(const double* coefficients, std::size_t n, std::size_t i, 
   }
 }
 
-/// The nested form is the Newton form with the nodes 0, 1, 0, 1, ..., but for the sign of its factors 1 - theta: that
-/// of its coefficient k.
+/// Returns a sign, as the nested form is the Newton form with the nodes 0, 1, 0, 1, ..., but for the sign of its
+/// factors 1 - theta: that of its coefficient k.
 inline double sign_of_nested(std::size_t k) { return k / 2 % 2 == 0 ? 1.0 : -1.0; }
 
-/// A Newton form c0 + (theta - node0) (c1 + (theta - node1) (c2 + ...)) with another node in front of the others, of
-/// which the last one is dropped. Coefficients are numbers or columns.
+/// Makes a Newton form c0 + (theta - node0) (c1 + (theta - node1) (c2 + ...)) with another node in front of the others,
+/// of which the last one is dropped. Coefficients are numbers or columns.
 template <std::size_t others, class Coefficients>
 inline void begin_with_node(double node, Coefficients& c, std::array<double, others>& nodes) {
   for (std::size_t k = others; k-- > 0;) c[k] += (node - nodes[k]) * c[k + 1];
@@ -52,7 +53,7 @@ inline void begin_with_node(double node, Coefficients& c, std::array<double, oth
   nodes[0] = node;
 }
 
-/// Value, derivative and half the second derivative.
+/// Holds the value, derivative and half the second derivative.
 struct SecondJet {
   double value;
   double slope;
@@ -74,7 +75,7 @@ inline SecondJet nested_second_jet(const double* coefficients, double s, double 
   }
 }
 
-/// Powers of s and r that coefficient k of the form is multiplied by.
+/// Returns the power of s and r that coefficient k of the form is multiplied by.
 constexpr std::size_t power_of_s(std::size_t k) { return (k + 1) / 2; }
 constexpr std::size_t power_of_r(std::size_t k) { return k / 2; }
 

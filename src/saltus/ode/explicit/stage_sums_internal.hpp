@@ -8,7 +8,8 @@
 
 namespace saltus::ode {
 
-/// sum + coefficient * value; nothing is added where the coefficient is 0, so that unused stages may hold anything.
+/// Returns sum + coefficient * value; nothing is added where the coefficient is 0, so that unused stages may hold
+/// anything.
 template <const auto& rows, std::size_t row, std::size_t stage, class Value>
 inline Value add_stage(Value sum, const double* stages, std::size_t n, std::size_t i) {
   if constexpr (rows[row][stage] != 0.0) {
@@ -26,7 +27,7 @@ inline Value stage_sum(const double* stages, std::size_t n, std::size_t i, std::
   return sum;
 }
 
-/// Component i, or i and i + 1, of the sum over the stages j of rows[row][j] k_j.
+/// Returns component i, or i and i + 1, of the sum over the stages j of rows[row][j] k_j.
 template <const auto& rows, std::size_t row, class Value = double>
 inline Value stage_sum(const double* stages, std::size_t n, std::size_t i) {
   return stage_sum<rows, row, Value>(stages, n, i, std::make_index_sequence<rows[row].size()>{});

@@ -8,13 +8,13 @@
 
 namespace saltus::ode {
 
-/// Rows of something, each a part of one list.
+/// Holds rows of something, each a part of one list.
 struct RowLists {
   std::vector<std::size_t> start;  ///< rows + 1
   std::vector<std::size_t> column;
 };
 
-/// Elimination along the diagonal in an order with few new entries: that of the minimum degree in the pattern with its
+/// Eliminates along the diagonal in an order with few new entries: that of the minimum degree in the pattern with its
 /// transpose. Row i is the unknown order[i].
 struct Elimination {
   std::vector<std::size_t> order;

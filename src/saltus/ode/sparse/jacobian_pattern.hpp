@@ -7,7 +7,7 @@
 
 namespace saltus::ode {
 
-/// Entries of an n x n matrix column by column, rows ascending; the diagonal is always among them.
+/// Holds entries of an n x n matrix column by column, rows ascending; the diagonal is always among them.
 struct JacobianPattern {
   std::vector<std::size_t> start;  ///< n + 1
   std::vector<std::size_t> row;
@@ -15,11 +15,11 @@ struct JacobianPattern {
   [[nodiscard]] std::size_t columns() const { return start.size() - 1; }
 };
 
-/// From pairs (row, column), in any order and as often as one likes.
+/// Makes a pattern from pairs (row, column), in any order and as often as one likes.
 [[nodiscard]] JacobianPattern pattern_of(std::size_t n, std::vector<std::pair<std::size_t, std::size_t>> entries);
 
-/// Groups of columns without a common row, each column in one of them: first fit in the order of the columns. Cost:
-/// the squares of the entries of rows, summed.
+/// Returns groups of columns without a common row, each column in one of them: first fit in the order of the columns.
+/// Cost: the squares of the entries of rows, summed.
 [[nodiscard]] std::vector<std::vector<std::size_t>> column_groups(const JacobianPattern& pattern);
 
 }  // namespace saltus::ode

@@ -9,7 +9,7 @@
 
 namespace saltus::ode {
 
-/// All entries are 1, in the order of the pattern.
+/// Returns a matrix whose entries are all 1, in the order of the pattern.
 template <class Scalar>
 Eigen::SparseMatrix<Scalar> matrix_of(const JacobianPattern& pattern) {
   const auto n = static_cast<Eigen::Index>(pattern.columns());

@@ -14,8 +14,8 @@
 
 namespace saltus::ode {
 
-/// (real / h - J) x = b and ((re + i im) / h - J) x = b, one of these for each pair of eigenvalues. The sparse ones are
-/// analysed once per pattern; all storage is kept.
+/// Solves (real / h - J) x = b and ((re + i im) / h - J) x = b, one of these for each pair of eigenvalues. The sparse
+/// ones are analysed once per pattern; all storage is kept.
 class RadauSystems {
  public:
   using Vector = Eigen::VectorXd;
@@ -27,16 +27,16 @@ class RadauSystems {
 
   RadauSystems(Eigen::Index n, std::size_t pairs) : n_(n), pairs_(pairs) {}
 
-  /// Null: dense. The same address is the same pattern. Returns whether it is another one than before, whose Jacobian
-  /// and factors are not known.
+  /// Takes the pattern; null: dense. The same address is the same pattern. Returns whether it is another one than
+  /// before, whose Jacobian and factors are not known.
   bool use(const JacobianPattern* pattern);
   [[nodiscard]] bool is_sparse() const { return pattern_ != nullptr; }
-  /// Columns that one difference serves together; empty where the matrix is dense.
+  /// Returns columns that one difference serves together; empty where the matrix is dense.
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& groups() const { return groups_; }
 
-  /// Column j of J from the difference of slopes that its group gives; false where an entry is not finite.
+  /// Sets column j of J from the difference of slopes that its group gives; false where an entry is not finite.
   [[nodiscard]] bool set_column(Eigen::Index column, const Vector& difference, double increment);
-  /// False where a matrix is singular.
+  /// Factorizes; returns false where a matrix is singular.
   [[nodiscard]] bool factorize(const Shifts& shifts);
   void solve(const Vector& right, Vector& solution);
   void solve(std::size_t pair, const ComplexVector& right, ComplexVector& solution);

@@ -16,7 +16,7 @@
 
 namespace saltus::ode {
 
-/// Largest part of a number: no square root as in its absolute value.
+/// Returns the largest part of a number: no square root as in its absolute value.
 inline double largest_part(double value) { return std::abs(value); }
 inline double largest_part(const std::complex<double>& value) {
   return std::max(std::abs(value.real()), std::abs(value.imag()));
@@ -26,15 +26,16 @@ inline std::complex<double> reciprocal(const std::complex<double>& value) {
   return std::conj(value) / std::norm(value);
 }
 
-/// L U of a matrix with its pivots on the diagonal, row by row: no search, and all places known beforehand. Where a
-/// multiplier is beyond `largest_multiplier` the diagonal does not serve, and this matrix has factors with pivots that
-/// are searched for (Eigen::SparseLU). Cost: the products of entries; a tenth of those with a search (tridiagonal).
+/// Factorizes L U of a matrix with its pivots on the diagonal, row by row: no search, and all places known beforehand.
+/// Where a multiplier is beyond `largest_multiplier` the diagonal does not serve, and this matrix has factors with
+/// pivots that are searched for (Eigen::SparseLU). Cost: the products of entries; a tenth of those with a search
+/// (tridiagonal).
 template <class Scalar>
 class ShiftedFactors {
  public:
   using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-  /// Both stay where they are.
+  /// Uses both, which stay where they are.
   void use(const JacobianPattern& pattern, const Elimination& elimination) {
     pattern_ = &pattern;
     elimination_ = &elimination;
@@ -45,7 +46,7 @@ class ShiftedFactors {
     searched_.reset();
   }
 
-  /// Entries of J in the order of the pattern. False where the matrix is singular.
+  /// Takes the entries of J in the order of the pattern. False where the matrix is singular.
   [[nodiscard]] bool factorize(const std::vector<double>& entries, const Scalar& shift) {
     along_diagonal_ = eliminate(entries, shift);
     return along_diagonal_ || search(entries, shift);

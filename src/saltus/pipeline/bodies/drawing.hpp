@@ -9,7 +9,7 @@
 
 namespace saltus::pipeline {
 
-/// What the system says is drawn, at the rows of a trajectory of its first states; nothing if it says nothing.
+/// Returns what the system says is drawn, at the rows of a trajectory of its first states; nothing if it says nothing.
 /// @param parameters  values of System::p
 [[nodiscard]] std::optional<result::Drawing> drawing_of(const model::System& system,
                                                         const std::vector<double>& parameters,

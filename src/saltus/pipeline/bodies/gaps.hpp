@@ -9,16 +9,16 @@
 
 namespace saltus::pipeline {
 
-/// To be made and dropped under the SymbolicLock.
+/// Is made and dropped under the SymbolicLock.
 class Gaps {
  public:
   /// @param parameters  values of System::p
   Gaps(const model::System& system, std::vector<double> parameters);
 
-  /// How deep bodies are in each other: the largest -gap of all contacts, 0 without any.
+  /// Returns how deep bodies are in each other: the largest -gap of all contacts, 0 without any.
   /// @param x  of which the states of the system are the first ones
   [[nodiscard]] double depth(double t, const std::vector<double>& x);
-  /// Of all rows.
+  /// Returns how deep they are over all rows.
   [[nodiscard]] double depth(const result::Trajectory& trajectory);
 
  private:

@@ -1,11 +1,11 @@
 #include "saltus/pipeline/mpcc/solve_mpcc.hpp"
 
-#include <chrono>
 
 #include <fmt/format.h>
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/base/stopwatch.hpp"
 #include "saltus/pipeline/options/number_list_internal.hpp"
 
 namespace saltus::pipeline {
@@ -58,15 +58,14 @@ Expected<result::MpccResult> solve_mpcc(foreign::Problem& problem, const solver:
                                         const std::optional<std::vector<double>>& x) {
   const auto start = start_at(problem, x);
   if (!start) return tl::unexpected(start.error());
-  const auto began = std::chrono::steady_clock::now();
+  const Stopwatch stopwatch;
   adapters::IpoptSolver nlp;
   adapters::HighsLpcc lpcc;
   auto solution = solver::solve(problem, nlp, lpcc, options, *start);
   if (!solution) return tl::unexpected(solution.error());
   auto result = result_of(problem, *solution);
   result.tolerance = options.tolerance;
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - began;
-  result.statistics.wall_seconds = passed.count();
+  result.statistics.wall_seconds = stopwatch.seconds();
   return result;
 }
 

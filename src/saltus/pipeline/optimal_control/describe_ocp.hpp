@@ -10,7 +10,7 @@
 
 namespace saltus::pipeline {
 
-/// Numbers of a problem or a part of it.
+/// Holds numbers of a problem or a part of it.
 struct OcpCounts {
   long variables = 0;
   long equations = 0;  ///< rows of constraints, equations and inequalities

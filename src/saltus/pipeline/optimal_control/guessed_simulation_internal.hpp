@@ -9,7 +9,7 @@
 
 namespace saltus::pipeline {
 
-/// The event-driven simulation of a guess at some times.
+/// Holds the event-driven simulation of a guess at some times.
 struct GuessedSimulation {
   std::vector<std::vector<double>> x;      ///< rows at the times that it reaches
   std::vector<std::vector<double>> alpha;  ///< as System::alpha

@@ -10,8 +10,8 @@
 
 namespace saltus::pipeline {
 
-/// For every state b' with x_i(T) = b' if a hard terminal constraint says so: c x_i + d == b with c, d of parameters.
-/// Fails (invalid_model) if the symbolic layer refuses an expression.
+/// Returns for every state b' with x_i(T) = b' if a hard terminal constraint says so: c x_i + d == b with c, d of
+/// parameters. Fails (invalid_model) if the symbolic layer refuses an expression.
 [[nodiscard]] Expected<std::vector<std::optional<double>>> linear_targets(const model::Ocp& ocp,
                                                                           const std::vector<double>& parameters,
                                                                           PointValues& values);

@@ -21,9 +21,9 @@ struct OcpStart {
   std::vector<std::string> warnings;  ///< values outside their bounds that were moved onto them
 };
 
-/// In this order (docs/optimal-control.md): `initial_guess`; else an event-driven simulation of the guessed controls from
-/// the guessed initial state; from where that stops, or with a free horizon whose terminal constraint names a state
-/// linearly, the straight line; else the initial values.
+/// Guesses in this order (docs/optimal-control.md): `initial_guess`; else an event-driven simulation of the guessed
+/// controls from the guessed initial state; from where that stops, or with a free horizon whose terminal constraint
+/// names a state linearly, the straight line; else the initial values.
 /// @param intervals  N >= 1
 /// @param fractions  ascending, in [0, 1], of the horizon
 [[nodiscard]] Expected<OcpStart> guess_start(const model::Ocp& ocp, int intervals,

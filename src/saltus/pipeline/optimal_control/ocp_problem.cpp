@@ -161,8 +161,7 @@ Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptio
   auto elements = elements_of(options);
   if (!elements) return tl::unexpected(elements.error());
   if (auto error = check_freedom(ocp, *elements, options)) return tl::unexpected(std::move(*error));
-  auto tableau =
-      discretization::butcher_tableau(family(options.element.scheme), static_cast<int>(options.element.stages));
+  auto tableau = discretization::butcher_tableau(options.element.scheme, static_cast<int>(options.element.stages));
   if (!tableau) return tl::unexpected(tableau.error());
   const auto dcs = reformulation::reformulate(ocp.system, reformulation_options(options.element));
   if (!dcs) return tl::unexpected(dcs.error());

@@ -13,7 +13,7 @@
 
 namespace saltus::pipeline {
 
-/// An element that has a length.
+/// Holds an element that has a length.
 struct OptimizedPiece {
   fesd_integrator::Element element;
   double end = 0.0;  ///< its right end: where the next one begins
@@ -23,10 +23,10 @@ struct OptimizedPiece {
   bool is_frozen = false;           ///< time frozen by hand: the clock stands
 };
 
-/// The left ends of the intervals in the time of the right-hand side, then the end of the last one.
+/// Returns the left ends of the intervals in the time of the right-hand side, then the end of the last one.
 [[nodiscard]] std::vector<double> node_times(double from, const discretization::OcpSolution& solution);
 
-/// Elements that vanished (h < 1e-9 of the mean of their interval) are left out. Nothing is frozen yet.
+/// Leaves out elements that vanished (h < 1e-9 of the mean of their interval). Nothing is frozen yet.
 [[nodiscard]] std::vector<OptimizedPiece> optimized_pieces(const discretization::OcpSolution& solution,
                                                            const std::vector<double>& times,
                                                            const discretization::StageKernel& kernel,

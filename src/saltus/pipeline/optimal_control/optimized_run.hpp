@@ -29,9 +29,9 @@ struct OptimizedRun {
   std::vector<std::string> switching_functions;  ///< of a frozen system: those that the result shows
 };
 
-/// The sides of the pairs of an element are read off its sums over the stages: the smaller one is zero.
-/// Where time is frozen by hand, rows, events and elements of the result are in physical time (the clock), frozen
-/// pieces left out of trajectory and events; those of `path` are in the time of the right-hand side.
+/// Reads the sides of the pairs of an element off its sums over the stages: the smaller one is zero. Where time is
+/// frozen by hand, rows, events and elements of the result are in physical time (the clock), frozen pieces left out of
+/// trajectory and events; those of `path` are in the time of the right-hand side.
 [[nodiscard]] Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const discretization::OcpSolution& solution,
                                                    const reformulation::ReformulationOptions& form,
                                                    const discretization::ButcherTableau& tableau);

@@ -9,7 +9,7 @@
 
 namespace saltus::pipeline {
 
-/// Where a system is evaluated; vectors as System::x, u, p.
+/// Says where a system is evaluated; vectors as System::x, u, p.
 struct ModelPoint {
   double t = 0.0;
   std::vector<double> x, u, p;
@@ -20,12 +20,12 @@ class PointValues {
   /// Fails (invalid_model) if the symbolic layer refuses an expression.
   [[nodiscard]] static Expected<PointValues> make(const model::System& system);
 
-  /// alpha_j in {0, 1/2, 1} by the sign of psi_j, inner functions first, constants of cells where their arguments are.
-  /// Entries of `known` that are not NaN stay; regions that are not known have equal weights.
+  /// Returns alpha_j in {0, 1/2, 1} by the sign of psi_j, inner functions first, constants of cells where their
+  /// arguments are. Entries of `known` that are not NaN stay; regions that are not known have equal weights.
   /// @param known  as System::alpha; empty: nothing
   [[nodiscard]] std::vector<double> selections(const ModelPoint& point, std::vector<double> known = {});
 
-  /// All outputs.
+  /// Evaluates all outputs.
   [[nodiscard]] std::vector<double> outputs(const ModelPoint& point);
 
  private:

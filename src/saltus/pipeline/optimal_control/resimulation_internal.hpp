@@ -14,7 +14,7 @@
 
 namespace saltus::pipeline {
 
-/// The system with the controls and parameters of a solution, compiled once.
+/// Holds the system with the controls and parameters of a solution, compiled once.
 class Resimulation {
  public:
   /// Fails if the symbolic layer refuses the model. `path` must outlive it.
@@ -25,13 +25,13 @@ class Resimulation {
     bool is_complete = false;  ///< it came to its end
     bool was_chosen = false;   ///< the mode at the node is that of the solution, and not what the engine takes
   };
-  /// From node k with the controls of interval k to its end. The solution from there may not be unique. Then the mode
-  /// that the optimised trajectory has is taken if it is one of those that are possible.
+  /// Simulates from node k with the controls of interval k to its end. The solution from there may not be unique. Then
+  /// the mode that the optimised trajectory has is taken if it is one of those that are possible.
   [[nodiscard]] Segment interval(std::size_t k, const std::function<bool()>& is_interrupted);
-  /// From the first node over the whole horizon, likewise.
+  /// Simulates from the first node over the whole horizon, likewise.
   [[nodiscard]] Segment open_loop(const std::function<bool()>& is_interrupted);
-  /// The 2-norm of d x(T) / d x(from), the product of the derivatives of all intervals, by central differences in steps
-  /// of 1e-5 `scales`; NaN if a simulation does not come to its end.
+  /// Returns the 2-norm of d x(T) / d x(from), the product of the derivatives of all intervals, by central differences
+  /// in steps of 1e-5 `scales`; NaN if a simulation does not come to its end.
   [[nodiscard]] double amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted);
 
  private:
@@ -51,17 +51,18 @@ class Resimulation {
   const OptimizedPath* path_;
 };
 
-/// From the first node over the whole horizon, in interval k with u_k + K_k (x(t_k) - x_k), moved onto the bounds of
-/// the controls.
+/// Simulates from the first node over the whole horizon, in interval k with u_k + K_k (x(t_k) - x_k), moved onto the
+/// bounds of the controls.
 /// @param gains  K_k over all controls and the states of the result
 [[nodiscard]] Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
                                                                    const std::vector<Eigen::MatrixXd>& gains,
                                                                    const std::function<bool()>& is_interrupted);
 
-/// So sharp that defects of 1e-9 of the range are those of the solution; `rows` + 1 rows of equal distance.
+/// Returns options so sharp that defects of 1e-9 of the range are those of the solution; `rows` + 1 rows of equal
+/// distance.
 [[nodiscard]] event_integrator::IntegrationOptions resimulation_options(double from, double until, std::size_t rows);
 
-/// n + 1 times of equal distance from `from` until `until`.
+/// Returns n + 1 times of equal distance from `from` until `until`.
 [[nodiscard]] std::vector<double> equal_times(double from, double until, std::size_t n);
 
 }  // namespace saltus::pipeline

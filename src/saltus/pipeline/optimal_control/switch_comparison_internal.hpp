@@ -8,15 +8,15 @@
 
 namespace saltus::pipeline {
 
-/// One switching function, or one group of regions, that goes from one mode to another.
+/// Holds one switching function, or one group of regions, that goes from one mode to another.
 struct Switch {
   double t = 0.0;
   std::size_t place = 0;  ///< 2 i of switching function i of the result, 2 i + 1 of group i
   std::string from, to;
 };
 
-/// The changes of every function and group in the events, by time. Functions that change together are one each, so
-/// that rounding, which puts one of them before the other, makes no difference.
+/// Returns the changes of every function and group in the events, by time. Functions that change together are one each,
+/// so that rounding, which puts one of them before the other, makes no difference.
 /// @param is_listed  one per switching function of the result: changes of others (kinks) are no switches
 [[nodiscard]] std::vector<Switch> switches_of(const result::Events& events, const std::vector<bool>& is_listed);
 

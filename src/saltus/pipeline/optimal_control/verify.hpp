@@ -13,7 +13,7 @@
 
 namespace saltus::pipeline {
 
-/// An optimised trajectory, as far as it is simulated again.
+/// Holds an optimised trajectory, as far as it is simulated again.
 struct OptimizedPath {
   double horizon = 0.0;
   std::vector<double> parameters;  ///< all of System::p
@@ -30,7 +30,7 @@ struct OptimizedPath {
   std::vector<result::Event> events;
 };
 
-/// What is asked of the truth check.
+/// Holds what is asked of the truth check.
 struct VerificationWanted {
   double tolerance = 1e-3;
   /// K_k of every interval, over all controls and the states of the result: the controls are simulated with this

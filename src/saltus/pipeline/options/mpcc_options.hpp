@@ -10,7 +10,7 @@
 
 namespace saltus::pipeline {
 
-/// One key of [optimize.mpcc]; `solver` is not among them, as it is no option of the method.
+/// Holds one key of [optimize.mpcc]; `solver` is not among them, as it is no option of the method.
 struct MpccField {
   std::string_view key;      ///< below [optimize.mpcc]: "sigma_final"
   std::string_view expects;  ///< "a number > 0"
@@ -21,7 +21,7 @@ struct MpccField {
   void (*record)(const solver::SolveOptions&, std::string_view key, result::OptionRecord&);
 };
 
-/// All of them, in the order of the documentation.
+/// Returns all of them, in the order of the documentation.
 [[nodiscard]] std::span<const MpccField> mpcc_fields();
 
 /// Changes one option.
@@ -31,7 +31,7 @@ struct MpccField {
 [[nodiscard]] Expected<void> set_mpcc_option(solver::SolveOptions& options, std::string_view key,
                                              const result::OptionValue& value);
 
-/// What is wrong between options that are fine one by one: sigma_final above sigma_initial.
+/// Finds what is wrong between options that are fine one by one: sigma_final above sigma_initial.
 [[nodiscard]] Expected<void> check_mpcc_options(const solver::SolveOptions& options);
 
 }  // namespace saltus::pipeline

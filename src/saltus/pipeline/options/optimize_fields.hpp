@@ -17,8 +17,8 @@
 
 namespace saltus::pipeline {
 
-/// One option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = VALUE) and
-/// on the command line (--set optimize.mpcc.sigma_final=VALUE).
+/// Holds one option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = VALUE)
+/// and on the command line (--set optimize.mpcc.sigma_final=VALUE).
 struct OptimizeField {
   std::string key;      ///< dotted, below [optimize]
   std::string expects;  ///< "a number > 0"
@@ -29,23 +29,23 @@ struct OptimizeField {
   std::function<void(const OptimizeOptions&, std::string_view key, result::OptionRecord&)> record;
 };
 
-/// All options of an optimisation, in the order of the documentation.
+/// Returns all options of an optimisation, in the order of the documentation.
 [[nodiscard]] std::span<const OptimizeField> optimize_fields();
 
-/// Keys of optimize_fields().
+/// Returns keys of optimize_fields().
 [[nodiscard]] std::vector<std::string> optimize_keys();
 
-/// A key of [optimize] that states the problem: an expression, a list of them, or a table.
+/// Holds a key of [optimize] that states the problem: an expression, a list of them, or a table.
 struct ProblemKey {
   std::string_view key;      ///< "terminal_cost"
   std::string_view expects;  ///< "an expression"
   std::string_view doc;      ///< one sentence
 };
 
-/// All keys of [optimize] that are not options, in the order of the documentation.
+/// Returns all keys of [optimize] that are not options, in the order of the documentation.
 [[nodiscard]] std::span<const ProblemKey> problem_keys();
 
-/// The options with one of them replaced.
+/// Returns the options with one of them replaced.
 /// @param key    dotted, below [optimize]: "elements", "mpcc.tolerance"
 /// @param value  as written; integers are taken where numbers are expected
 /// @return the options, or unknown_name (with the nearest known keys, those of the problem among them), invalid_option
@@ -53,7 +53,7 @@ struct ProblemKey {
 [[nodiscard]] Expected<OptimizeOptions> with_value(OptimizeOptions options, std::string_view key,
                                                    const result::OptionValue& value);
 
-/// Every option with its value in force, under its full name ("optimize.mpcc.tolerance"), for Result::options.
+/// Returns every option with its value in force, under its full name ("optimize.mpcc.tolerance"), for Result::options.
 [[nodiscard]] result::OptionRecord option_record(const OptimizeOptions& options);
 
 /// Checks the options against each other and against the problem: control_intervals given, elements and references of
@@ -63,10 +63,10 @@ struct ProblemKey {
 [[nodiscard]] std::optional<OptionProblem> find_problem(const OptimizeOptions& options,
                                                         const model::OcpDescription& problem);
 
-/// Two lines per option, as options_help() of a simulation.
+/// Writes two lines per option, as options_help() of a simulation.
 [[nodiscard]] std::string optimize_options_help();
 
-/// The part of docs/options.md that is about [optimize].
+/// Writes the part of docs/options.md that is about [optimize].
 [[nodiscard]] std::string optimize_options_page();
 
 }  // namespace saltus::pipeline

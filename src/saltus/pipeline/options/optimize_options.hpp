@@ -14,7 +14,7 @@ namespace saltus::pipeline {
 
 enum class StartValues { neutral, simulated };
 
-/// The numerical keys of [optimize] and [optimize.mpcc]; defaults as in docs/options.md.
+/// Holds the numerical keys of [optimize] and [optimize.mpcc]; defaults as in docs/options.md.
 struct OptimizeOptions {
   long control_intervals = 0;     ///< >= 1; there is no default
   std::vector<long> elements{3};  ///< one number, or one per interval

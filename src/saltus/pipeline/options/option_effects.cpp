@@ -4,8 +4,12 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/enum_names.hpp"
+
 namespace saltus::pipeline {
 namespace {
+
+constexpr EnumNames<Method::smoothed> method_names("event", "fesd", "timestepping", "smoothed");
 
 /// Of the method "event", which the other methods do not look at; "smoothed" takes its steps with that engine.
 std::string without_event_method(Method method, std::string_view key) {
@@ -31,19 +35,7 @@ std::string within_elements(const SimulateOptions& options, std::string_view key
 
 }  // namespace
 
-std::string_view name(Method method) {
-  switch (method) {
-    case Method::event:
-      return "event";
-    case Method::fesd:
-      return "fesd";
-    case Method::timestepping:
-      return "timestepping";
-    case Method::smoothed:
-      return "smoothed";
-  }
-  __builtin_unreachable();
-}
+std::string_view name(Method method) { return method_names(method); }
 
 bool is_of_method(const SimulateOptions& options, std::string_view key) {
   return key.substr(0, key.find('.')) == name(options.method) && key.find('.') != std::string_view::npos;

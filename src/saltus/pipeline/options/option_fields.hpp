@@ -14,9 +14,8 @@
 
 namespace saltus::pipeline {
 
-/// One option a person may write. Spelled the same in TOML ([simulate.event] integrator = VALUE) and on the command
-/// line
-/// (--set simulate.event.integrator=VALUE).
+/// Holds one option a person may write. Spelled the same in TOML ([simulate.event] integrator = VALUE) and on the
+/// command line (--set simulate.event.integrator=VALUE).
 struct OptionField {
   std::string_view key;      ///< dotted, below [simulate]; a final `*` stands for a name of the model
   std::string_view expects;  ///< "a number > 0"
@@ -27,13 +26,13 @@ struct OptionField {
   void (*record)(const SimulateOptions&, std::string_view key, result::OptionRecord&);
 };
 
-/// All options of a simulation, in the order of the documentation.
+/// Returns all options of a simulation, in the order of the documentation.
 [[nodiscard]] std::span<const OptionField> simulate_fields();
 
-/// Keys of simulate_fields(), without those with a `*`.
+/// Returns keys of simulate_fields(), without those with a `*`.
 [[nodiscard]] std::vector<std::string> simulate_keys();
 
-/// The options with one of them replaced.
+/// Returns the options with one of them replaced.
 /// @param key    dotted, below [simulate]: "rtol", "event.integrator", "initial_mode.slip"
 /// @param value  as written; integers are taken where numbers are expected
 /// @return the options, or unknown_name (with the nearest known keys), invalid_option or not_available, each naming
@@ -41,16 +40,16 @@ struct OptionField {
 [[nodiscard]] Expected<SimulateOptions> with_value(SimulateOptions options, std::string_view key,
                                                    const result::OptionValue& value);
 
-/// Every option with its value in force, under its full name, for Result::options.
+/// Returns every option with its value in force, under its full name, for Result::options.
 [[nodiscard]] result::OptionRecord option_record(const SimulateOptions& options);
 
-/// What is wrong between options that are fine one by one, and the key (below [simulate]) that shows it best.
+/// Holds what is wrong between options that are fine one by one, and the key (below [simulate]) that shows it best.
 struct OptionProblem {
   std::string key;
   Error error;
 };
 
-/// Rows an output grid asks for between two times, both ends among them; 0 for every step.
+/// Returns the number of rows an output grid asks for between two times, both ends among them; 0 for every step.
 [[nodiscard]] double number_of_rows(const OutputGrid& grid, double begin, double end);
 
 /// Checks the options against each other: `until` given and after `from`, rtol + atol > 0, output times within
@@ -58,13 +57,13 @@ struct OptionProblem {
 /// @return the first problem, or nullopt if a simulation may start.
 [[nodiscard]] std::optional<OptionProblem> find_problem(const SimulateOptions& options);
 
-/// Two lines per option: key, what is expected and default; meaning. For --help.
+/// Writes two lines per option: key, what is expected and default; meaning. For --help.
 [[nodiscard]] std::string options_help();
 
-/// The page docs/options.md.
+/// Writes the page docs/options.md.
 [[nodiscard]] std::string options_page();
 
-/// A value as a person would write it in a model file.
+/// Writes a value as a person would write it in a model file.
 [[nodiscard]] std::string to_text(const result::OptionValue& value);
 
 }  // namespace saltus::pipeline

@@ -27,7 +27,7 @@ inline Error out_of_range(std::string_view expected, const OptionValue& found) {
   return {ErrorCode::invalid_option, fmt::format("expected {}, found {}", expected, to_text(found)), "", {}, {}};
 }
 
-/// The number a value states, whether it was written 1 or 1.0; NaN if it is none.
+/// Returns the number a value states, whether it was written 1 or 1.0; NaN if it is none.
 inline double number_in(const OptionValue& value) {
   if (const auto* real = std::get_if<double>(&value)) return *real;
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
@@ -99,7 +99,7 @@ void record_truth(const Options& options, std::string_view key, OptionRecord& re
   record.emplace_back(key, bool{access(options)});
 }
 
-/// The spellings of an enum, and what they stand for.
+/// Holds the spellings of an enum, and what they stand for.
 template <class Enum, std::size_t n>
 struct Choices {
   std::array<std::string_view, n> names;
@@ -127,7 +127,25 @@ void record_choice(const Options& options, std::string_view key, OptionRecord& r
   record.emplace_back(key, std::string(choices.names[at(position - choices.values.begin())]));
 }
 
-/// [simulate.fesd] and [simulate.timestepping].
+/// Makes the rows of options of a simulation that are numbers, counts, truths or words.
+template <auto access, Range range>
+constexpr OptionField number_field(std::string_view key, std::string_view expects, std::string_view doc) {
+  return {key, expects, doc, set_number<access, range>, record_number<access>};
+}
+template <auto access>
+constexpr OptionField count_field(std::string_view key, std::string_view expects, std::string_view doc) {
+  return {key, expects, doc, set_count<access>, record_count<access>};
+}
+template <auto access>
+constexpr OptionField truth_field(std::string_view key, std::string_view expects, std::string_view doc) {
+  return {key, expects, doc, set_truth<access>, record_truth<access>};
+}
+template <auto access, const auto& choices>
+constexpr OptionField choice_field(std::string_view key, std::string_view expects, std::string_view doc) {
+  return {key, expects, doc, set_choice<access, choices>, record_choice<access, choices>};
+}
+
+/// Returns the fields of [simulate.fesd] and [simulate.timestepping].
 [[nodiscard]] std::span<const OptionField> element_fields();
 
 }  // namespace saltus::pipeline

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "saltus/discretization/fesd_options.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::pipeline {
@@ -16,7 +17,7 @@ using Integrator = ode::Method;
 enum class Native { automatic, on, off };
 enum class Selection { active_dominant, passive_dominant, scaled, report };
 
-/// Rows of the trajectory beside the two of every event.
+/// Asks for rows of the trajectory beside the two of every event.
 struct Automatic {};  ///< at steps and, between them, as many as keep straight lines close to the solution
 struct EveryStep {};
 struct EveryInterval {
@@ -30,13 +31,13 @@ struct AtTimes {
 };
 using OutputGrid = std::variant<Automatic, EveryStep, EveryInterval, NumberOfPoints, AtTimes>;
 
-/// Columns of the rows: names, or patterns in which * stands for any letters; nullopt: all.
+/// Holds columns of the rows: names, or patterns in which * stands for any letters; nullopt: all.
 struct KeptNames {
   std::optional<std::vector<std::string>> states;    ///< of x
   std::optional<std::vector<std::string>> surfaces;  ///< switching functions, of alpha and mode
 };
 
-/// [simulate.event]
+/// Holds [simulate.event].
 struct EventOptions {
   Integrator integrator = Integrator::dopri5;
   std::optional<double> max_step;  ///< none by default
@@ -47,27 +48,18 @@ struct EventOptions {
   long members = 0;         ///< followed of every family of solutions (later departures, spirals), if others are
 };
 
-/// [simulate.smoothed]
+/// Holds [simulate.smoothed].
 struct SmoothedOptions {
   double epsilon = 1e-6;  ///< half width of the layer around every surface, in the units of its switching function
 };
 
-enum class Scheme { radau_iia, gauss_legendre, lobatto_iiia, lobatto_iiic, explicit_rk };
-enum class Representation { integral, differential };
+using Scheme = discretization::TableauFamily;
 enum class Reformulation { step, stewart };
-enum class CrossComplementarity { stage_stage, fe_stage, stage_fe, fe_fe, paper };
-enum class StepEquilibration {
-  none,
-  heuristic_mean,
-  heuristic_diff,
-  l2_relaxed,
-  l2_relaxed_scaled,
-  direct,
-  mlcp,
-  paper
-};
+using discretization::CrossComplementarity;
+using discretization::Representation;
+using discretization::StepEquilibration;
 
-/// [simulate.fesd], [simulate.timestepping]
+/// Holds [simulate.fesd], [simulate.timestepping].
 struct ElementOptions {
   Scheme scheme = Scheme::radau_iia;
   long stages = 2;
@@ -85,7 +77,8 @@ struct ElementOptions {
   bool sensitivities = false;       ///< derivatives of the end state
 };
 
-/// [simulate]; defaults as in docs/options.md. `until` has none: it must be given in the file or on the command line.
+/// Holds [simulate]; defaults as in docs/options.md. `until` has none: it must be given in the file or on the command
+/// line.
 struct SimulateOptions {
   std::optional<double> until;
   double from = 0.0;

@@ -6,11 +6,11 @@
 
 namespace saltus::pipeline {
 
-/// The problem over Ocp::physical instead of the frozen system: controls and constraints are the same ones.
+/// Returns the problem over Ocp::physical instead of the frozen system: controls and constraints are the same ones.
 [[nodiscard]] model::Ocp physical_ocp(const model::Ocp& ocp);
 
-/// The path in physical time over the states of Ocp::physical. At nodes a hysteresis is 0 or 1, closed gaps are 0, and
-/// modes of contacts are open: the event engine finds them.
+/// Returns the path in physical time over the states of Ocp::physical. At nodes a hysteresis is 0 or 1, closed gaps are
+/// 0, and modes of contacts are open: the event engine finds them.
 /// @param run  trajectory and events of the result, in physical time
 [[nodiscard]] Expected<OptimizedPath> physical_path(const model::Ocp& ocp, const OptimizedPath& path,
                                                     const result::Result& run);

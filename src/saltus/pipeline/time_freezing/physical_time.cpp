@@ -135,6 +135,18 @@ class PhysicalTime {
     return modes;
   }
 
+  /// States, modes and selections of the user's alone.
+  void keep_columns(Event& event) const {
+    for (auto* mode : {&event.mode_before, &event.mode_after}) {
+      if (*mode) *mode = kept(**mode);
+    }
+    for (auto* alpha : {&event.alpha_before, &event.alpha_after}) {
+      if (*alpha) *alpha = kept(**alpha);
+    }
+    event.x = shown_states(system_, event.x);
+    event.x_after = shown_states(system_, event.x_after);
+  }
+
   /// All events of numerical time at one physical time.
   void take_events(const std::vector<Event>& here, double t) {
     Event event = here.front();
@@ -156,14 +168,7 @@ class PhysicalTime {
     }
     const bool decided = take_hysteresis(event) || take_impact(event) || (has_modes && take_contacts(event));
     if (!decided) take_surfaces(here, event);
-    for (auto* mode : {&event.mode_before, &event.mode_after}) {
-      if (*mode) *mode = kept(**mode);
-    }
-    for (auto* alpha : {&event.alpha_before, &event.alpha_after}) {
-      if (*alpha) *alpha = kept(**alpha);
-    }
-    event.x = shown_states(system_, event.x);
-    event.x_after = shown_states(system_, event.x_after);
+    keep_columns(event);
     if (decided) {
       event.unique = true;
       event.alternatives.clear();
@@ -174,14 +179,7 @@ class PhysicalTime {
       if (one.kind != EventKind::user) continue;
       Event user = one;
       user.t = t;
-      user.x = shown_states(system_, one.x);
-      user.x_after = shown_states(system_, one.x_after);
-      for (auto* mode : {&user.mode_before, &user.mode_after}) {
-        if (*mode) *mode = kept(**mode);
-      }
-      for (auto* alpha : {&user.alpha_before, &user.alpha_after}) {
-        if (*alpha) *alpha = kept(**alpha);
-      }
+      keep_columns(user);
       run_.events.push_back(std::move(user));
     }
   }

@@ -9,7 +9,7 @@
 
 namespace saltus::pipeline {
 
-/// What lies between two rows of one physical time is left out; what the state did there is one event: a jump, an
+/// Leaves out what lies between two rows of one physical time; what the state did there is one event: a jump, an
 /// impact, or a change of what touches. Columns that freezing has added are left out, too.
 /// @param system  a frozen one
 /// @param standing  a clock that gains less stands; at least its rounding
@@ -18,7 +18,7 @@ namespace saltus::pipeline {
 [[nodiscard]] std::vector<std::string> to_physical_time(const model::System& system, double standing,
                                                         result::Result& run);
 
-/// The states of a frozen system that are columns of a result, from all.
+/// Returns the states of a frozen system that are columns of a result, from all.
 [[nodiscard]] std::vector<double> shown_states(const model::System& system, const std::vector<double>& x);
 
 }  // namespace saltus::pipeline

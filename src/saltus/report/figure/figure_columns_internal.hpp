@@ -32,26 +32,26 @@ inline constexpr std::array<std::string_view, 6> curves{"#1f66b0", "#11806a", "#
                                                         "#6b7400", "#5a6b7d", "#b03a5b"};
 }  // namespace paper
 
-/// All columns of the trajectory and the time behind them; rows that are too short count as not a number.
+/// Returns all columns of the trajectory and the time behind them; rows that are too short count as not a number.
 [[nodiscard]] std::vector<FigureColumn> figure_columns(const result::Result& result);
 
-/// The name with its unit: "x [m]".
+/// Returns the name with its unit: "x [m]".
 [[nodiscard]] std::string title_of(const FigureColumn& column);
 
-/// Least and greatest finite value; {0, 0} if there is none.
+/// Returns the least and greatest finite value; {0, 0} if there is none.
 [[nodiscard]] Range range_of(const std::vector<double>& values);
-/// A range with a little room; one that is a point gets room of its own size.
+/// Returns a range with a little room; one that is a point gets room of its own size.
 [[nodiscard]] Range roomy(Range range);
-/// Whether values change by more than rounding.
+/// Returns whether values change by more than rounding.
 [[nodiscard]] bool moves(const std::vector<double>& values);
-/// Whether values change at doubled rows only, as discrete states do.
+/// Returns whether values change at doubled rows only, as discrete states do.
 [[nodiscard]] bool is_discrete(const std::vector<double>& t, const std::vector<double>& values);
 
-/// Whether any switching function, or group by `indicator`, slides between a row and the next.
+/// Returns whether any switching function, or group by `indicator`, slides between a row and the next.
 [[nodiscard]] bool slides(const result::Trajectory& trajectory, std::size_t row);
 
-/// Rows [begin, end) less than a pixel apart in which a curve jumps to and fro: lines would show something slower. The
-/// mean over time is one of whole periods, from a jump upwards to another one.
+/// Holds rows [begin, end) less than a pixel apart in which a curve jumps to and fro: lines would show something
+/// slower. The mean over time is one of whole periods, from a jump upwards to another one.
 struct Chattering {
   std::size_t begin = 0, end = 0;
   double from = 0.0, to = 0.0, low = 0.0, high = 0.0, mean = 0.0;
@@ -60,9 +60,9 @@ struct Chattering {
 [[nodiscard]] std::vector<Chattering> chattering_pixels(const std::vector<double>& t, const std::vector<double>& y,
                                                         double pixel, double least_jump);
 
-/// A curve x, y over t cut into lines: `line` gets its pieces, with whether they slide, `jump` both ends of every jump.
-/// Rows closer together than `pixel` in t are thinned to the first, the least, the greatest and the last of y; those
-/// of `left_out` are not drawn.
+/// Holds a curve x, y over t cut into lines: `line` gets its pieces, with whether they slide, `jump` both ends of every
+/// jump. Rows closer together than `pixel` in t are thinned to the first, the least, the greatest and the last of y;
+/// those of `left_out` are not drawn.
 struct CurvePieces {
   struct Piece {
     std::vector<Point> points;
@@ -75,7 +75,7 @@ struct CurvePieces {
                                        const std::vector<double>& y, const Plot& plot, double pixel, bool steps,
                                        const std::vector<Chattering>& left_out = {});
 
-/// Lines, and dotted the jumps in a colour of their own.
+/// Draws lines, and dotted the jumps in a colour of their own.
 /// @param wide  of lines that slide, in their colour; 0 draws them as all others
 void draw_pieces(Svg& svg, const CurvePieces& pieces, std::string_view color, std::string_view jump_color, double wide);
 
@@ -85,17 +85,17 @@ void draw_pieces(Svg& svg, const CurvePieces& pieces, std::string_view color, st
 /// Panels, and bands, of a figure at most: a sheet of paper is no longer. Letters of a line beside them.
 inline constexpr std::size_t most_panels = 24, letters_beside = 18;
 
-/// Switching functions that have a band: all if they are few, else those whose mode changes.
+/// Returns the switching functions that have a band: all if they are few, else those whose mode changes.
 [[nodiscard]] std::vector<std::size_t> banded(const result::Result& result);
-/// Bands of switching functions: below their middle psi < 0, above it psi > 0, all of them sliding; where they chatter
-/// each half is as full as its part of the time, and the middle is hatched.
+/// Draws bands of switching functions: below their middle psi < 0, above it psi > 0, all of them sliding; where they
+/// chatter each half is as full as its part of the time, and the middle is hatched.
 /// @return where the next thing can stand
 double draw_bands(Svg& svg, const result::Result& result, const std::vector<std::size_t>& bands, const Plot& time,
                   double top);
 
-/// The drawing over time of these columns, one below the other; of none those that move, as the page draws them.
+/// Draws these columns over time, one below the other; of none those that move, as the page draws them.
 [[nodiscard]] std::string draw_over_time(const result::Result& result, const std::vector<FigureColumn>& columns);
-/// One column over another one, with the surfaces of the plane, its vector field and the events.
+/// Draws one column over another one, with the surfaces of the plane, its vector field and the events.
 [[nodiscard]] std::string draw_in_a_plane(const result::Result& result, const FigureColumn& x, const FigureColumn& y);
 
 }  // namespace saltus::report

@@ -16,16 +16,16 @@ struct LegendEntry {
   Mark mark = Mark::line;
 };
 
-/// Whether the state jumps at events of a kind.
+/// Returns whether the state jumps at events of a kind.
 [[nodiscard]] bool is_jump(result::EventKind kind);
 
-/// What sorts of events there are; those that are not unique count as that only.
+/// Says what sorts of events there are; those that are not unique count as that only.
 struct EventSorts {
   bool switches = false, jumps = false, not_unique = false;
 };
 [[nodiscard]] EventSorts sorts_of(const result::Events& events);
 
-/// Entries side by side, in as many lines as they need, from `top` on; the picture grows by them.
+/// Draws entries side by side, in as many lines as they need, from `top` on; the picture grows by them.
 /// @param left, right  ends of the lines
 void draw_legend(Svg& svg, const std::vector<LegendEntry>& entries, double left, double right, double top);
 

@@ -12,14 +12,14 @@ struct Range {
   double from = 0.0, to = 1.0;
 };
 
-/// What a line is drawn with; the colours are those of the page on paper.
+/// Holds what a line is drawn with; the colours are those of the page on paper.
 struct Pen {
   std::string_view color = "#1c2430";
   double width = 1.0;
   std::string_view dash{};
 };
 
-/// Of a place on paper in pixels: x to the right, y downwards.
+/// Holds the coordinates of a place on paper in pixels: x to the right, y downwards.
 struct Point {
   double x = 0.0, y = 0.0;
 };
@@ -30,15 +30,15 @@ inline constexpr std::string_view hatched = "url(#hatch)";
 class Svg {
  public:
   Svg(double width, double height) : width_(width), height_(height) {}
-  /// The inside of a closed line.
+  /// Fills the inside of a closed line.
   void area(const std::vector<Point>& points, std::string_view fill);
-  /// A connected line; nothing of fewer than two points.
+  /// Draws a connected line; nothing of fewer than two points.
   void path(const std::vector<Point>& points, const Pen& pen);
   void rectangle(Point corner, double width, double height, std::string_view fill, std::string_view stroke = "none");
   void disc(Point centre, double radius, std::string_view fill, std::string_view stroke);
   /// @param anchor  start, middle or end
   void text(Point at, std::string_view words, std::string_view anchor, std::string_view color, double turned = 0.0);
-  /// What follows is drawn only within a rectangle; until the next call, or with nothing.
+  /// Draws what follows only within a rectangle; until the next call, or with nothing.
   void clip(std::optional<Point> corner, double width = 0.0, double height = 0.0);
   void make_taller(double by) { height_ += by; }
   [[nodiscard]] std::string document(std::string_view title) const;
@@ -52,10 +52,10 @@ class Svg {
 
 void draw_cross(Svg& svg, Point centre, const Pen& pen);
 
-/// About `count` round numbers within a range, two at least: multiples of 1, 2 or 5 times a power of ten.
+/// Returns about `count` round numbers within a range, two at least: multiples of 1, 2 or 5 times a power of ten.
 [[nodiscard]] std::vector<double> round_numbers(Range range, int count);
 
-/// A rectangle on paper with a range along each of its sides.
+/// Holds a rectangle on paper with a range along each of its sides.
 struct Plot {
   Point corner;
   double width = 0.0, height = 0.0;
@@ -67,7 +67,7 @@ struct Plot {
   }
 };
 
-/// Frame, grid and numbers of the vertical axis, and of the horizontal one if it is `labelled`.
+/// Draws frame, grid and numbers of the vertical axis, and of the horizontal one if it is `labelled`.
 void draw_axes(Svg& svg, const Plot& plot, bool labelled);
 
 }  // namespace saltus::report

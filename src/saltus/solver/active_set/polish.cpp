@@ -57,12 +57,31 @@ std::vector<ActiveSide> without_biactive(std::vector<ActiveSide> sides) {
   return sides;
 }
 
+/// A row that is zero is an equation of its own, or says that variables are at their bounds.
+enum class RowRole { none, own, by_bounds };
+
+std::vector<RowRole> roles_of_rows(const mpcc::Problem& problem, const std::vector<ActiveSide>& sides) {
+  const int n_g = problem.constraints();
+  const int pairs = problem.pairs();
+  const auto& rows = problem.constraint_bounds();
+  std::vector<RowRole> role(at(problem.rows()), RowRole::none);
+  for (int row = 0; row < n_g; ++row) {
+    if (rows.lower[row] == rows.upper[row]) role[at(row)] = RowRole::own;
+  }
+  for (int side = 0; side < 2 * pairs; ++side) {
+    const ActiveSide zero = sides[at(side % pairs)];
+    const bool is_zero = zero == ActiveSide::biactive || zero == (side < pairs ? ActiveSide::G : ActiveSide::H);
+    const bool is_implied = problem.signs()[at(side)] == mpcc::Sign::implied;
+    if (is_zero) role[at(n_g + side)] = is_implied ? RowRole::by_bounds : RowRole::own;
+  }
+  return role;
+}
+
 }  // namespace
 
 ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, const std::vector<ActiveSide>& sides,
                            double negligible) {
   const int n_g = problem.constraints();
-  const int pairs = problem.pairs();
   const auto& rows = problem.constraint_bounds();
   const auto& box = problem.variable_bounds();
   Eigen::VectorXd c(problem.rows());
@@ -70,30 +89,19 @@ ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, cons
   problem.functions(w, c);
   problem.jacobian(w, entries);
 
-  enum class Role { none, own, by_bounds };
-  std::vector<Role> role(static_cast<std::size_t>(problem.rows()), Role::none);
+  const std::vector<RowRole> role = roles_of_rows(problem, sides);
   std::vector<int> place(role.size(), -1);
   std::vector<double> residual;
   for (int row = 0; row < problem.rows(); ++row) {
-    const auto r = static_cast<std::size_t>(row);
-    if (row < n_g) {
-      role[r] = rows.lower[row] == rows.upper[row] ? Role::own : Role::none;
-    } else {
-      const int side = row - n_g;
-      const ActiveSide zero = sides[at(side % pairs)];
-      const bool is_zero = zero == ActiveSide::biactive || zero == (side < pairs ? ActiveSide::G : ActiveSide::H);
-      const bool implied = problem.signs()[at(side)] == mpcc::Sign::implied;
-      if (is_zero) role[r] = implied ? Role::by_bounds : Role::own;
-    }
-    if (role[r] != Role::own) continue;
-    place[r] = static_cast<int>(residual.size());
+    if (role[at(row)] != RowRole::own) continue;
+    place[at(row)] = static_cast<int>(residual.size());
     residual.push_back(c[row] - (row < n_g ? rows.lower[row] : 0.0));
   }
   const auto& pattern = problem.jacobian_pattern();
   std::vector<int> fixed(static_cast<std::size_t>(problem.variables()), 0);  // -1, 1: at its lower, upper bound
   for (std::size_t e = 0; e < pattern.row.size(); ++e) {
     const double slope = entries[static_cast<Eigen::Index>(e)];
-    if (role[at(pattern.row[e])] != Role::by_bounds || std::abs(slope) <= negligible) continue;
+    if (role[at(pattern.row[e])] != RowRole::by_bounds || std::abs(slope) <= negligible) continue;
     fixed[at(pattern.column[e])] = slope > 0.0 ? -1 : 1;
   }
   std::vector<int> fixed_variables;

@@ -7,13 +7,13 @@
 
 namespace saltus::solver::active_set {
 
-/// The equations that are left when every pair keeps the side that is zero: g = 0 for rows with equal bounds, G_i = 0
-/// or H_i = 0, both where the pair is biactive.
+/// Holds the equations that are left when every pair keeps the side that is zero: g = 0 for rows with equal bounds, G_i
+/// = 0 or H_i = 0, both where the pair is biactive.
 struct ActiveSystem {
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;  ///< residuals by variables
 };
-/// At w, for given sides (mpcc::active_sides); pairs with ActiveSide::none contribute nothing.
+/// Evaluates them at w, for given sides (mpcc::active_sides); pairs with ActiveSide::none contribute nothing.
 [[nodiscard]] ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w,
                                          const std::vector<mpcc::ActiveSide>& sides, double negligible);
 
@@ -32,7 +32,7 @@ struct PolishOptions {
   int iterations = 20;
 };
 
-/// Gauss-Newton steps of least norm on the active system, so that what it leaves undetermined stays where it is.
+/// Takes Gauss-Newton steps of least norm on the active system, so that what it leaves undetermined stays where it is.
 /// Biactive pairs are held at both sides first; if that has no solution, they are left out, and what they become
 /// decides. `w` is changed only if the outcome is `polished`. The objective is not looked at: for problems whose
 /// solutions are their feasible points with given active sides. Cost: per step a complete orthogonal factorisation of

@@ -6,22 +6,23 @@
 
 namespace saltus::solver::certificate {
 
-/// Which pairs are biactive at w (both sides <= 10 tolerance), and which of them have a choice: all pairs of their
-/// group are biactive.
+/// Finds which pairs are biactive at w (both sides <= 10 tolerance), and which of them have a choice: all pairs of
+/// their group are biactive.
 /// @param sides  the zero side of each pair, G or H
 [[nodiscard]] PairStates pair_states(mpcc::Problem& problem, ConstVectorView w,
                                      const std::vector<mpcc::ActiveSide>& sides, double tolerance);
 
-/// The strongest type that the signs of the multipliers on biactive pairs allow. A multiplier counts as zero up to
-/// 10 tolerance, relative to the largest of them, at least 1.
+/// Returns the strongest type that the signs of the multipliers on biactive pairs allow. A multiplier counts as zero up
+/// to 10 tolerance, relative to the largest of them, at least 1.
 [[nodiscard]] result::StationarityType stationarity_type(const MpccMultipliers& multipliers,
                                                          const std::vector<bool>& biactive, double tolerance);
 
-/// The largest violation of a bound or row over max(1, |its bound|), and of G >= 0, H >= 0; NaN if not finite.
+/// Returns the largest violation of a bound or row over max(1, |its bound|), and of G >= 0, H >= 0; NaN if not finite.
 [[nodiscard]] double scaled_infeasibility(mpcc::Problem& problem, ConstVectorView w);
-/// max_i min(|G_i|, |H_i|); NaN if not finite.
+/// Returns max_i min(|G_i|, |H_i|); NaN if not finite.
 [[nodiscard]] double complementarity(mpcc::Problem& problem, ConstVectorView w);
-/// "name violates its bound by 0.3, ...": the worst bounds, rows and pairs that are violated by more than the tolerance.
+/// Returns "name violates its bound by 0.3, ...": the worst bounds, rows and pairs that are violated by more than the
+/// tolerance.
 [[nodiscard]] std::string worst_rows(mpcc::Problem& problem, ConstVectorView w, double tolerance);
 
 }  // namespace saltus::solver::certificate

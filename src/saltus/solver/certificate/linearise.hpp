@@ -8,8 +8,8 @@
 
 namespace saltus::solver::certificate {
 
-/// min grad f'd over the linearised constraints, |d|_inf <= radius, in units of the radius; the open groups of pairs as
-/// disjunctions, the sides of all other pairs as they are.
+/// States min grad f'd over the linearised constraints, |d|_inf <= radius, in units of the radius; the open groups of
+/// pairs as disjunctions, the sides of all other pairs as they are.
 struct Linearisation {
   LpccProblem problem;
   double scale = 1.0;                    ///< max(1, |grad f|_inf)

@@ -64,6 +64,17 @@ class Holding {
   Eigen::VectorXd value_;
 };
 
+void hold_closure(Holding& holding, const mpcc::Bounds& bounds, const mpcc::BranchClosure& closure,
+                  const mpcc::BranchClosure::Freedom& freedom) {
+  for (const auto* at_lower : {&closure.at_lower, &freedom.at_lower}) {
+    for (const int i : *at_lower) holding.set(i, Hold::closure, bounds.lower[i]);
+  }
+  for (const auto* at_upper : {&closure.at_upper, &freedom.at_upper}) {
+    for (const int i : *at_upper) holding.set(i, Hold::closure, bounds.upper[i]);
+  }
+  for (const auto& [i, j] : closure.equal) holding.make_equal(i, j);
+}
+
 /// An implied side is zero if and only if all its variables are at the bounds that it measures distances from.
 void hold_side(Holding& holding, const mpcc::Bounds& bounds, const RowMatrix& jacobian, int row) {
   for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
@@ -133,7 +144,6 @@ class RowList {
       upper_.push_back(upper);
       return;
     }
-    reduction_.dead_rows.push_back(row);
   }
   void finish() {
     reduction_.row_bounds.lower = Eigen::Map<const Eigen::VectorXd>(lower_.data(), index(lower_.size()));
@@ -161,13 +171,7 @@ Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& si
   const mpcc::BranchClosure closure = problem.close_branch(sides);
   Holding holding(problem);
   const auto freedom = closing == Closing::whole ? closure.freedom : mpcc::BranchClosure::Freedom{};
-  for (const auto* at_lower : {&closure.at_lower, &freedom.at_lower}) {
-    for (const int i : *at_lower) holding.set(i, Hold::closure, bounds.lower[i]);
-  }
-  for (const auto* at_upper : {&closure.at_upper, &freedom.at_upper}) {
-    for (const int i : *at_upper) holding.set(i, Hold::closure, bounds.upper[i]);
-  }
-  for (const auto& [i, j] : closure.equal) holding.make_equal(i, j);
+  hold_closure(holding, bounds, closure, freedom);
 
   std::vector<int> zero_rows;
   std::vector<int> other_rows;

@@ -8,7 +8,7 @@
 
 namespace saltus::solver::crossover {
 
-/// Why a variable is none of the branch problem.
+/// Says why a variable is none of the branch problem.
 enum class Hold {
   free,     ///< it is one
   bounds,   ///< its bounds are equal
@@ -16,8 +16,8 @@ enum class Hold {
   closure,  ///< mpcc::BranchClosure says so
 };
 
-/// Where the variables and rows of a problem stand in its branch problem. Sides fix variables instead of adding rows:
-/// with full cross complementarity rows would be more than variables.
+/// Says where the variables and rows of a problem stand in its branch problem. Sides fix variables instead of adding
+/// rows: with full cross complementarity rows would be more than variables.
 struct Reduction {
   std::vector<int> place;   ///< of each variable; -1 if it is held. Equal ones have the same place
   std::vector<Hold> hold;   ///< of each variable
@@ -26,13 +26,12 @@ struct Reduction {
   mpcc::Bounds bounds;      ///< of each place
   std::vector<int> rows;    ///< of (g, G, H) that are left
   mpcc::Bounds row_bounds;
-  std::vector<int> dead_rows;  ///< of g and zero sides: without any free variable; they hold or they do not
 
   [[nodiscard]] int variables() const { return static_cast<int>(leader.size()); }
   [[nodiscard]] int equations() const;
 };
 
-/// Whether what a branch leaves open is fixed (BranchClosure::Freedom).
+/// Says whether what a branch leaves open is fixed (BranchClosure::Freedom).
 enum class Closing { whole, with_freedom };
 
 /// @param sides     of each pair: which is zero; `biactive` both, `none` leaves the pair out, as group -1 does
@@ -42,7 +41,7 @@ enum class Closing { whole, with_freedom };
                                const RowMatrix& jacobian, const Eigen::VectorXd& c,
                                Closing closing = Closing::whole);
 
-/// Whether side G (or H) of the pair is a zero one.
+/// Returns whether side G (or H) of the pair is a zero one.
 [[nodiscard]] inline bool is_zero_side(mpcc::ActiveSide side, mpcc::ActiveSide which) {
   return side == which || side == mpcc::ActiveSide::biactive;
 }

@@ -198,6 +198,28 @@ void set_bound_multipliers(NlpPoint& point, const Values& values, const ActiveSe
   }
 }
 
+/// What the optimality conditions of the active set lack.
+Eigen::VectorXd right_side_of(const NlpPoint& point, const Values& values, const ActiveSet& active) {
+  const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * point.y;
+  Eigen::VectorXd right(active.variables + active.rows);
+  for (Eigen::Index i = 0; i < slope.size(); ++i) {
+    if (active.column[at(i)] >= 0) right[active.column[at(i)]] = -slope[i];
+  }
+  for (Eigen::Index i = 0; i < values.c.size(); ++i) {
+    if (active.line[at(i)] >= 0) right[active.variables + active.line[at(i)]] = active.target[i] - values.c[i];
+  }
+  return right;
+}
+
+void add_correction(const Eigen::VectorXd& d, const ActiveSet& active, NlpPoint& point) {
+  for (Eigen::Index i = 0; i < point.w.size(); ++i) {
+    if (active.column[at(i)] >= 0) point.w[i] += d[active.column[at(i)]];
+  }
+  for (Eigen::Index i = 0; i < point.y.size(); ++i) {
+    if (active.line[at(i)] >= 0) point.y[i] += d[active.variables + active.line[at(i)]];
+  }
+}
+
 /// A multiplier of the wrong sign says that the active set was guessed wrong.
 bool has_right_signs(const NlpPoint& point, double tolerance) {
   return point.w.size() == 0 || std::min(point.z_lower.minCoeff(), point.z_upper.minCoeff()) >= -tolerance;
@@ -238,22 +260,10 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
     if (!(error < lost) || (step > 3 && error > 0.5 * last)) break;
     last = error;
     if (active.variables + active.rows == 0) break;
-    const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * trial.y;
-    Eigen::VectorXd right(active.variables + active.rows);
-    for (Eigen::Index i = 0; i < slope.size(); ++i) {
-      if (active.column[at(i)] >= 0) right[active.column[at(i)]] = -slope[i];
-    }
-    for (Eigen::Index i = 0; i < values.c.size(); ++i) {
-      if (active.line[at(i)] >= 0) right[active.variables + active.line[at(i)]] = active.target[i] - values.c[i];
-    }
-    const Eigen::VectorXd d = corrector.solve(system_of(nlp, trial, values, active), right);
+    const Eigen::VectorXd d =
+        corrector.solve(system_of(nlp, trial, values, active), right_side_of(trial, values, active));
     if (d.size() == 0 || !d.allFinite()) break;
-    for (Eigen::Index i = 0; i < slope.size(); ++i) {
-      if (active.column[at(i)] >= 0) trial.w[i] += d[active.column[at(i)]];
-    }
-    for (Eigen::Index i = 0; i < values.c.size(); ++i) {
-      if (active.line[at(i)] >= 0) trial.y[i] += d[active.variables + active.line[at(i)]];
-    }
+    add_correction(d, active, trial);
   }
   return best;
 }

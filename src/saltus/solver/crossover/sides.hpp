@@ -7,11 +7,11 @@
 
 namespace saltus::solver::crossover {
 
-/// Pairs whose zero side is the same (mpcc::Problem::pair_group), without those of group -1.
+/// Returns pairs whose zero side is the same (mpcc::Problem::pair_group), without those of group -1.
 [[nodiscard]] std::vector<std::vector<int>> groups_of(const mpcc::Problem& problem);
 
-/// Of each group the side whose sum is smaller: G or H, one per pair. A threshold in the values of single pairs does not
-/// tell: near the ends of an element both are small. Pairs of group -1 have their own smaller side.
+/// Chooses of each group the side whose sum is smaller: G or H, one per pair. A threshold in the values of single pairs
+/// does not tell: near the ends of an element both are small. Pairs of group -1 have their own smaller side.
 /// @param c  values of (g, G, H)
 [[nodiscard]] std::vector<mpcc::ActiveSide> smaller_sides(const mpcc::Problem& problem,
                                                           const std::vector<std::vector<int>>& groups,

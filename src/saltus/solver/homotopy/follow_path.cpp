@@ -1,29 +1,18 @@
 #include "saltus/solver/homotopy/follow_path.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/stopwatch.hpp"
 #include "saltus/solver/homotopy/relaxed_problem.hpp"
 
 namespace saltus::solver::homotopy {
 namespace {
 
 using result::Termination;
-
-/// A time limit may end the path; nothing else depends on the clock.
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 Expected<void> check(const PathOptions& options) {
   const auto& [initial, factor, last] = options.schedule;

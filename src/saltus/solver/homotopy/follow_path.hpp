@@ -14,14 +14,14 @@
 
 namespace saltus::solver::homotopy {
 
-/// sigma_0, sigma_0 factor, sigma_0 factor^2, ... down to sigma_final, which is the last.
+/// Gives sigma_0, sigma_0 factor, sigma_0 factor^2, ... down to sigma_final, which is the last.
 struct Schedule {
   double sigma_initial = 1.0;  ///< > 0
   double sigma_factor = 0.1;   ///< in (0, 1)
   double sigma_final = 1e-10;  ///< > 0, <= sigma_initial
 };
 
-/// What the next relaxed problem starts with: after a large step of sigma old multipliers can mislead.
+/// Says what the next relaxed problem starts with: after a large step of sigma old multipliers can mislead.
 enum class WarmStart { primal, primal_dual };
 
 struct PathOptions {
@@ -36,7 +36,7 @@ struct PathOptions {
   NlpOptions nlp;
 };
 
-/// One relaxed problem of the path, as it was left.
+/// Holds one relaxed problem of the path, as it was left.
 struct PathStep {
   double sigma = 0.0;
   NlpReport nlp;

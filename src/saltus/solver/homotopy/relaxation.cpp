@@ -5,9 +5,15 @@
 #include <numbers>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/enum_names.hpp"
 
 namespace saltus::solver::homotopy {
 namespace {
+
+constexpr EnumNames<Relaxation::kadrani> relaxations("scholtes", "fischer_burmeister", "natural_residual",
+                                                     "chen_chen_kanzow", "steffensen_ulbrich_sine",
+                                                     "steffensen_ulbrich_poly", "kanzow_schwartz", "lin_fukushima",
+                                                     "kadrani");
 
 PairFunction scholtes(double a, double b, double sigma) { return {a * b - sigma, b, a, 0.0, 1.0, 0.0, -1.0}; }
 
@@ -19,8 +25,9 @@ PairFunction fischer_burmeister(double a, double b, double sigma) {
   // a + b - root loses all digits where a b is small: ((a + b)^2 - root^2) / (a + b + root) does not.
   const double sum = a + b;
   const double value = sum > 0.0 ? (2.0 * a * b - s2) / (sum + root) : sum - root;
-  return {value,           1.0 - a / root, 1.0 - b / root, -(b * b + s2) / cube, a * b / cube, -(a * a + s2) / cube,
-          -1.0 / root, a / cube,       b / cube,       1.0 / cube};
+  return {
+      value,    1.0 - a / root, 1.0 - b / root, -(b * b + s2) / cube, a * b / cube, -(a * a + s2) / cube, -1.0 / root,
+      a / cube, b / cube,       1.0 / cube};
 }
 
 PairFunction natural_residual(double a, double b, double sigma) {
@@ -32,15 +39,13 @@ PairFunction natural_residual(double a, double b, double sigma) {
   const double curvature = 0.5 * s2 / cube;
   const double sum = a + b;
   const double value = 0.5 * (sum > 0.0 ? (4.0 * a * b - s2) / (sum + root) : sum - root);
-  return {value,       0.5 * (1.0 - slope), 0.5 * (1.0 + slope), -curvature, curvature, -curvature,
-          -1.0 / root, difference / cube,   -difference / cube,  2.0 / cube};
+  return {value,      0.5 * (1.0 - slope), 0.5 * (1.0 + slope), -curvature,         curvature,
+          -curvature, -1.0 / root,         difference / cube,   -difference / cube, 2.0 / cube};
 }
 
 PairFunction mean(const PairFunction& p, const PairFunction& q) {
-  return {0.5 * (p.value + q.value), 0.5 * (p.a + q.a),   0.5 * (p.b + q.b),
-          0.5 * (p.aa + q.aa),       0.5 * (p.ab + q.ab), 0.5 * (p.bb + q.bb),
-          0.5 * (p.s + q.s),         0.5 * (p.as + q.as), 0.5 * (p.bs + q.bs),
-          0.5 * (p.ss + q.ss)};
+  return {0.5 * (p.value + q.value), 0.5 * (p.a + q.a), 0.5 * (p.b + q.b),   0.5 * (p.aa + q.aa), 0.5 * (p.ab + q.ab),
+          0.5 * (p.bb + q.bb),       0.5 * (p.s + q.s), 0.5 * (p.as + q.as), 0.5 * (p.bs + q.bs), 0.5 * (p.ss + q.ss)};
 }
 
 /// |z| made twice differentiable inside of |z| < 1, with its derivatives.
@@ -67,11 +72,16 @@ PairFunction steffensen_ulbrich(double a, double b, double sigma, Smoothed (*smo
   const double second = curvature / t;
   const double t_s = 0.5 * t / sigma;
   const double of_t = z * slope - value;
-  return {a + b - t * value, 1.0 - slope,
-          1.0 + slope,       -second,
-          second,            -second,
-          of_t * t_s,        z * second * t_s,
-          -z * second * t_s, -z * z * second * t_s * t_s - of_t * 0.5 * t_s / sigma};
+  return {a + b - t * value,
+          1.0 - slope,
+          1.0 + slope,
+          -second,
+          second,
+          -second,
+          of_t * t_s,
+          z * second * t_s,
+          -z * second * t_s,
+          -z * z * second * t_s * t_s - of_t * 0.5 * t_s / sigma};
 }
 
 PairFunction kanzow_schwartz(double a, double b, double s) {
@@ -83,29 +93,7 @@ PairFunction kanzow_schwartz(double a, double b, double s) {
 
 }  // namespace
 
-std::string_view name(Relaxation relaxation) {
-  switch (relaxation) {
-    case Relaxation::scholtes:
-      return "scholtes";
-    case Relaxation::fischer_burmeister:
-      return "fischer_burmeister";
-    case Relaxation::natural_residual:
-      return "natural_residual";
-    case Relaxation::chen_chen_kanzow:
-      return "chen_chen_kanzow";
-    case Relaxation::steffensen_ulbrich_sine:
-      return "steffensen_ulbrich_sine";
-    case Relaxation::steffensen_ulbrich_poly:
-      return "steffensen_ulbrich_poly";
-    case Relaxation::kanzow_schwartz:
-      return "kanzow_schwartz";
-    case Relaxation::lin_fukushima:
-      return "lin_fukushima";
-    case Relaxation::kadrani:
-      return "kadrani";
-  }
-  return {};
-}
+std::string_view name(Relaxation relaxation) { return relaxations(relaxation); }
 
 int inequalities(Relaxation relaxation) { return relaxation == Relaxation::lin_fukushima ? 2 : 1; }
 

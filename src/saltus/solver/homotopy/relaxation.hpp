@@ -6,7 +6,7 @@
 
 namespace saltus::solver::homotopy {
 
-/// phi(a, b; sigma) <= 0 together with a, b >= 0; for sigma -> 0 the complementary points.
+/// Names functions phi(a, b; sigma) <= 0 together with a, b >= 0; for sigma -> 0 the complementary points.
 enum class Relaxation {
   scholtes,                 ///< a b - sigma
   fischer_burmeister,       ///< a + b - sqrt(a^2 + b^2 + s^2), s^2 = 2 sigma
@@ -24,19 +24,19 @@ inline constexpr std::array all_relaxations{
     Relaxation::kanzow_schwartz,  Relaxation::lin_fukushima,           Relaxation::kadrani,
 };
 
-/// The name of a relaxation in model files.
+/// Returns the name of a relaxation in model files.
 [[nodiscard]] std::string_view name(Relaxation relaxation);
 
-/// How many inequalities phi <= 0 the relaxation has: 2 for lin_fukushima, else 1.
+/// Returns how many inequalities phi <= 0 the relaxation has: 2 for lin_fukushima, else 1.
 [[nodiscard]] int inequalities(Relaxation relaxation);
 
-/// Whether phi has no second derivative but the mixed one, so that a and b each need no Hessian of their own.
+/// Returns whether phi has no second derivative but the mixed one, so that a and b each need no Hessian of their own.
 [[nodiscard]] bool is_bilinear(Relaxation relaxation);
 
-/// The lower bound of a and b that belongs to the relaxation: -s for kadrani, -inf for lin_fukushima, else 0.
+/// Returns the lower bound of a and b that belongs to the relaxation: -s for kadrani, -inf for lin_fukushima, else 0.
 [[nodiscard]] double lower_bound(Relaxation relaxation, double sigma);
 
-/// phi with its first and second derivatives, with those with respect to sigma, too: elastic problems vary it.
+/// Holds phi with its first and second derivatives, with those with respect to sigma, too: elastic problems vary it.
 struct PairFunction {
   double value = 0.0;
   double a = 0.0;

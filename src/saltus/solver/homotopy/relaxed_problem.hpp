@@ -10,17 +10,18 @@
 
 namespace saltus::solver::homotopy {
 
-/// min f   subject to   bounds, g, G >= l and H >= l where that is not implied, phi(G_i, H_i; sigma) <= 0,
-/// with rows in this order: g; the sides that are constrained; the inequalities of pair 0, pair 1, ...
-/// An elastic one (steering l1, linf) has the parameters s of phi behind the variables of the problem, and min f + s / sigma.
-/// Sparsity does not depend on sigma. Refers to the problem it relaxes; evaluates it once per point.
+/// States min f   subject to   bounds, g, G >= l and H >= l where that is not implied, phi(G_i, H_i; sigma) <= 0, with
+/// rows in this order: g; the sides that are constrained; the inequalities of pair 0, pair 1, ... An elastic one
+/// (steering l1, linf) has the parameters s of phi behind the variables of the problem, and min f + s / sigma. Sparsity
+/// does not depend on sigma. Refers to the problem it relaxes; evaluates it once per point.
 class RelaxedProblem final : public mpcc::Problem {
  public:
   RelaxedProblem(mpcc::Problem& problem, Relaxation relaxation, Steering steering = Steering::direct);
   void set_sigma(double sigma);  ///< > 0
-  /// w with parameters s of pairs behind it that it satisfies, if they are below their upper bound.
+  /// Returns w with parameters s of pairs behind it that it satisfies, if they are below their upper bound.
   [[nodiscard]] Eigen::VectorXd with_elastic_variables(mpcc::ConstVectorView w);
-  /// Multipliers of (g, G, H) in L = f + y'c that those of the rows here amount to: of a side also what phi asks of it.
+  /// Returns multipliers of (g, G, H) in L = f + y'c that those of the rows here amount to: of a side also what phi
+  /// asks of it.
   [[nodiscard]] Eigen::VectorXd multipliers_of_problem(mpcc::ConstVectorView w, mpcc::ConstVectorView y);
 
   [[nodiscard]] int variables() const override { return problem_.variables() + elastic_; }

@@ -1,17 +1,14 @@
 #include "saltus/solver/homotopy/steering.hpp"
 
-namespace saltus::solver::homotopy {
+#include "saltus/base/enum_names.hpp"
 
-std::string_view name(Steering steering) {
-  switch (steering) {
-    case Steering::direct:
-      return "direct";
-    case Steering::l1:
-      return "l1";
-    case Steering::linf:
-      return "linf";
-  }
-  return {};
-}
+namespace saltus::solver::homotopy {
+namespace {
+
+constexpr EnumNames<Steering::linf> steerings("direct", "l1", "linf");
+
+}  // namespace
+
+std::string_view name(Steering steering) { return steerings(steering); }
 
 }  // namespace saltus::solver::homotopy

@@ -6,7 +6,8 @@
 
 namespace saltus::solver::homotopy {
 
-/// Elastic problems are feasible wherever the rest of the problem is, and stop relaxing pairs that need it no more.
+/// Says how; elastic problems are feasible wherever the rest of the problem is, and stop relaxing pairs that need it no
+/// more.
 enum class Steering {
   direct,  ///< phi(G_i, H_i; sigma) <= 0
   l1,      ///< phi(G_i, H_i; s_i) <= 0, 0 <= s_i <= 10, and f + sum_i s_i / sigma
@@ -14,7 +15,7 @@ enum class Steering {
 };
 inline constexpr std::array all_steerings{Steering::direct, Steering::l1, Steering::linf};
 
-/// The name of a steering in model files.
+/// Returns the name of a steering in model files.
 [[nodiscard]] std::string_view name(Steering steering);
 
 }  // namespace saltus::solver::homotopy

@@ -5,7 +5,8 @@
 
 namespace saltus::switching {
 
-/// The free component obeys x' = v0 + rate (x - x0), x(0) = x0; a saturated one w' = velocity + slope (x - x0).
+/// Follows the free component, which obeys x' = v0 + rate (x - x0), x(0) = x0; a saturated one w' = velocity + slope (x
+/// - x0).
 struct StripMotion {
   double x0 = 0.0;
   double v0 = 0.0;

@@ -72,8 +72,8 @@ struct PlaneDecision {
 [[nodiscard]] PlaneDecision decide_entering(const PlaneTable& table, PlaneMode incoming,
                                             SelectionPolicy policy = SelectionPolicy::active_dominant);
 
-/// The selection of `surface` passes 0 (side = -1) or 1 (side = +1) on its way out, the other is inside: exit (a),
-/// Fig. 7.
+/// Says that the selection of `surface` passes 0 (side = -1) or 1 (side = +1) on its way out, the other is inside: exit
+/// (a), Fig. 7.
 struct SquareEdge {
   std::size_t surface = 0;
   int side = 1;

@@ -15,7 +15,7 @@ namespace saltus::switching {
 /// Returns where the roots coalesce as the discriminant goes to 0.
 [[nodiscard]] PlaneAlpha double_root(const Plane& plane);
 
-/// First the sign of psi_1, then that of psi_2 is changed, then both are exchanged:
+/// Changes first the sign of psi_1, then that of psi_2, then exchanges both:
 ///   reflect_1: f_1'^{k1 k2} = -f_1^{-k1 k2}, f_2'^{k1 k2} = f_2^{-k1 k2};  exchange: f_1'^{k1 k2} = f_2^{k2 k1}.
 struct PlaneSymmetry {
   bool reflect_1 = false;

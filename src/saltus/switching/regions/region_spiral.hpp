@@ -8,7 +8,7 @@
 
 namespace saltus::switching {
 
-/// One cycle with constant fields goes through all regions of a polygon. It begins on the border behind the last of
+/// Goes through all regions of a polygon in one cycle with constant fields. It begins on the border behind the last of
 /// them at distance 1 (in s) from the point: with b_k the direction of the border in front of region k, and d_0 = 1,
 ///   d_{k-1} b_{k-1} + t_k r_k = d_k b_k.
 /// All scales with the distance delta, as in SpiralCycle. For d_n > 1 a solution that leaves the point at (t, y) is at

@@ -9,8 +9,8 @@
 
 namespace saltus::switching {
 
-/// Let n regions meet and g_r - g_i = sum_k y_ik s_k with m < n - 1 independent s_k. The m equations that keep them
-/// equal leave a polytope of weights. The weights theta_i ~ exp(-g_i / epsilon) have, for every epsilon,
+/// Finds weights where n regions meet and g_r - g_i = sum_k y_ik s_k with m < n - 1 independent s_k. The m equations
+/// that keep them equal leave a polytope of weights. The weights theta_i ~ exp(-g_i / epsilon) have, for every epsilon,
 ///   theta_i = exp(y_i . v) / sum_j exp(y_j . v),   v = s / epsilon in R^m,
 /// and the limit is the one of these with
 ///   sum_j theta_j r_j = 0,   r_j in R^m = ds/dt along the field of region j.
