@@ -158,7 +158,7 @@ saltus.panelAxis = (panel, stack, palette) => {
     zerolinecolor: palette.axis,
     zerolinewidth: 1,
     nticks: Math.max(3, Math.round(panel.height / 24)),
-    automargin: true,
+    automargin: "left",  // plotly draws all of it a second time where a margin grows
     exponentformat: "power",
     minexponent: 5,
     tickfont: {size: 11},
@@ -212,7 +212,7 @@ saltus.labelWidth = (result) => {
 
 saltus.figureLayout = (result, stack, view) => {
   const {palette} = view;
-  const margin = {l: 52, r: saltus.labelWidth(result), t: 4, b: 38};
+  const margin = {l: 52, r: saltus.labelWidth(result), t: 10, b: 38};
   const layout = {
     height: stack.height + margin.t + margin.b,
     margin,
