@@ -100,8 +100,8 @@ saltus.byteSink = (room) => {
 };
 
 /**
- * One compressed block. The state of the reader is held in variables that no function shares, and bits are filled up to 24
- * at once: this loop is most of the time of opening.
+ * One compressed block. The state of the reader is held in variables that no function shares, and bits are filled up to
+ * 24 at once: this loop is most of the time of opening.
  */
 saltus.inflateBlock = (input, reader, sink, [literals, distances]) => {
   let {at, held, count} = reader;
