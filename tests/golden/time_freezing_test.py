@@ -184,11 +184,13 @@ class TimeFreezing(tool.ToolTest):
             (("[simulate]", "[time_freezing]\nstabilisation = { final = 1 }\n[simulate]"), "no `initial`"),
             (("[simulate]", "[time_freezing]\nstabilisation = { initial = 1, fnal = 0 }\n[simulate]"), "'final'"),
             (("[simulate]", "[time_freezing]\nclock = 'x'\n[simulate]"), "`clock` beside [[contacts]]"),
+            (('gap = "z"', 'gap = "z - 0.1*t"'), "the gap of 'ground' depends on t, and time stands still"),
             (("vz = 0\n", "vz = 0\nclock = 0\n"), "a state with the name 'clock' beside [[contacts]]"),
         ):
             file = self.write("bad.toml", BALL.replace(*change))
             _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
             self.assertIn(line, " ".join(err.split()))
+            self.assertLessEqual(err.count("in [time_freezing]"), 1)
         file = self.write("bad.toml", BALL.replace("friction = 0.3", "friction = 0.3\nrestitution = 0.5"))
         _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
         self.assertIn("has friction and restitution", err)
