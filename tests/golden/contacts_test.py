@@ -113,7 +113,7 @@ mass = [[1, 0, 0], [0, 1, 0], [0, 0, "1/6"]]
 potential = "9.81*z"
 [simulate]
 until = 5
-max_events = 1000
+max_events = 2000
 """ + "".join(f"""[[contacts]]
 name = "{name}"
 gap = "z + 0.5*({side}*sin(th) + {height}*cos(th))"
