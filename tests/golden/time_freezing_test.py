@@ -194,6 +194,8 @@ class TimeFreezing(tool.ToolTest):
         file = self.write("bad.toml", BALL.replace("friction = 0.3", "friction = 0.3\nrestitution = 0.5"))
         _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
         self.assertIn("has friction and restitution", err)
+        line = 1 + BALL.splitlines().index('name = "ground"')
+        self.assertIn(f"bad.toml:{line}:", err)
         self.run_tool("simulate", file, "--quiet", code=0)
 
     def test_monoped_has_its_masses_and_forces(self):
