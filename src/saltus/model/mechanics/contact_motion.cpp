@@ -122,7 +122,8 @@ class ContactMotion {
 
   /// Its rate and its derivatives are those of positions and t.
   std::optional<Error> check_reach(const SX& tangent, const ContactStatement& contact) {
-    for (const SXElem& entry : SX::densify(tangent).nonzeros()) {
+    const SX row = SX::densify(tangent);
+    for (const SXElem& entry : row.nonzeros()) {
       const auto node = recognition_.graph.add(entry);
       if (!node) return with_location(node.error(), contact.location);
       auto error =
