@@ -7,7 +7,7 @@ namespace saltus::fesd_integrator {
 
 bool ElementInterior::changes_inside() const {
   return std::any_of(stage_sets_.begin(), stage_sets_.end(),
-                     [&](const ActiveSet& set) { return !(set == position_.set()); });
+                     [&](const ActiveSet& of_stage) { return !(of_stage == position_.set()); });
 }
 
 /// The polynomial through the selections of the stages, within their range. Where stages share a time (explicit
