@@ -186,8 +186,28 @@ void draw_chattering(Svg& svg, const std::vector<Chattering>& pixels, const Plot
   }
 }
 
+/// The impulse of a contact is there at one instant: no line leads from it to the row behind.
+bool is_impulse(const result::Result& result, const FigureColumn& column) {
+  return column.sort == ColumnSort::output &&
+         std::any_of(result.contacts.begin(), result.contacts.end(),
+                     [&](const std::string& contact) { return column.name == fmt::format("impulse({})", contact); });
+}
+
+void draw_stems(Svg& svg, const std::vector<double>& t, const std::vector<double>& values, const Plot& plot,
+                std::string_view color) {
+  if (t.empty()) return;
+  std::vector<Point> line{plot.place(t.front(), 0.0)};
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    if (values[row] == 0.0 || !std::isfinite(values[row])) continue;
+    for (const double value : {0.0, values[row], 0.0}) line.push_back(plot.place(t[row], value));
+  }
+  line.push_back(plot.place(t.back(), 0.0));
+  svg.path(line, {color, 1.6});
+}
+
 void draw_curve(Svg& svg, const result::Result& result, const FigureColumn& column, const Plot& plot,
                 std::string_view color) {
+  if (is_impulse(result, column)) return draw_stems(svg, result.trajectory.t, column.values, plot, color);
   const double pixel = (plot.x.to - plot.x.from) / plot.width;
   const auto& t = result.trajectory.t;
   const auto chattering = chattering_pixels(t, column.values, pixel, 1e-5 * span_of(column));

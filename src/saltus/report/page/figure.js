@@ -115,8 +115,11 @@ saltus.envelopeTraces = ({x, low, high, mean}, axis, color) => {
 saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve, i) => {
   const color = saltus.curveColour(panel, i, view.palette);
   const steps = saltus.controlSteps(result, curve);
+  const stems = saltus.isImpulse(result, curve) ?
+      saltus.stems(result.trajectory.t, curve.values, view.window, view.pixels) :
+      null;
   const {x, y, jumps, envelope} =
-      steps ?? saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
+      steps ?? stems ?? saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
   const line = {
     ...saltus.lineOverTime(axis, x, y),
     // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
