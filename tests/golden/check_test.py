@@ -98,6 +98,12 @@ class Mistakes(tool.ToolTest):
         out, err = self.run_tool("check", self.write("m.toml", text), *arguments, code=2)
         return out, err.replace(f"{self.folder}/", "")
 
+    def test_runs_show_the_line_of_their_first_mistake(self):
+        file = self.write("m.toml", '[model]\nname = "m"\n[states]\nx = "one"\n[dynamics]\nx = "-x"\n[simulate]\nuntil = 1\n[optimize]\nhorizon = 1\n')
+        for command in ("simulate", "optimize"):
+            _, err = self.run_tool(command, file, code=2)
+            self.assertIn('\n    4 | x = "one"\n      |      ^\n', err, command)
+
     def test_all_at_once_with_line_and_caret(self):
         out, err = self.check(TWO_MISTAKES)
         self.assertEqual(out, "")

@@ -71,6 +71,57 @@ rtol = 1e-11
 atol = 1e-12
 """
 
+# A ball in a corner of two planes; it loses 72 % of its speed at every passage.
+CORNER = """[model]
+name = "corner"
+[parameters]
+s = 0
+[states]
+x = "0.1 + s"
+z = "1 + s"
+vx = 0
+vz = 0
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+potential = "9.81*z"
+[[contacts]]
+name = "right"
+gap = "0.8*(z - s) - 0.6*(x - s)"
+[[contacts]]
+name = "left"
+gap = "0.8*(z - s) + 0.6*(x - s)"
+[simulate]
+until = 2
+max_events = 200
+"""
+
+# A box with friction and restitution at its corners, thrown.
+BOX = """[model]
+name = "box"
+[states]
+x = 0
+z = 2
+th = 0.3
+vx = 2
+vz = 0
+w = -3
+[mechanics]
+positions = ["x", "z", "th"]
+velocities = ["vx", "vz", "w"]
+mass = [[1, 0, 0], [0, 1, 0], [0, 0, "1/6"]]
+potential = "9.81*z"
+[simulate]
+until = 5
+max_events = 2000
+""" + "".join(f"""[[contacts]]
+name = "{name}"
+gap = "z + 0.5*({side}*sin(th) + {height}*cos(th))"
+tangent = {{ x = 1, th = "-0.5*({side}*sin(th) + {height}*cos(th))" }}
+friction = 0.5
+restitution = 0.3
+""" for name, side, height in (("a", 1, 1), ("b", -1, 1), ("c", 1, -1), ("d", -1, -1)))
+
 # name: (old, new, line, expected parts of the message…)
 MALFORMED = {
     "unknown position": ('["x", "z"]', '["x", "y"]', 11, "found 'y'"),
@@ -112,6 +163,9 @@ MALFORMED = {
     "no gap": ('gap = "z"\n', "", 15, "no `gap`"),
     "no name": ('name = "ground"\n', "", 14, "no `name`"),
     "tangent over velocities": ("{ x = 1 }", "{ vx = 1 }", 17, "no position", "the position whose rate this velocity is"),
+    "tangent of a velocity": ("{ x = 1 }", '{ x = "1 + vx" }', 15, "the tangent of 'ground' depends on 'vx'"),
+    "jump where the gap closes": ("[simulate]", '[[jumps]]\nname = "b"\nwhen = "z < 0"\nset = { vz = "-vz" }\n[simulate]', 21,
+                                  "where the gap of the contact 'ground' closes", "leave one of them out"),
     "friction without tangent": ("tangent = { x = 1 }\n", "", 17, "friction and no `tangent`"),
     "three tangents": ("tangent = { x = 1 }", "tangents = [{ x = 1 }, { x = 1 }, { z = 1 }]", 15, "has 3 tangents"),
     "tangents in one direction": ("tangent = { x = 1 }", "tangents = [{ x = 1 }, { x = 2 }]", 15, "have one direction"),
@@ -300,6 +354,23 @@ until = 3
     def test_time_stepping_says_no(self):
         _, err = self.run_tool("simulate", self.write("m.toml", BALL), "--method", "timestepping", code=2)
         self.assertIn("does not cover contacts", err)
+
+    def test_a_ball_comes_to_rest_in_a_corner_wherever_that_is(self):
+        for shift in (0, 1, -300):
+            result = self.result(CORNER, "--set", f"s={shift}", "--quiet")
+            self.assertEqual(result["final"]["contact_modes"], ["closed", "closed"], shift)
+            for value, expected in zip(result["final"]["x"], (shift, shift, 0, 0)):
+                self.assertAlmostEqual(value, expected, delta=1e-10)
+            passages = [event["t"] for event in result["events"][1:]]
+            for i in range(4):
+                self.assertAlmostEqual((passages[i + 2] - passages[i + 1]) / (passages[i + 1] - passages[i]), 0.28, delta=1e-5)
+
+    def test_a_thrown_box_comes_to_rest(self):
+        final = self.result(BOX, "--quiet")["final"]
+        self.assertAlmostEqual(final["x"][1], 0.5, delta=1e-9)
+        self.assertAlmostEqual(math.remainder(final["x"][2], math.pi / 2), 0, delta=1e-9)
+        for speed in final["x"][3:]:
+            self.assertAlmostEqual(speed, 0, delta=1e-9)
 
     def test_malformed(self):
         for number, (name, (old, new, line, *expected)) in enumerate(MALFORMED.items()):

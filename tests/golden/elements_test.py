@@ -28,6 +28,21 @@ class Elements(tool.ToolTest):
         self.assertAlmostEqual(final["x"][0], 0.24, delta=1e-12)
         self.assertAlmostEqual(final["x"][1], 0.2, delta=1e-12)
 
+    def test_rows_inside_an_element_without_switch_detection_have_the_selections_of_its_stages(self):
+        # The mass sticks from t = 0.245 on: the stages of the element from 0.2 to 0.4 slide with 0.26 and 0.66.
+        self.run_tool("simulate", "stick-slip", "--method", "timestepping", "--quiet", "--out", "r.json", "--set",
+                      "simulate.output.every=0.04", "--until", "0.4", "--set", "simulate.timestepping.steps=1", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        rows, elements = result["trajectory"], result["elements"]
+        low, high = (value for value, in elements["selection"][-3:-1])
+        self.assertTrue(0.2 < low < 0.3 < 0.6 < high < 0.7, (low, high))
+        inside = [i for i, t in enumerate(rows["t"]) if 0.2 < t < 0.4]
+        self.assertGreater(len(inside), 2)
+        for i in inside:
+            expected = low + (high - low) * (rows["t"][i] - 0.4 + 0.4 / 3) / (0.4 / 3)
+            self.assertAlmostEqual(rows["alpha"][i][0], expected, delta=1e-9)
+            self.assertEqual(rows["mode"][i], [0])
+
     def test_selections_that_slide_are_found_from_the_ends_of_their_range(self):
         # The equations of the element from t = 0.98 have two solutions on the circle, alpha = -0.82 and 0.80.
         self.run_tool("simulate", "rotating-oscillator", "--method", "timestepping", "--quiet", "--set",

@@ -184,14 +184,18 @@ class TimeFreezing(tool.ToolTest):
             (("[simulate]", "[time_freezing]\nstabilisation = { final = 1 }\n[simulate]"), "no `initial`"),
             (("[simulate]", "[time_freezing]\nstabilisation = { initial = 1, fnal = 0 }\n[simulate]"), "'final'"),
             (("[simulate]", "[time_freezing]\nclock = 'x'\n[simulate]"), "`clock` beside [[contacts]]"),
+            (('gap = "z"', 'gap = "z - 0.1*t"'), "the gap of 'ground' depends on t, and time stands still"),
             (("vz = 0\n", "vz = 0\nclock = 0\n"), "a state with the name 'clock' beside [[contacts]]"),
         ):
             file = self.write("bad.toml", BALL.replace(*change))
             _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
             self.assertIn(line, " ".join(err.split()))
+            self.assertLessEqual(err.count("in [time_freezing]"), 1)
         file = self.write("bad.toml", BALL.replace("friction = 0.3", "friction = 0.3\nrestitution = 0.5"))
         _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
         self.assertIn("has friction and restitution", err)
+        line = 1 + BALL.splitlines().index('name = "ground"')
+        self.assertIn(f"bad.toml:{line}:", err)
         self.run_tool("simulate", file, "--quiet", code=0)
 
     def test_monoped_has_its_masses_and_forces(self):
@@ -230,6 +234,8 @@ class TimeFreezing(tool.ToolTest):
         result = self.optimised(HUMP)
         self.assertLess(result["verification"]["penetration"]["solution"], 1e-9)
         self.assertLess(result["verification"]["interval_defect"], 1e-3)
+        # A pendulum upside down, not a ball that falls through the hump.
+        self.assertLess(result["verification"]["open_loop"]["amplification"], 1e3)
 
     def test_bodies_are_only_so_deep_in_each_other(self):
         """Gaps that nothing corrects drift: the ball cannot stay on the hump, and sinks as far as it may."""

@@ -207,6 +207,13 @@ class Tried(tool.ToolTest):
         self.assertIn("a wider layer: simulate.smoothed.epsilon = ", err)
         self.assertNotIn('method = "smoothed"', err)
 
+    def test_the_end_of_the_steps_is_no_end_of_the_advice(self):
+        _, _, err = self.simulated(FEEDBACK, "--set", "simulate.max_steps=1500", code=3)
+        self.assertIn("max_steps = 1500 reached", err)
+        self.assertIn('use method = "smoothed" with simulate.smoothed.epsilon = ', err)
+        _, _, err = self.simulated(FEEDBACK, "--set", "simulate.max_steps=3", code=3)
+        self.assertIn("raise simulate.max_steps if they are meant, or try --integrator radau5", err)
+
     def test_the_layer_that_is_advised_is_not_too_thin(self):
         _, _, err = self.simulated(SLIDING_CONTROL, code=3)
         epsilon = err.split("simulate.smoothed.epsilon = ")[1].split(",")[0]

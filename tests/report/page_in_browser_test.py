@@ -90,7 +90,8 @@ class Columns(Page):
         moving = "".join(f'x{i} = "v{i}"\nv{i} = "{i}/30 - 0.1*v{i}"\n' if i >= count - 5 else f'x{i} = "0"\nv{i} = "0"\n'
                          for i in range(count))
         (self.folder / "many.toml").write_text(
-            f'[model]\nname = "many"\n[states]\n{states}[dynamics]\n{moving}[simulate]\nuntil = 3\n', encoding="utf-8")
+            f'[model]\nname = "many"\n[states]\n{states}[dynamics]\n{moving}[[events]]\nname = "passes"\n'
+            'when = "v29 - 1"\n[simulate]\nuntil = 3\n', encoding="utf-8")
         self.show("many.toml")
 
     def test_what_moves_is_drawn_and_everything_can_be_chosen(self):
@@ -109,6 +110,14 @@ class Columns(Page):
         self.assertEqual(self.panels()[-1], "x0")
         axes = "[...document.querySelectorAll('.phase select')[0].options].map((option) => option.textContent)"
         self.assertEqual(self.value(axes)[-2:], ["v29", "t"])
+
+    def test_many_states_fit_on_paper(self):
+        self.show_many()
+        self.value("window.dispatchEvent(new Event('beforeprint'))")
+        width = self.value("Math.max(...[...document.querySelectorAll('table')].map((one) => one.getBoundingClientRect().right))")
+        self.assertLess(width, 721)
+        equations = "document.querySelector('.equations')"
+        self.assertEqual(self.value(f"{equations}.scrollHeight - {equations}.clientHeight"), 0)
 
     def test_panels_are_ordered_joined_and_kept_in_the_address(self):
         self.show("stick-slip")

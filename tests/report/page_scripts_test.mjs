@@ -477,6 +477,26 @@ test("of very many selections those that change are drawn, the last one too", ()
   assert.deepEqual(drawn, result.switching_functions.slice(50));
 });
 
+test("what moves by a rounding of its neighbours only is not drawn at first", () => {
+  const result = mixed();
+  result.trajectory.x[0] = [0, 2e-17, -1e-17, 0, 1e-17];
+  const first = saltus.firstPanels(result).panels.flatMap(({curves}) => curves);
+  assert.ok(!first.includes(0) && first.includes(2), `${first}`);
+  const small = mixed();  // beside nothing larger it moves
+  small.trajectory.x = [[0, 2e-17, -1e-17, 0, 1e-17], [0, 0, 0, 0, 0], [0, 0, 0, 0, 0]];
+  assert.ok(saltus.firstPanels(small).panels.flatMap(({curves}) => curves).includes(0));
+});
+
+test("an impulse is a stem and no slope to the next row", () => {
+  const result = {...mixed(), output_names: ["impulse(floor)"], contacts: ["floor"]};
+  result.trajectory.outputs = [[0, 0, 0, 3, 0]];
+  const stack = saltus.stackPanels(result, 600);
+  const panel = stack.panels.find(({curves}) => curves?.[0].name === "impulse(floor)");
+  const view = {window: [0, 3], pixels: 600, palette: {curves: ["black", "red"]}, overlays: []};
+  const [line] = saltus.curveTraces({...result, overlays: []}, panel, "y2", view).filter(({mode}) => mode === "lines");
+  assert.deepEqual([line.x, line.y], [[0, 2, 2, 2, 3], [0, 0, 3, 0, 0]]);
+});
+
 test("in space the time stands on the third axis where only two states move and do not step", () => {
   const result = mixed();
   result.trajectory.x[0] = [0, 1, 2, 2, 5];

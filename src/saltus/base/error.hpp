@@ -17,12 +17,12 @@ struct SourceLocation {
 };
 
 enum class ErrorCode {
-  parse_failure,     ///< the text is not well formed
-  unknown_name,      ///< a name, table or key nobody declared
-  invalid_model,     ///< well formed, but states no system
-  invalid_option,    ///< an option outside its range
-  not_available,     ///< stated correctly, but this version does not do it
-  io_failure,        ///< a file that cannot be read or written
+  parse_failure,   ///< the text is not well formed
+  unknown_name,    ///< a name, table or key nobody declared
+  invalid_model,   ///< well formed, but states no system
+  invalid_option,  ///< an option outside its range
+  not_available,   ///< stated correctly, but this version does not do it
+  io_failure,      ///< a file that cannot be read or written
 };
 
 /// Holds bad input (lane 2 of the three error lanes): reported to the user, mapped to exit code 2.
@@ -39,7 +39,7 @@ using Expected = tl::expected<T, Error>;
 
 /// Adds one frame ("in table [simulate]") to the trail of an error.
 [[nodiscard]] inline Error with_context(Error error, std::string frame) {
-  error.context.push_back(std::move(frame));
+  if (error.context.empty() || error.context.back() != frame) error.context.push_back(std::move(frame));
   return error;
 }
 
@@ -49,8 +49,7 @@ using Expected = tl::expected<T, Error>;
 
 /// Returns the known names nearest to `name` by edit distance, best first, at most three; for "did you mean" remedies.
 /// Where none is near, those that begin with it, or with which it begins.
-[[nodiscard]] std::vector<std::string> nearest_names(const std::string& name,
-                                                     const std::vector<std::string>& known);
+[[nodiscard]] std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& known);
 
 /// Returns "did you mean 'a' or 'b'?" or, if nothing is near, "known: a, b, c"; empty if nothing is known.
 [[nodiscard]] std::string suggest(const std::string& name, const std::vector<std::string>& known);

@@ -13,6 +13,7 @@
 #include "saltus/cli/optimum_record.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/run_command.hpp"
+#include "saltus/cli/text/source_excerpt.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/optimize.hpp"
@@ -35,8 +36,8 @@ struct OptimizeArguments {
 };
 
 /// The model with what was typed beside --set.
-Expected<ModelInput> stated_input(const OptimizeArguments& arguments) {
-  auto input = read_input(arguments.run.model, arguments.run.settings);
+Expected<ModelInput> stated_input(const OptimizeArguments& arguments, const ModelText& text) {
+  auto input = read_input(text, arguments.run.settings);
   if (!input) return input;
   if (auto done = apply_shortcuts(arguments.run, *input); !done) return tl::unexpected(done.error());
   if (auto fits = io::check_optimize_options(input->file); !fits) return tl::unexpected(fits.error());
@@ -76,12 +77,14 @@ Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, con
 }
 
 ExitCode run_optimize(const OptimizeArguments& arguments) {
-  const auto input = stated_input(arguments);
-  if (!input) return refuse(input.error());
+  const auto text = read_model_text(arguments.run.model);
+  if (!text) return refuse(text.error());
+  const auto input = stated_input(arguments, *text);
+  if (!input) return refuse_with_source(input.error(), *text);
   const auto outputs = Outputs::make(arguments.run.outputs, input->path);
   if (!outputs) return refuse(outputs.error());
   const auto result = compute_optimum(arguments, *input, *outputs);
-  if (!result) return refuse(io::located(result.error(), input->file));
+  if (!result) return refuse_with_source(io::located(result.error(), input->file), *text);
   const auto written = outputs->write(*result, progress_of(arguments.run));
   if (!arguments.run.quiet && !outputs->fill_standard_output()) print(report::to_table(*result));
   if (!written) return refuse(written.error());

@@ -120,11 +120,6 @@ Expected<std::size_t> shown_events(const std::string& typed) {
                               {}});
 }
 
-ExitCode refuse_with_source(const Error& error, const ModelText& text) {
-  print_error(with_source(error, text));
-  return ExitCode::bad_input;
-}
-
 ExitCode report_stops(const result::Result& result, const RunArguments& arguments) {
   Stops stops(!arguments.quiet && isatty(STDOUT_FILENO) != 0 && isatty(STDERR_FILENO) != 0);
   for (const auto& entry : result::tree(result)) {

@@ -77,22 +77,36 @@ void add_indicator_part(const IndicatorPart& part, const model::System& system, 
   add_group({system.mode_groups[at(part.mode_group)].mode_names, Form::stewart, counts}, result.sizes);
 }
 
-Expected<Reformulated> reformulated(const model::System& system, const ReformulationOptions& options) {
-  SALTUS_ASSERT(!options.lifting || *options.lifting >= 2);
+namespace {
+
+/// What all forms have in common, and most of the work.
+Expected<Unnested> taken_apart(const model::System& system) {
   if (!system.jumps.empty()) return tl::unexpected(no_jumps());
   auto unnested = unnest(system);
-  if (!unnested) return tl::unexpected(unnested.error());
-  take_roots(system, *unnested);
-  Reformulated result{common_part(system, *unnested), {}};
+  if (unnested) take_roots(system, *unnested);
+  return unnested;
+}
+
+Expected<Reformulated> in_form(const model::System& system, Unnested unnested, const ReformulationOptions& options) {
+  SALTUS_ASSERT(!options.lifting || *options.lifting >= 2);
+  Reformulated result{common_part(system, unnested), {}};
   auto collected = options.reformulation == Form::step
-                       ? Expected<Collected>(fill_step_form(system, *unnested, options.lifting, result))
-                       : fill_stewart_form(system, *unnested, result);
+                       ? Expected<Collected>(fill_step_form(system, unnested, options.lifting, result))
+                       : fill_stewart_form(system, unnested, result);
   if (!collected) return tl::unexpected(collected.error());
   result.dcs.selection = column(collected->selection);
   result.dcs.indicator = column(collected->indicator);
-  finish_roots(*unnested, result.dcs);
-  take_rest(*unnested, result.dcs);
+  finish_roots(unnested, result.dcs);
+  take_rest(unnested, result.dcs);
   return result;
+}
+
+}  // namespace
+
+Expected<Reformulated> reformulated(const model::System& system, const ReformulationOptions& options) {
+  auto unnested = taken_apart(system);
+  if (!unnested) return tl::unexpected(unnested.error());
+  return in_form(system, std::move(*unnested), options);
 }
 
 Expected<Dcs> reformulate(const model::System& system, const ReformulationOptions& options) {
@@ -100,7 +114,20 @@ Expected<Dcs> reformulate(const model::System& system, const ReformulationOption
 }
 
 Expected<Sizes> sizes_of(const model::System& system, const ReformulationOptions& options) {
-  return reformulated(system, options).map([](Reformulated&& result) { return std::move(result.sizes); });
+  return std::move(sizes_of_all(system, std::span(&options, 1)).front());
+}
+
+std::vector<Expected<Sizes>> sizes_of_all(const model::System& system, std::span<const ReformulationOptions> options) {
+  const auto unnested = taken_apart(system);
+  std::vector<Expected<Sizes>> all;
+  for (const auto& one : options) {
+    if (!unnested) {
+      all.emplace_back(tl::unexpected(unnested.error()));
+      continue;
+    }
+    all.push_back(in_form(system, *unnested, one).map([](Reformulated&& made) { return std::move(made.sizes); }));
+  }
+  return all;
 }
 
 }  // namespace saltus::reformulation

@@ -48,27 +48,26 @@ int same(const std::vector<double>& a, const std::vector<double>& b) {
 std::vector<double> SurfaceSamples::sample(const SXElem& psi, const std::vector<SXElem>& held) const {
   const auto& s = system_;
   const casadi::Function function("psi", {s.t, s.x, s.u, s.p, column(held)}, {SX(psi)});
-  std::vector<double> values;
-  for (std::size_t k = 0; k < std::size(magnitudes); ++k) {
+  std::vector<double> t(1), x(s.state_names.size()), u(s.control_names.size()), at_held(held.size());
+  std::vector<double> values(std::size(magnitudes));
+  for (std::size_t k = 0; k < values.size(); ++k) {
     std::uint64_t variable = 0;
-    const auto drawn = [&](std::size_t count) {
-      std::vector<double> numbers(count);
-      for (double& number : numbers) {
+    for (auto* numbers : {&t, &x, &u, &at_held}) {
+      for (double& number : *numbers) {
         const double unit = draw(k, variable++);
         number = magnitudes[k] * (k < positive_points ? std::abs(unit) : unit);
       }
-      return casadi::DM(numbers);
-    };
-    std::vector<casadi::DM> point{drawn(1), drawn(s.state_names.size()), drawn(s.control_names.size())};
-    point.emplace_back(s.parameter_values);
-    point.push_back(drawn(held.size()));
-    values.push_back(static_cast<double>(function(point).front()));
+    }
+    // By pointers: matrices would take most of the time of all reformulations.
+    const std::vector<const double*> point{t.data(), x.data(), u.data(), s.parameter_values.data(), at_held.data()};
+    const std::vector<double*> value{&values[k]};
+    function(point, value);
   }
   return values;
 }
 
 std::optional<SurfaceSamples::Match> SurfaceSamples::find(const SXElem& psi, const std::vector<SXElem>& held) const {
-  const auto values = sample(psi, held);
+  const std::vector<double> values = sample(psi, held);
   for (std::size_t i = 0; i < known_.size(); ++i) {
     if (const int orientation = same(known_[i], values); orientation != 0)
       return Match{static_cast<int>(i), orientation};

@@ -2,12 +2,11 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <limits>
-#include <map>
 #include <new>
 #include <utility>
 #include <zlib.h>
 
+#include "saltus/report/packed_rows_internal.hpp"
 #include "saltus/report/packing_internal.hpp"
 
 namespace saltus::report {
@@ -15,47 +14,10 @@ namespace {
 
 using nlohmann::json;
 
-bool is_number(const json& value) { return value.is_number() || value.is_null(); }
-
-bool all_numbers(const json& list) { return std::all_of(list.begin(), list.end(), is_number); }
-
-double number(const json& value) {
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
-}
-
 json put_away(const json& list, std::vector<double>& numbers) {
   const std::size_t first = numbers.size();
-  for (const json& value : list) numbers.push_back(number(value));
+  for (const json& value : list) numbers.push_back(number_of(value));
   return {{"$n", {first, list.size()}}};
-}
-
-/// Whether all are arrays of numbers and as long as the first.
-bool is_table(const json::array_t& values) {
-  return std::all_of(values.begin(), values.end(), [&](const json& value) {
-    return value.is_array() && value.size() == values.front().size() && all_numbers(value);
-  });
-}
-
-/// Each value once, and which of them stands where; null if there are too many.
-json coded(const json::array_t& values, std::vector<double>& numbers) {
-  std::map<std::string, std::size_t> codes;
-  json list = json::array(), which = json::array();
-  for (const json& value : values) {
-    const auto [place, is_new] = codes.emplace(value.dump(), codes.size());
-    if (is_new) list.push_back(value);
-    if (codes.size() > 1000) return nullptr;
-    which.push_back(place->second);
-  }
-  return {{"$codes", put_away(which, numbers)}, {"of", std::move(list)}};
-}
-
-json column(json::array_t values, std::vector<double>& numbers) {
-  if (std::all_of(values.begin(), values.end(), is_number)) return put_away(values, numbers);
-  if (json codes = coded(values, numbers); !codes.is_null()) return codes;
-  if (!is_table(values)) return values;
-  json::array_t flat;
-  for (const json& row : values) flat.insert(flat.end(), row.begin(), row.end());
-  return {{"$table", values.front().size()}, {"of", put_away(flat, numbers)}};
 }
 
 /// Objects with the keys of the first, which is one.
@@ -69,21 +31,29 @@ bool are_alike(const json& list) {
   });
 }
 
-json by_columns(json list, std::vector<double>& numbers, const GoOn& go_on) {
-  json columns = json::object();
-  std::vector<std::string> keys;
-  for (const auto& item : list.front().items()) keys.push_back(item.key());
-  for (const auto& key : keys) {
-    if (go_on && !go_on()) break;
-    json::array_t values;
-    values.reserve(list.size());
-    for (json& entry : list) values.push_back(std::move(entry[key]));
-    columns[key] = column(std::move(values), numbers);
+json rows_taken_out(json rows, std::vector<double>& numbers) {
+  for (json& column : rows["columns"]) {
+    if (column.is_array() && all_numbers(column)) {
+      column = put_away(column, numbers);
+    } else if (column.is_object()) {
+      json& list = column[column.contains("$codes") ? "$codes" : "of"];
+      list = put_away(list, numbers);
+    }
   }
-  return {{"$rows", list.size()}, {"columns", std::move(columns)}};
+  return rows;
+}
+
+json by_columns(json list, std::vector<double>& numbers, const GoOn& go_on) {
+  PackedRows rows;
+  for (json& entry : list) {
+    if (rows.size() % 1024 == 0 && go_on && !go_on()) break;
+    rows.add(std::move(entry));
+  }
+  return rows_taken_out(rows.take(), numbers);
 }
 
 json taken_out(json value, std::vector<double>& numbers, const GoOn& go_on) {
+  if (value.is_object() && value.contains("$rows")) return rows_taken_out(std::move(value), numbers);
   if (value.is_array() && value.size() >= least_packed) {
     if (all_numbers(value)) return put_away(value, numbers);
     const bool of_points = value.front().is_object() && value.front().contains("$points");

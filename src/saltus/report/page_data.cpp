@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "saltus/base/version.hpp"
+#include "saltus/report/packed_rows_internal.hpp"
 #include "saltus/report/page_columns_internal.hpp"
 #include "saltus/report/page_comparison_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
@@ -332,18 +333,24 @@ json families_data(const std::vector<result::TreeEntry>& tree) {
   return families;
 }
 
-/// Events with as many values each as fit the limit of the page.
+/// Events with as many values each as fit the limit of the page; many of them in columns, as pack() would make them.
 json events_data(const result::Result& result, std::size_t limit, const GoOn& go_on) {
   // x, mode and alpha on both sides: six lists for every event. Of many columns nobody reads the lists.
   const bool many = result.states.size() + result.switching_functions.size() > many_columns;
   const std::size_t share = (many ? limit / 8 : limit) / (6 * std::max<std::size_t>(1, result.events.size()));
   const std::size_t values_of_event = std::clamp(share, least_values_of_event, columns_in_page);
-  json events = json::array();
+  constexpr std::size_t few = 1000;
+  if (result.events.size() <= few) {
+    json events = json::array();
+    for (const auto& event : result.events) events.push_back(event_data(event, values_of_event));
+    return events;
+  }
+  PackedRows events;
   for (const auto& event : result.events) {
     if (events.size() % 1024 == 0 && go_on && !go_on()) break;
-    events.push_back(event_data(event, values_of_event));
+    events.add(event_data(event, values_of_event));
   }
-  return events;
+  return events.take();
 }
 
 /// Surfaces whose states are all shown.

@@ -27,7 +27,7 @@ FILES = {
     "unknown table function": (with_line(9, "x = 'raod(x)'") + "[tables.road]\nx = [0, 1]\ny = [0, 1]\n", 9, "'raod'",
                                "did you mean 'road'"),
     "floor of a state": (with_line(9, "x = 'floor(x)'"), 9, "depends on a state", "[[jumps]]"),
-    "mod of a state": (with_line(9, "x = 'mod(v, 1)'"), 9, "depends on a state", "[[jumps]]"),
+    "mod of a state": (with_line(9, "x = 'mod(v, 2)'"), 9, "mod of 'v', which depends on a state", "[[jumps]]"),
     "mod by zero": (with_line(9, "x = 'mod(t, 0)'"), 9, "a constant other than 0"),
     "mod by a state": (with_line(9, "x = 'mod(t, x)'"), 9, "a constant other than 0", "found 'x'"),
     "input of two sources": (after("inputs.u = { file = 'a', result = 'b' }\n"), 13, "one of file and result"),

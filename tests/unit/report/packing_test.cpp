@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "saltus/report/packed_rows_internal.hpp"
 #include "saltus/report/packing_internal.hpp"
 
 namespace saltus::report {
@@ -44,6 +45,31 @@ TEST(Packing, ManyObjectsBecomeColumns) {
   EXPECT_EQ(rows["columns"]["reason"][4999], "4999");
   const std::size_t first = rows["columns"]["x"]["of"]["$n"][0];
   EXPECT_EQ(packed.numbers[first + 7], -3.0);
+}
+
+TEST(Packing, RowsAreKeptAsTheyAreWhereNoShorterFormFitsAllOfThem) {
+  json list = json::array();
+  for (int i = 0; i < 3000; ++i) {
+    // Numbers, then a text; arrays of one length, then a longer one; more texts than there are codes.
+    list.push_back({{"a", i < 2000 ? json(i) : json("late")},
+                    {"b", i < 2500 ? json({i, 2 * i}) : json({i, i, i})},
+                    {"c", std::to_string(i)},
+                    {"d", i % 3 == 0 ? json(nullptr) : json(0.5 * i)}});
+  }
+  PackedRows rows;
+  for (const json& row : list) rows.add(row);
+  json taken = rows.take();
+  const auto columns = taken["columns"];
+  EXPECT_EQ(columns["a"][1999], 1999);
+  EXPECT_EQ(columns["a"][2999], "late");
+  EXPECT_EQ(columns["b"][7], json({7, 14}));
+  EXPECT_EQ(columns["b"][2999].size(), 3U);
+  EXPECT_EQ(columns["c"][2999], "2999");
+  const Packed packed = pack({{"rows", list}}), again = pack({{"rows", std::move(taken)}});
+  EXPECT_EQ(packed.skeleton, again.skeleton);
+  EXPECT_EQ(packed.numbers.size(), 3000U);
+  EXPECT_TRUE(std::isnan(packed.numbers[3]));
+  EXPECT_EQ(packed.numbers[4], 2.0);
 }
 
 TEST(Packing, ObjectsThatDifferInTheirKeysStay) {

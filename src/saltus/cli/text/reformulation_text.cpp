@@ -75,9 +75,12 @@ struct FormSizes {
 /// Every form of a system with its sizes, or why it has none; empty where nothing switches with the state. Lifting is
 /// a form of its own where it adds variables.
 std::vector<FormSizes> sizes_by_form(const model::System& system) {
+  std::vector<ReformulationOptions> options;
+  for (const Row& row : rows) options.push_back(row.options);
+  auto all = reformulation::sizes_of_all(of_elements(system), options);
   std::vector<FormSizes> forms;
   for (const Row& row : rows) {
-    auto sizes = reformulation::sizes_of(of_elements(system), row.options);
+    auto& sizes = all[static_cast<std::size_t>(&row - rows)];
     if (sizes && sizes->groups.empty()) return {};
     if (sizes && &row == &rows[1] && sizes->total.beta == 0) continue;
     forms.push_back({row.title, std::move(sizes)});

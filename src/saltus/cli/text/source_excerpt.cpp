@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/cli/text/terminal.hpp"
+
 namespace saltus::cli {
 namespace {
 
@@ -63,6 +65,11 @@ std::string with_source(const Error& error, const ModelText& source) {
   if (error.location.file != source.name || error.location.line < 1 || error.location.column < 1) return text;
   const auto end = text.find('\n');
   return text.insert(end == std::string::npos ? text.size() : end, excerpt(error.location, source.text));
+}
+
+ExitCode refuse_with_source(const Error& error, const ModelText& source) {
+  print_error(with_source(error, source));
+  return ExitCode::bad_input;
 }
 
 }  // namespace saltus::cli

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "saltus/base/error.hpp"
+#include "saltus/cli/exit_code.hpp"
 #include "saltus/cli/model_input.hpp"
 
 namespace saltus::cli {
@@ -11,5 +12,8 @@ namespace saltus::cli {
 /// Returns to_text(error), with the source line and a caret behind its first line; without them for a place outside the
 /// text.
 [[nodiscard]] std::string with_source(const Error& error, const ModelText& source);
+
+/// Prints it, and returns ExitCode::bad_input.
+[[nodiscard]] ExitCode refuse_with_source(const Error& error, const ModelText& source);
 
 }  // namespace saltus::cli

@@ -121,11 +121,7 @@ ContactMode Contacts::mode_of(int contact, const std::vector<double>& x) const {
 bool Contacts::touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const {
   const auto& entry = contacts_[at(contact)];
   if (!entry.has_gap || x[at(entry.closed)] != 0.0 || contains(ended, contact)) return true;
-  double terms = 0.0;
-  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    terms += std::abs(values_.rows(contact, static_cast<Eigen::Index>(k)) * x[at(system_.positions[k])]);
-  }
-  return std::abs(values_.gap(contact)) <= std::max(64.0 * rounding_unit * terms, 1e-12);  // as at a start
+  return std::abs(values_.gap(contact)) <= std::max(64.0 * rounding_unit * gap_terms(contact, x), none_at_start);
 }
 
 /// Velocities that are 0 by their modes, or to their rounding, are 0; so is that of a slip that ends.
@@ -183,18 +179,6 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   return find_modes(moment, touching, std::move(excluded), point, x);
 }
 
-/// Whether a gap and its rate are 0 within the tolerances: that of another contact in the same impacts.
-bool Contacts::comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
-                             const std::vector<double>& x) const {
-  double terms = 0.0;
-  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    terms += std::abs(values_.rows(contact, static_cast<Eigen::Index>(k)) * x[at(system_.positions[k])]);
-  }
-  const auto& [rtol, atol] = moment.tolerances;
-  return std::abs(values_.gap(contact)) <= atol + rtol * terms &&
-         std::abs(point.normal_velocity(contact)) <= 64.0 * slowest(moment, point, x);
-}
-
 std::optional<std::string> Contacts::settle(const ContactMoment& moment, const std::vector<int>& jumps,
                                             std::vector<double>& x) {
   std::vector<int> touching;
@@ -239,6 +223,9 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
   for (Eigen::Index row = 0; row < point.velocity.size(); ++row) {
     if (std::abs(point.velocity(row)) <= small_velocity * small_velocity * size + 64.0 * rounding_unit * size)
       point.velocity(row) = 0.0;
+  }
+  for (const int i : touching) {
+    if (rises_by_nothing(moment, i, point, x)) point.velocity(i) = 0.0;
   }
   constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
   for (int i = 0; i < m; ++i) {

@@ -36,6 +36,9 @@ class Contacts {
   [[nodiscard]] bool guards(int function) const {
     return !guards_.empty() && guards_[static_cast<std::size_t>(function)];
   }
+  /// Returns how far a guard may be on the wrong side where a mode begins: the gap of a contact that has just opened is
+  /// 0 to the rounding of bodies whose positions may all be 0.
+  [[nodiscard]] double tolerated(int function, const std::vector<double>& x) const;
   /// Returns those whose jumps are in a list, or for which a condition on their jumps holds.
   template <class Condition>
   [[nodiscard]] std::vector<int> with_jumps(Condition condition) const {
@@ -74,6 +77,8 @@ class Contacts {
   /// Of the slowest speed, below which a slip in a plane is none: at twice its tolerance a step runs through the rest
   /// unseen, and comes out on the other side as fast as before.
   static constexpr double none_below = 3.0;
+  /// Of gaps, which are lengths: as at a start.
+  static constexpr double none_at_start = 1e-12;
 
   [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
   [[nodiscard]] double force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
@@ -93,6 +98,9 @@ class Contacts {
   [[nodiscard]] bool reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
                                      const std::vector<double>& x) const;
   void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
+  [[nodiscard]] double gap_terms(int contact, const std::vector<double>& x) const;
+  [[nodiscard]] bool rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
+                                      const std::vector<double>& x) const;
   [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
                                    const std::vector<double>& x) const;
   void set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const;

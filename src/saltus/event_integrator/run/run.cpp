@@ -9,7 +9,6 @@
 #include "saltus/event_integrator/mode/undefined.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 #include "saltus/event_integrator/steps/thin_layers.hpp"
-#include "saltus/model/vanishing_norm.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -195,8 +194,7 @@ CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording
       contacts_.forget_impulses(here_.x);
       if (outcome_.result.statistics.steps + outcome_.result.statistics.rejected >= options_.max_steps) {
         fail(Termination::iteration_limit,
-             fmt::format("max_steps = {} reached at {}{}", options_.max_steps, where(),
-                         model::vanishing_norm(switching_context_.system, here_.t, here_.x)));
+             fmt::format("max_steps = {} reached at {}{}", options_.max_steps, where(), advice_on_steps()));
         break;
       }
       if (event_.spiral) begin_spiral();

@@ -56,7 +56,8 @@ bool Run::contact_modes_hold() {
   constexpr double clear = 1e-9;
   const bool hold = std::none_of(values.begin(), values.end(), [&](const double& value) {
     const auto function = static_cast<int>(&value - values.data());
-    return contacts_.guards(function) && value > clear * magnitude[at(function)];
+    return contacts_.guards(function) &&
+           value > std::max(clear * magnitude[at(function)], contacts_.tolerated(function, here_.x));
   });
   if (hold) return true;
   fail(Termination::outside_class,

@@ -13,6 +13,7 @@
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 #include "saltus/event_integrator/sequences/contracting_cycles.hpp"
+#include "saltus/model/vanishing_norm.hpp"
 
 namespace saltus::event_integrator {
 
@@ -36,6 +37,16 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
     }
   }
   return fired;
+}
+
+/// What may help where all steps are used up.
+std::string Run::advice_on_steps() {
+  std::string norm = model::vanishing_norm(switching_context_.system, here_.t, here_.x);
+  if (!norm.empty()) return norm;
+  const std::string cycles = ContractingCycles(switching_context_, here_, recorder_).describe();
+  return fmt::format(
+      "; raise simulate.max_steps if they are meant, or {}",
+      cycles.empty() ? "try --integrator radau5: the model may be stiff" : "change the model: " + cycles);
 }
 
 bool Run::too_many_events() {

@@ -183,6 +183,7 @@ class Run {
   bool jumps_have_problem();
   void start_step();
   bool too_many_events();
+  [[nodiscard]] std::string advice_on_steps();
   void accumulates();
   bool stopped_by_two_fold();
   bool stopped_by_singularity();

@@ -7,7 +7,7 @@
 namespace saltus::fesd_integrator {
 
 void OutputRows::row_inside(double t) {
-  recorder_.row(t, interior_.x(), position_.set(), interior_.selections(), context_.held.data());
+  recorder_.row(t, interior_.x(), interior_.set(), interior_.selections(), context_.held.data());
 }
 
 void OutputRows::emit(const Element& element, const std::vector<double>& selections, double until) {
@@ -61,7 +61,7 @@ void OutputRows::columns_at(const Element& element, const std::vector<double>& s
   columns += context_.facts.n_u;
   context_.functions.outputs(t, interior_.x().data(), interior_.selections().data(), held, columns);
   columns += context_.facts.n_y;
-  const auto view = recorder_.view(position_.set(), interior_.selections(), held);
+  const auto view = recorder_.view(interior_.set(), interior_.selections(), held);
   std::copy(view.alpha.begin(), view.alpha.end(), columns);
 }
 

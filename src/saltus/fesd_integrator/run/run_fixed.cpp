@@ -50,6 +50,7 @@ void Run::advance_fixed_element(const FixedSpan& span) {
 void Run::accept_fixed(double end, double part) {
   before_.set = position_.set();
   before_.selections = position_.selections();
+  interior_.take_stage_sets(fixed_.sets());
   tangents_.fixed_step(chain_.element(0), fixed_.sets(), part);
   accept(chain_.element(0), before_.selections, fixed_.end_selections(), end);
   if (stopped()) return;

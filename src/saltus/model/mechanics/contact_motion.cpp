@@ -35,6 +35,7 @@ class ContactMotion {
     for (const auto& stated : contacts_) {
       if (auto error = check_values(stated)) return tl::unexpected(*error);
       if (auto error = check_gap(stated)) return tl::unexpected(*error);
+      if (auto error = check_jumps(stated)) return tl::unexpected(*error);
       Contact contact{.name = stated.name};
       contact.has_friction =
           !stated.tangents.is_empty() && recognition_.parameter_value(stated.friction.scalar()).value_or(0.0) > 0.0;
@@ -97,6 +98,7 @@ class ContactMotion {
       return contact_error(contact.location, fmt::format(fmt::runtime(message), contact.name), remedy);
     };
     for (const SX& tangent : rows) {
+      if (auto error = check_reach(tangent, contact)) return error;
       const auto size = along(tangent, tangent);
       if (!size) return with_location(size.error(), contact.location);
       if (*size == 0.0) {
@@ -116,6 +118,59 @@ class ContactMotion {
     if (!*parallel) return std::nullopt;
     return refused("the tangents of '{}' have one direction at the start",
                    "two tangents span the plane in which the contact slips; in one direction one is enough");
+  }
+
+  /// Its rate and its derivatives are those of positions and t.
+  std::optional<Error> check_reach(const SX& tangent, const ContactStatement& contact) {
+    const SX row = SX::densify(tangent);
+    for (const SXElem& entry : row.nonzeros()) {
+      const auto node = recognition_.graph.add(entry);
+      if (!node) return with_location(node.error(), contact.location);
+      auto error =
+          check_smooth(recognition_, statement_, *node,
+                       {motion_.positions, true, fmt::format("the tangent of '{}'", contact.name), contact.location});
+      if (error) return with_context(*error, "in [[contacts]]");
+    }
+    return std::nullopt;
+  }
+
+  /// A jump of the user's at the same place would turn the velocity before the contact sees it.
+  std::optional<Error> check_jumps(const ContactStatement& contact) const {
+    const auto& velocities = motion_.velocities;
+    for (const auto& jump : statement_.jumps) {
+      const bool sets_velocity = std::any_of(jump.set.begin(), jump.set.end(), [&](const auto& assignment) {
+        return std::find(velocities.begin(), velocities.end(), assignment.state) != velocities.end();
+      });
+      const bool is_there = (jump.guard && is_gap(SX(*jump.guard), contact)) ||
+                            (jump.condition && compares_gap(*jump.condition, contact));
+      if (!sets_velocity || !is_there) continue;
+      return Error{ErrorCode::invalid_model,
+                   fmt::format("a jump sets velocities where the gap of the contact '{}' closes", contact.name),
+                   "leave one of them out: the contact turns the velocity itself, by its `restitution` and `friction`",
+                   jump.when_location,
+                   {"in [[jumps]]"}};
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] static bool is_gap(const SX& expression, const ContactStatement& contact) {
+    constexpr casadi_int deep = 100;
+    return SX::is_equal(expression, contact.gap, deep) || SX::is_equal(expression, -contact.gap, deep);
+  }
+
+  [[nodiscard]] static bool compares_gap(const Condition& condition, const ContactStatement& contact) {
+    switch (condition.kind()) {
+      case Condition::Kind::comparison:
+        return is_gap(condition.comparison().difference, contact);
+      case Condition::Kind::conjunction:
+      case Condition::Kind::disjunction:
+        return compares_gap(condition.left(), contact) || compares_gap(condition.right(), contact);
+      case Condition::Kind::negation:
+        return compares_gap(condition.left(), contact);
+      case Condition::Kind::constant:
+        return false;
+    }
+    __builtin_unreachable();
   }
 
   std::optional<Error> check_gap(const ContactStatement& contact) {

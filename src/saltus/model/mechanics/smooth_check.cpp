@@ -37,6 +37,11 @@ std::optional<Error> check_smooth(const Recognition& recognition, const Statemen
     if (is_state && std::find(positions.begin(), positions.end(), variable.index) != positions.end()) continue;
     const SXElem symbol = recognition.graph.expression(member);
     if (variable.kind == VariableKind::control && is_a_parameter(statement, symbol)) continue;
+    if (allowed.and_time && SXElem::is_equal(symbol, statement.time, 0)) {
+      return not_allowed(allowed,
+                         fmt::format("{} depends on t, and time stands still while bodies collide", allowed.what),
+                         "use method = \"event\"; for this one let what moves have a position of its own");
+    }
     return not_allowed(
         allowed, fmt::format("{} depends on '{}', which is no position and no parameter", allowed.what, symbol.name()),
         fmt::format("it is an expression of positions{} and parameters", allowed.and_time ? ", t" : ""));

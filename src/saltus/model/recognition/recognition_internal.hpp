@@ -93,7 +93,7 @@ class Recognition {
   [[nodiscard]] Expected<Truth> comparison_truth(TruthDiagram& diagram, const Comparison& comparison);
   [[nodiscard]] std::optional<SharedFunction> find(int psi_node, std::optional<double> at_zero);
   int append(const std::string& name, const SXElem& psi, int psi_node, std::optional<double> at_zero);
-  [[nodiscard]] Expected<SXElem> whole_part(const SXElem& e, const std::string& name);
+  [[nodiscard]] Expected<SXElem> whole_part(const SXElem& e, const SXElem& written, const std::string& name);
   [[nodiscard]] std::optional<SXElem> lookup_corners(const std::shared_ptr<const CellTable>& table, const SXElem& e,
                                                      const std::string& name, int& corners);
   [[nodiscard]] std::vector<int> alphas_in(int node) const;

@@ -62,17 +62,18 @@ Expected<SXElem> Recognition::lookup(const std::shared_ptr<const CellTable>& tab
   return *value;
 }
 
-Expected<SXElem> Recognition::whole_part(const SXElem& e, const std::string& name) {
+/// @param written  the argument as the user wrote it, for messages
+Expected<SXElem> Recognition::whole_part(const SXElem& e, const SXElem& written, const std::string& name) {
   const auto node = graph.add(e);
   if (!node) return tl::unexpected(node.error());
   constexpr KindSet forbidden = changing_kinds & ~kind_bit(VariableKind::time) & ~kind_bit(VariableKind::cell);
   if (!whole_parts_of_all_ && (graph.tape()[*node].reached & forbidden) != 0) {
-    return tl::unexpected(not_of_time(name.substr(0, name.find('(')), casadi::SX(e).get_str().substr(0, 80)));
+    return tl::unexpected(not_of_time(name.substr(0, name.find('(')), casadi::SX(written).get_str().substr(0, 80)));
   }
   return lookup(integers_, e, name);
 }
 
-Expected<SXElem> Recognition::floor(const SXElem& e, const std::string& name) { return whole_part(e, name); }
+Expected<SXElem> Recognition::floor(const SXElem& e, const std::string& name) { return whole_part(e, e, name); }
 
 Expected<SXElem> Recognition::mod(const SXElem& e, const SXElem& m, const std::string& name) {
   const auto period = parameter_value(m);
@@ -85,7 +86,7 @@ Expected<SXElem> Recognition::mod(const SXElem& e, const SXElem& m, const std::s
               {},
               {}});
   }
-  return whole_part(e / m, name).map([&](const SXElem& whole) { return e - m * whole; });
+  return whole_part(e / m, e, name).map([&](const SXElem& whole) { return e - m * whole; });
 }
 
 }  // namespace saltus::model

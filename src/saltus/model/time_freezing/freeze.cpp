@@ -59,19 +59,23 @@ class ContactFreezing {
         plan_(plan),
         m_(static_cast<casadi_int>(system.contacts.size())) {}
 
-  [[nodiscard]] std::optional<Error> run() {
+  [[nodiscard]] std::optional<Error> run(const std::vector<ContactStatement>& contacts) {
     for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
-      if (system_.contacts[i].in_plane) {
-        return not_frozen(
-            fmt::format("the contact '{}' has two tangents: time-freezing covers one", system_.contacts[i].name),
-            "simulate with method = \"event\", or leave one of them out");
-      }
-      if (auto error = plan_.made.contacts[i].is_elastic ? take_elastic(i) : take_inelastic(i)) return error;
+      if (auto error = take(i)) return with_location(*error, contacts[i].location);
     }
     return std::nullopt;
   }
 
  private:
+  [[nodiscard]] std::optional<Error> take(std::size_t i) {
+    if (system_.contacts[i].in_plane) {
+      return not_frozen(
+          fmt::format("the contact '{}' has two tangents: time-freezing covers one", system_.contacts[i].name),
+          "simulate with method = \"event\", or leave one of them out");
+    }
+    return plan_.made.contacts[i].is_elastic ? take_elastic(i) : take_inelastic(i);
+  }
+
   Expected<SX> selection(const SX& psi, const std::string& name, FrozenSelection& found) {
     const auto alpha = recognition_.step(SX::densify(psi).scalar(), name);
     if (!alpha) return tl::unexpected(alpha.error());
@@ -191,7 +195,7 @@ Expected<SX> freeze_contacts(Recognition& recognition, Statement& statement,
   const auto system = contact_motion(recognition, statement, contacts, motion);
   if (!system) return tl::unexpected(system.error());
   plan.made.velocities = motion.velocities;
-  if (auto error = ContactFreezing(recognition, statement, *system, plan).run()) return tl::unexpected(*error);
+  if (auto error = ContactFreezing(recognition, statement, *system, plan).run(contacts)) return tl::unexpected(*error);
   return motion.force;
 }
 

@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
+#include "saltus/pipeline/optimal_control/touching_bodies_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -151,12 +152,16 @@ Eigen::VectorXd Resimulation::end_of(std::size_t k, std::vector<double> start,
 double Resimulation::amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted) {
   const auto n = index(scales.size());
   Eigen::MatrixXd product = Eigen::MatrixXd::Identity(n, n), derivative(n, n);
+  TouchingBodies bodies(system_, kernel_);
   for (std::size_t k = 0; k < path_->controls.size(); ++k) {
+    const auto modes = bodies.modes_at(path_->times[k], path_->nodes[k]);
     for (std::size_t j = 0; j < scales.size(); ++j) {
       auto above = path_->nodes[k], below = path_->nodes[k];
       above[j] += difference_step * scales[j];
       below[j] -= difference_step * scales[j];
       const double width = above[j] - below[j];
+      bodies.project(path_->times[k], modes, above);
+      bodies.project(path_->times[k], modes, below);
       const Eigen::VectorXd at_above = end_of(k, std::move(above), is_interrupted);
       derivative.col(index(j)) = (at_above - end_of(k, std::move(below), is_interrupted)) / width;
       if (!derivative.col(index(j)).allFinite()) return std::numeric_limits<double>::quiet_NaN();

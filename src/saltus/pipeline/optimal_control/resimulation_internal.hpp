@@ -31,7 +31,8 @@ class Resimulation {
   /// Simulates from the first node over the whole horizon, likewise.
   [[nodiscard]] Segment open_loop(const std::function<bool()>& is_interrupted);
   /// Returns the 2-norm of d x(T) / d x(from), the product of the derivatives of all intervals, by central differences
-  /// in steps of 1e-5 `scales`; NaN if a simulation does not come to its end.
+  /// in steps of 1e-5 `scales`. Bodies that touch at a node stay in touch. NaN if a simulation does not come to its
+  /// end.
   [[nodiscard]] double amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted);
 
  private:

@@ -3,6 +3,8 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "saltus/base/at.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
@@ -86,6 +88,8 @@ Expected<result::Result> simulate_frozen(const model::System& system, const Simu
   } else if (status.termination == result::Termination::completed) {
     status.termination = result::Termination::not_converged;
     status.message = "the clock stands still";
+  } else if (!status.message.empty()) {
+    status.message += fmt::format(" (of numerical time; bodies and relays are at t = {:.10g})", reached);
   }
   status.time_reached = ended ? until : reached;
   const double standing = standing_part * (until - from) / static_cast<double>(options.fesd.steps);

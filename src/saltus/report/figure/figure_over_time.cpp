@@ -23,6 +23,9 @@ constexpr Pen event_line{paper::mark, 0.6}, jump_line{"#b6d5da", 0.6}, alarm_lin
 
 using Curves = std::vector<FigureColumn>;
 
+constexpr ColumnSort drawn_sorts[] = {ColumnSort::state, ColumnSort::output, ColumnSort::control, ColumnSort::alpha,
+                                      ColumnSort::theta};
+
 bool is_step(const result::Result& result, const FigureColumn& column) {
   return column.sort == ColumnSort::state && is_discrete(result.trajectory.t, column.values);
 }
@@ -36,13 +39,29 @@ double span_of(const FigureColumn& column) {
   return range.to - range.from;
 }
 
-/// Columns of a sort that move, all if none does; of very many those that move most.
-Curves moving_of(const Curves& all, ColumnSort sort) {
-  Curves columns, moving;
+Curves of_sort(const Curves& all, ColumnSort sort) {
+  Curves columns;
   std::copy_if(all.begin(), all.end(), std::back_inserter(columns), [&](const auto& one) { return one.sort == sort; });
+  return columns;
+}
+
+/// Those of a sort that move: by more than their own rounding, and than a rounding of the largest among them.
+Curves moving_of(const Curves& columns) {
+  double largest = 0.0;
+  for (const auto& column : columns) {
+    const Range range = range_of(column.values);
+    largest = std::max({largest, std::abs(range.from), std::abs(range.to)});
+  }
+  Curves moving;
   std::copy_if(columns.begin(), columns.end(), std::back_inserter(moving),
-               [](const auto& one) { return moves(one.values); });
-  if (!moving.empty()) columns = std::move(moving);
+               [&](const auto& one) { return moves(one.values) && span_of(one) > 1e-15 * largest; });
+  return moving;
+}
+
+/// Columns of a sort that move, all if none does; of very many those that move most.
+Curves moving_first(const Curves& all, ColumnSort sort) {
+  Curves columns = of_sort(all, sort);
+  if (auto moving = moving_of(columns); !moving.empty()) columns = std::move(moving);
   const std::size_t most = sort == ColumnSort::alpha || sort == ColumnSort::theta ? most_panels : most_curves;
   if (columns.size() <= most) return columns;
   std::vector<double> spans;
@@ -90,9 +109,8 @@ std::vector<Curves> first_panels(const result::Result& result) {
   const auto all = figure_columns(result);
   std::vector<Curves> panels;
   Curves steps;
-  for (const auto sort :
-       {ColumnSort::state, ColumnSort::output, ColumnSort::control, ColumnSort::alpha, ColumnSort::theta}) {
-    auto columns = moving_of(all, sort);
+  for (const auto sort : drawn_sorts) {
+    auto columns = moving_first(all, sort);
     std::copy_if(columns.begin(), columns.end(), std::back_inserter(steps),
                  [&](const auto& one) { return is_step(result, one); });
     std::erase_if(columns, [&](const auto& one) { return is_step(result, one); });
@@ -110,10 +128,10 @@ std::size_t count_of(const std::vector<Curves>& panels) {
 
 /// Columns that move, without the time.
 std::size_t count_of_moving(const result::Result& result) {
-  auto columns = figure_columns(result);
-  columns.pop_back();
-  std::erase_if(columns, [](const FigureColumn& column) { return !moves(column.values); });
-  return columns.size();
+  const auto all = figure_columns(result);
+  std::size_t count = 0;
+  for (const auto sort : drawn_sorts) count += moving_of(of_sort(all, sort)).size();
+  return count;
 }
 
 /// Events as thin lines from the top to the bottom, of many one for some pixels; those that are not unique always.
@@ -168,8 +186,28 @@ void draw_chattering(Svg& svg, const std::vector<Chattering>& pixels, const Plot
   }
 }
 
+/// The impulse of a contact is there at one instant: no line leads from it to the row behind.
+bool is_impulse(const result::Result& result, const FigureColumn& column) {
+  return column.sort == ColumnSort::output &&
+         std::any_of(result.contacts.begin(), result.contacts.end(),
+                     [&](const std::string& contact) { return column.name == fmt::format("impulse({})", contact); });
+}
+
+void draw_stems(Svg& svg, const std::vector<double>& t, const std::vector<double>& values, const Plot& plot,
+                std::string_view color) {
+  if (t.empty()) return;
+  std::vector<Point> line{plot.place(t.front(), 0.0)};
+  for (std::size_t row = 0; row < t.size(); ++row) {
+    if (values[row] == 0.0 || !std::isfinite(values[row])) continue;
+    for (const double value : {0.0, values[row], 0.0}) line.push_back(plot.place(t[row], value));
+  }
+  line.push_back(plot.place(t.back(), 0.0));
+  svg.path(line, {color, 1.6});
+}
+
 void draw_curve(Svg& svg, const result::Result& result, const FigureColumn& column, const Plot& plot,
                 std::string_view color) {
+  if (is_impulse(result, column)) return draw_stems(svg, result.trajectory.t, column.values, plot, color);
   const double pixel = (plot.x.to - plot.x.from) / plot.width;
   const auto& t = result.trajectory.t;
   const auto chattering = chattering_pixels(t, column.values, pixel, 1e-5 * span_of(column));

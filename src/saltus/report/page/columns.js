@@ -88,9 +88,15 @@ saltus.axes = (result) =>
 saltus.firstCurves = (columns) => (columns.length > 200 ? 16 : 48);
 saltus.firstBands = (columns) => (columns.length > 200 ? 8 : 24);
 
+/** Columns of a sort that move: by more than their own rounding, and than a rounding of the largest among them. */
+saltus.movingOf = (columns) => {
+  const largest = columns.reduce((most, {range}) => Math.max(most, Math.abs(range[0]), Math.abs(range[1])), 0);
+  return columns.filter(({range}) => saltus.isWide(range) && range[1] - range[0] > 1e-15 * largest);
+};
+
 /** Columns of a sort that move, all if none does; of very many those that move most; discrete ones last. */
 saltus.movingFirst = (columns) => {
-  const moving = columns.filter((column) => saltus.isWide(column.range));
+  const moving = saltus.movingOf(columns);
   const shown = moving.length > 0 ? moving : columns;
   const size = ({range: [least, greatest]}) => greatest - least;
   const most = new Set([...shown].sort((a, b) => size(b) - size(a)).slice(0, saltus.firstCurves(columns)));

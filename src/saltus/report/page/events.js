@@ -74,7 +74,9 @@ saltus.eventColumns = (result) => {
     {title: "reason", cell: (event) => event.reason},
   ];
   const several = result.switching_functions.length > 1;
-  const printed = [...narrow, ...wide.filter((column) => column.title.startsWith("x ="))];
+  // On paper there is no room for more.
+  const few = result.states.length <= saltus.printedStates;
+  const printed = [...narrow, ...wide.filter((column) => few && column.title.startsWith("x ="))];
   return {narrow, printed, all: [...narrow, ...wide.filter((column) => several || column.title !== "mode of all")]};
 };
 
@@ -141,14 +143,16 @@ saltus.eventFilter = (result, changed) => {
   return saltus.element("div", {class: "chips"}, ...boxes, search, found);
 };
 
-/** Rows of the table on paper. */
+/** Rows of the table on paper, and states and modes beside each other in them. */
 saltus.printedRows = 400;
+saltus.printedStates = 12;
 
 saltus.eventTable = (result, select, zoomTo) => {
   const columns = saltus.eventColumns(result);
   const head = saltus.element("thead");
   const body = saltus.element("tbody");
-  const table = saltus.element("table", {class: "events"}, head, body);
+  const many = result.switching_functions.length > saltus.printedStates;
+  const table = saltus.element("table", {class: many ? "events many" : "events"}, head, body);
   const scroller = saltus.element(
       "div", {
         class: "scroller",

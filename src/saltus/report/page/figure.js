@@ -115,8 +115,11 @@ saltus.envelopeTraces = ({x, low, high, mean}, axis, color) => {
 saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve, i) => {
   const color = saltus.curveColour(panel, i, view.palette);
   const steps = saltus.controlSteps(result, curve);
+  const stems = saltus.isImpulse(result, curve) ?
+      saltus.stems(result.trajectory.t, curve.values, view.window, view.pixels) :
+      null;
   const {x, y, jumps, envelope} =
-      steps ?? saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
+      steps ?? stems ?? saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
   const line = {
     ...saltus.lineOverTime(axis, x, y),
     // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
@@ -158,7 +161,7 @@ saltus.panelAxis = (panel, stack, palette) => {
     zerolinecolor: palette.axis,
     zerolinewidth: 1,
     nticks: Math.max(3, Math.round(panel.height / 24)),
-    automargin: true,
+    automargin: "left",  // plotly draws all of it a second time where a margin grows
     exponentformat: "power",
     minexponent: 5,
     tickfont: {size: 11},
@@ -212,7 +215,7 @@ saltus.labelWidth = (result) => {
 
 saltus.figureLayout = (result, stack, view) => {
   const {palette} = view;
-  const margin = {l: 52, r: saltus.labelWidth(result), t: 4, b: 38};
+  const margin = {l: 52, r: saltus.labelWidth(result), t: 10, b: 38};
   const layout = {
     height: stack.height + margin.t + margin.b,
     margin,

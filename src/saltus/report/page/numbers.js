@@ -99,35 +99,25 @@ saltus.byteSink = (room) => {
   return sink;
 };
 
-/** One compressed block. The state of the reader is held in variables: this loop is most of the time of opening. */
+/**
+ * One compressed block. The state of the reader is held in variables that no function shares, and bits are filled up to
+ * 24 at once: this loop is most of the time of opening.
+ */
 saltus.inflateBlock = (input, reader, sink, [literals, distances]) => {
   let {at, held, count} = reader;
   let {bytes, size} = sink;
   const {base, bits} = saltus.inflateLengths;
   const far = saltus.inflateDistances;
-  const fill = (wanted) => {
-    while (count < wanted) {
-      held |= (at < input.length ? input[at] : 0) << count;
-      at += 1;
-      count += 8;
-    }
-  };
-  const take = (wanted) => {
-    fill(wanted);
-    const value = held & ((1 << wanted) - 1);
-    held >>>= wanted;
-    count -= wanted;
-    return value;
-  };
+  const {table, mask} = literals;
   for (;;) {
-    if (count < 15) fill(15);
-    const entry = literals.table[held & literals.mask];
+    for (; count < 24; at += 1, count += 8) held |= input[at] << count;  // behind the end: undefined, which is 0
+    const entry = table[held & mask];
     held >>>= entry & 15;
     count -= entry & 15;
     const symbol = entry >> 4;
     if (symbol === 256) break;
     if (size + 258 > bytes.length) {
-      if (at > input.length + 4) throw new Error("the deflated numbers of this page are cut off");
+      if (at > input.length + 8) throw new Error("the deflated numbers of this page are cut off");
       sink.size = size;
       sink.reserve(258);
       bytes = sink.bytes;
@@ -137,12 +127,19 @@ saltus.inflateBlock = (input, reader, sink, [literals, distances]) => {
       size += 1;
       continue;
     }
-    const length = base[symbol - 257] + take(bits[symbol - 257]);
-    fill(15);
+    const more = bits[symbol - 257];
+    const length = base[symbol - 257] + (held & ((1 << more) - 1));
+    held >>>= more;
+    count -= more;
+    for (; count < 24; at += 1, count += 8) held |= input[at] << count;
     const step = distances.table[held & distances.mask];
     held >>>= step & 15;
     count -= step & 15;
-    const from = size - far.base[step >> 4] - take(far.bits[step >> 4]);
+    for (; count < 16; at += 1, count += 8) held |= input[at] << count;
+    const wide = far.bits[step >> 4];
+    const from = size - far.base[step >> 4] - (held & ((1 << wide) - 1));
+    held >>>= wide;
+    count -= wide;
     for (let k = 0; k < length; k += 1) bytes[size + k] = bytes[from + k];
     size += length;
   }

@@ -69,7 +69,7 @@ saltus.stackPanels = (result, height, choice = saltus.firstPanels(result)) => {
   const curves = saltus.curvePanels(result, choice);
   const panels = [{kind: "events", height: 22}];
   if (bands > 0) panels.push({kind: "modes", bands: choice.bands, height: bands === 1 ? 26 : 20 * bands});
-  const gap = 12;
+  const gap = 16;  // room for the lowest and the highest number of neighbours
   const fixed = panels.reduce((sum, panel) => sum + panel.height + gap, 0);
   const weights = curves.map((panel) => (panel.fractions ? 0.65 : 1));
   const total = weights.reduce((sum, weight) => sum + weight, 0);

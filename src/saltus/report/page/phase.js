@@ -113,7 +113,8 @@ saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
  */
 saltus.firstChoice = (result, size) => {
   const columns = saltus.columns(result).slice(0, result.states.length);
-  const moves = (state) => saltus.isWide(columns[state].range) && !columns[state].discrete;
+  const moving = new Set(saltus.movingOf(columns));
+  const moves = (state) => moving.has(columns[state]) && !columns[state].discrete;
   const first = result.surfaces.find((surface) => surface.states.every(moves));
   const states = columns.map((_, i) => i);
   const time = size > 2 ? [saltus.axes(result).length - 1] : [];

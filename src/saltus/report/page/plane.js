@@ -113,7 +113,7 @@ saltus.scaleOf = (range, values, log) => {
 };
 
 saltus.planeLayout = (result, choice, view, holder, palette, {equal, logs}) => {
-  const axis = (i) => ({
+  const axis = (i, automargin) => ({
     title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 48)), standoff: 6},
     ...saltus.scaleOf(view.box[i], view.rows.map((row) => view.columns[i][row]), logs[i]),
     gridcolor: palette.grid,
@@ -121,14 +121,14 @@ saltus.planeLayout = (result, choice, view, holder, palette, {equal, logs}) => {
     linecolor: palette.axis,
     showline: true,
     mirror: true,
-    automargin: true,
+    automargin,
     exponentformat: "power",
     minexponent: 5,
   });
   return {
     width: holder.clientWidth,
     height: holder.clientHeight,
-    margin: {l: 60, r: 12, t: 30, b: 44},
+    margin: {l: 60, r: 16, t: 44, b: 48},
     hovermode: "closest",
     separators: ".",
     // What the reader has zoomed to stays until other states or another time are chosen.
@@ -136,8 +136,8 @@ saltus.planeLayout = (result, choice, view, holder, palette, {equal, logs}) => {
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: palette.panel,
     font: {family: "system-ui, sans-serif", size: 12, color: palette.text},
-    xaxis: axis(0),
-    yaxis: {...axis(1), ...(equal ? {scaleanchor: "x"} : {})},
+    xaxis: axis(0, "bottom"),
+    yaxis: {...axis(1, "left"), ...(equal ? {scaleanchor: "x"} : {})},
     legend: {orientation: "h", x: 0, y: 1.01, yanchor: "bottom", font: {size: 11}},
   };
 };

@@ -130,6 +130,29 @@ saltus.chatteringPixels = (t, values, [begin, end], buckets, leastJump) => {
   return pixels;
 };
 
+/** The impulse of a contact is there at one instant: no line leads from it to the row behind. */
+saltus.isImpulse = (result, {sort, name}) =>
+    sort === "output" && (result.contacts ?? []).some((contact) => name === `impulse(${contact})`);
+
+/** Upright lines from 0 where values are not 0, of those nearer than a pixel the longest. */
+saltus.stems = (t, values, [from, to], pixels) => {
+  const x = [Math.max(from, t[0])];
+  const y = [0];
+  values.forEach((value, i) => {
+    if (!value || t[i] < from || t[i] > to) return;
+    const last = y.length - 2;
+    if (last > 0 && t[i] - x[last] < (to - from) / pixels) {
+      if (Math.abs(value) > Math.abs(y[last])) y[last] = value;
+      return;
+    }
+    x.push(t[i], t[i], t[i]);
+    y.push(0, value, 0);
+  });
+  x.push(Math.min(to, t[t.length - 1]));
+  y.push(0);
+  return {x, y, jumps: {x: [], y: []}};
+};
+
 /**
  * Points of one curve; a jump (two values at one time) and a missing value are gaps. `jumps` has both sides of every
  * jump with a gap behind, `envelope` what is drawn instead where it chatters. A discrete curve has no gaps: its steps are

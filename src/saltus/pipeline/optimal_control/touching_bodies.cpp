@@ -1,0 +1,61 @@
+#include <cmath>
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+
+#include "saltus/base/at.hpp"
+#include "saltus/pipeline/optimal_control/touching_bodies_internal.hpp"
+
+namespace saltus::pipeline {
+
+using result::ContactMode;
+
+TouchingBodies::TouchingBodies(const model::System& system, const evaluation::ModelKernel& kernel)
+    : contacts_(system.contacts), kernel_(kernel), alpha_(system.switching.size(), 0.5) {}
+
+std::vector<ContactMode> TouchingBodies::modes_at(double t, const std::vector<double>& x) {
+  constexpr double none = 1e-9;
+  std::vector<ContactMode> modes;
+  if (contacts_.empty()) return modes;
+  evaluate(t, x);
+  for (Eigen::Index k = 0; k < values_.gap.size(); ++k) {
+    const bool rests = values_.gap(k) <= none && std::abs(values_.velocity(k)) <= none;
+    modes.push_back(rests ? ContactMode::closed : ContactMode::open);
+  }
+  return modes;
+}
+
+void TouchingBodies::project(double t, const std::vector<ContactMode>& modes, std::vector<double>& x) {
+  if (modes.empty()) return;
+  constexpr int corrections = 5;
+  for (int i = 0; i < corrections; ++i) {
+    evaluate(t, x);
+    std::vector<int> rows;
+    for (std::size_t k = 0; k < modes.size(); ++k) {
+      if (modes[k] != ContactMode::open || values_.gap(index(k)) < 0.0) rows.push_back(static_cast<int>(k));
+    }
+    if (rows.empty()) break;
+    correct(rows, values_.gap(rows), contacts_.positions, x);
+  }
+  evaluate(t, x);
+  std::vector<int> held;
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    if (modes[k] != ContactMode::open) held.push_back(static_cast<int>(k));
+    if (modes[k] == ContactMode::stick) held.push_back(static_cast<int>(k + modes.size()));
+  }
+  if (!held.empty()) correct(held, values_.velocity(held), contacts_.velocities, x);
+}
+
+void TouchingBodies::evaluate(double t, const std::vector<double>& x) {
+  kernel_.contacts(t, x.data(), alpha_.data(), values_);
+}
+
+void TouchingBodies::correct(const std::vector<int>& rows, const Eigen::VectorXd& values,
+                             const std::vector<int>& states, std::vector<double>& x) const {
+  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
+  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
+  const Eigen::VectorXd change = response * influence.completeOrthogonalDecomposition().solve(values);
+  for (std::size_t k = 0; k < states.size(); ++k) x[at(states[k])] -= change(index(k));
+}
+
+}  // namespace saltus::pipeline
