@@ -17,7 +17,7 @@ from ._statement import Rates, given
 from ._structure import Structure
 from ._sweep import Sweep
 
-Entries = typing.Union[np.ndarray, list[typing.Any], tuple[typing.Any, ...]]
+Entries = typing.Union[np.ndarray[typing.Any, typing.Any], list[typing.Any], tuple[typing.Any, ...]]
 
 
 class Builder(Structure):

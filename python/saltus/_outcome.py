@@ -9,7 +9,7 @@ import numpy as np
 from . import _core
 from ._spelling import in_python, keywords
 
-Array = np.ndarray
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
 class Status(str):

@@ -18,7 +18,7 @@ from ._expression import Expression, refuse
 from ._facts import Facts
 from ._outcome import Final, Kept, Sensitivities, Status
 
-Array = np.ndarray
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
 _OF_OPTIMUM = (

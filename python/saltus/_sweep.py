@@ -13,7 +13,7 @@ from ._outcome import Kept, unknown
 from ._result import Result, needed
 from ._settings import text_of
 
-Array = np.ndarray
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 #: Columns, results, and the names of what was changed.
 Found = tuple[dict[str, typing.Any], list[Result], list[str]]
