@@ -8,7 +8,7 @@ help:
 	@echo "make test     install what is missing, build, run every test (release and sanitizers)"
 	@echo "make install  build and install to PREFIX (default /usr/local)"
 	@echo "make wheel    build the Python package into build/wheel"
-	@echo "make package  build a tarball, a .deb and an archive of the source into build/package"
+	@echo "make package  build a tarball, a .deb, a wheel and the source for pip into build/package"
 	@echo "make site     build the documentation into build/site, running all that it shows"
 	@echo "make format   clang-format every source"
 	@echo "make clean    remove build/ and demo/"
@@ -32,8 +32,7 @@ wheel:
 	@scripts/install.sh python
 	cmake --preset release --log-level=NOTICE
 	cmake --build build/release --target saltus_python
-	.venv/bin/python3 -m pip wheel --disable-pip-version-check --no-build-isolation --no-deps python/ \
-	  --wheel-dir build/wheel --config-settings=build-dir=../build/release
+	scripts/wheel.sh build/release build/wheel
 
 package:
 	@scripts/package.sh

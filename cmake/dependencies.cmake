@@ -15,7 +15,7 @@
 # zlib            >= 1.2   Zlib      zlib1g-dev; numbers of reports, deflated
 # librsvg         any      LGPL-2.1  librsvg2-bin; its program writes .pdf and .png drawings, looked for at run time
 # plotly.js       4.1      MIT       scripts/make_plotly.sh by npm, or the wheel of PyPI's plotly in .venv; pictures of the report, read at run time
-# nanobind        >= 2.4   BSD-3     wheel of PyPI in .venv; the Python package only
+# nanobind        >= 3.1   BSD-3     wheel of PyPI in .venv; the Python package only, with nanobind-backend at run time
 
 # The wheels of the tree's own virtual environment, whatever Python made it.
 file(GLOB SALTUS_SITE_PACKAGES ${PROJECT_SOURCE_DIR}/.venv/lib/python3*/site-packages)

@@ -54,7 +54,7 @@ endif()
 install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus/models
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.csv")
 find_file(SALTUS_PLOTLY_JS NAMES plotly.min.js plotly/package_data/plotly.min.js
-  PATHS ${PROJECT_SOURCE_DIR}/.venv/plotly ${SALTUS_SITE_PACKAGES} NO_DEFAULT_PATH DOC "plotly.min.js of the reports")
+  PATHS ${PROJECT_SOURCE_DIR}/.venv/plotly ${SALTUS_SITE_PACKAGES} ${CMAKE_PREFIX_PATH} NO_DEFAULT_PATH DOC "plotly.min.js of the reports")
 if(SALTUS_PLOTLY_JS)
   install(FILES ${SALTUS_PLOTLY_JS} DESTINATION ${CMAKE_INSTALL_DATADIR}/saltus)
 endif()

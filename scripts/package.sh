@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# `make package`: build/package has a tarball that can be unpacked anywhere, a .deb, and the source as an archive of which
-# pip makes a wheel (pip install 'saltus-….tar.gz#subdirectory=python').
+# `make package`: build/package has a tarball that can be unpacked anywhere, a .deb, a wheel for every Python from 3.10 on, and
+# the source, of which pip makes a wheel (pip install saltus-….tar.gz).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-scripts/install.sh
+scripts/install.sh python
 cmake --preset release --log-level=NOTICE
-cmake --build build/release --target saltus_tool saltus_libraries
+cmake --build build/release --target saltus_tool saltus_libraries saltus_python
 rm -rf build/package && mkdir -p build/package
 (cd build/release && cpack --config CPackConfig.cmake >/dev/null)
 rm -rf build/package/_CPack_Packages
-version=$(sed -n 's/.*version = "\([^"]*\)".*/\1/p' src/saltus/base/version.hpp)
-git archive --format=tar.gz --prefix="saltus-$version/" --output="build/package/saltus-$version-source.tar.gz" HEAD
+scripts/wheel.sh build/release build/wheel
+cp build/wheel/saltus-*.whl build/package/
+.venv/bin/python3 -c 'from scikit_build_core.build import build_sdist; build_sdist("build/package")' >/dev/null
 ls -l build/package

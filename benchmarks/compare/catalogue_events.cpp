@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "machine.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/run/compact_integration.hpp"
@@ -233,10 +234,11 @@ int table(const std::filesystem::path& folder) {
   static_cast<void>(getloadavg(&load, 1));
   std::printf(
       "# Events in steps of their own runs\n\n"
-      "Made by `compare_catalogue_events`: rtol 1e-8, native code, load average before %.1f; a row at every step (the "
+      "On %s. Made by `compare_catalogue_events`: rtol 1e-8, native code, load average before %.1f; a row at every "
+      "step (the "
       "default), bare: rows at events only. How to read it: "
       "[benchmarks/README.md](../README.md).\n\n",
-      load);
+      machine_and_day().c_str(), load);
   std::printf(
       "| model | method | events | other steps | step, ns | event, ns | event in steps | bare step, ns | bare event, "
       "ns "

@@ -13,9 +13,14 @@ int main() {
 
   const auto system = model.build();
   if (!system) return std::puts(saltus::to_text(system.error()).c_str()), 2;
-  const auto result = saltus::pipeline::simulate(*system, {.until = 6.0});
+  const auto result =
+      saltus::pipeline::simulate(*system, {.until = 6.0, .output = saltus::pipeline::NumberOfPoints{7}});
   if (!result) return std::puts(saltus::to_text(result.error()).c_str()), 2;
 
+  const auto& rows = result->trajectory;  // the points that were asked for, and two at an event: before and behind it
+  for (std::size_t i = 0; i < rows.t.size(); ++i) {
+    std::printf("t = %.6f  x = %.9f  v = %.9f\n", rows.t[i], rows.x[i][0], rows.x[i][1]);
+  }
   for (const auto& event : result->events) {
     std::printf("t = %.9f  %s: %s\n", event.t, saltus::result::name(event.kind).data(), event.reason.c_str());
   }

@@ -11,7 +11,7 @@ _INSTEAD: dict[str, typing.Callable[..., typing.Any]] = {}
 _COMPARISONS = frozenset({"greater", "greater_equal", "less", "less_equal", "equal", "not_equal"})
 
 
-class Array(np.ndarray):
+class Array(np.ndarray[typing.Any, np.dtype[typing.Any]]):
     """An array of numpy whose entries are expressions; made by :func:`saltus.array` and whatever is computed with one.
 
     >>> m = saltus.Builder("m")

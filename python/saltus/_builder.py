@@ -12,11 +12,12 @@ from ._errors import ModelError
 from ._expression import Expression, Operand, number, refuse
 from ._model import Model
 from ._result import Result
+from ._settings import states_the_problem
 from ._statement import Rates, given
 from ._structure import Structure
 from ._sweep import Sweep
 
-Entries = typing.Union[np.ndarray, list[typing.Any], tuple[typing.Any, ...]]
+Entries = typing.Union[np.ndarray[typing.Any, typing.Any], list[typing.Any], tuple[typing.Any, ...]]
 
 
 class Builder(Structure):
@@ -308,18 +309,26 @@ class Builder(Structure):
         return self.model().simulate(until, **options)
 
     def optimize(self, **options: typing.Any) -> Result:
-        """:meth:`Model.optimize` of :meth:`model`, whose problem is :meth:`optimal_control`.
+        """:meth:`Model.optimize` of :meth:`model`. What is to be optimised is said here, or by :meth:`optimal_control`.
 
         >>> m = saltus.Builder("car")
         >>> q, u = m.state("q", 0), m.control("u", lower=-1, upper=1)
         >>> m.rate(q, u)
-        >>> m.optimal_control(horizon=2, running_cost=u**2, terminal_constraints=[q == 1], control_intervals=4)
-        >>> m.optimize().u[:, 0].round(6).tolist()[0]
+        >>> m.optimal_control(horizon=2, running_cost=u**2, control_intervals=4)
+        >>> m.optimize(terminal_constraints=[q == 1]).u[:, 0].round(6).tolist()[0]
         0.5
         """
-        if not self._optimize:
+        known = {*self._parts["states"], *self._parts["parameters"]}
+        problem = {name: options.pop(name) for name in list(options) if states_the_problem(name) and name not in known}
+        if not self._optimize and not problem:
             raise refuse("no problem of optimal control is stated", "state it: m.optimal_control(horizon=…, …)")
-        return self.model().optimize(**options)
+        before = self._optimize
+        self._optimize = {**before, **self._keys(problem)}
+        try:
+            model = self.model()
+        finally:
+            self._optimize = before
+        return model.optimize(**options)
 
     def sweep(self, over: typing.Mapping[str, typing.Any] | None = None, **arguments: typing.Any) -> Sweep:
         """:meth:`Model.sweep` of :meth:`model`.

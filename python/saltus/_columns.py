@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import typing
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from . import _core
 from ._expression import Expression
 from ._outcome import unknown
 
-Array = np.ndarray
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
 class Columns:

@@ -20,7 +20,7 @@ def frame(r: Result, grid: typing.Any = None) -> typing.Any:
         if np.ndim(grid) == 0 and (not isinstance(grid, numbers.Integral) or grid < 2):
             raise ValueError(f"grid={grid!r}: expected a whole number of rows from 2 on, or a list of times")
         r = r.at(np.linspace(*r.span, int(grid)) if np.ndim(grid) == 0 else grid)
-    need_rows(r)
+    r = with_rows(r)
     columns = {name: np.array(r[name]) for name in r.names if name != "t"}
     return pandas.DataFrame(columns, index=pandas.Index(np.array(r.t), name="t"))
 
@@ -30,7 +30,7 @@ def dataset(r: Result) -> typing.Any:
     from ._result import needed
 
     xarray = needed("xarray", "data")
-    need_rows(r)
+    r = with_rows(r)
     variables = {name: ("row", np.array(r[name])) for name in r.names if name != "t"}
     attributes = {
         "model": r.model,
@@ -41,10 +41,9 @@ def dataset(r: Result) -> typing.Any:
     return xarray.Dataset(variables, coords={"t": ("row", np.array(r.t))}, attrs=attributes)
 
 
-def need_rows(r: Result, least: int = 1) -> None:
-    """Refuses a result of a sweep that kept no rows."""
+def with_rows(r: Result, least: int = 1) -> Result:
+    """The result; a run of a sweep that kept no rows is simulated once more."""
+    r = r if len(r.t) >= least else r.whole
     if len(r.t) < least:
-        raise ValueError(
-            'this result has no trajectory: of a sweep ask for it with keep="trajectory", or simulate its parameters once '
-            "more"
-        )
+        raise ValueError('this result has no trajectory: of a sweep ask for it with keep="trajectory"')
+    return r

@@ -245,7 +245,7 @@ def entry_by_entry(of_one: Made) -> Made:
     return typing.cast(Made, made)
 
 
-def _one(operand: Operand) -> np.ndarray:
+def _one(operand: Operand) -> np.ndarray[typing.Any, typing.Any]:
     """An operand as an array that has no axis."""
     entry = np.empty((), dtype=object)
     entry[()] = operand

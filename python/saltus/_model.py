@@ -214,7 +214,7 @@ class Model:
         runs: int | None = None,
         seed: int = 1,
         keep: str = "final",
-        jobs: int = 0,
+        jobs: int | None = None,
         yes: bool = False,
         until: Value = None,
         set: Settings | None = None,
@@ -260,17 +260,18 @@ class Model:
             yes,
         )
         if executor is not None:
-            return Sweep(sweep_by(executor, self, arguments, max(1, jobs)), shape)
+            return Sweep(sweep_by(executor, self, arguments, jobs or 1), shape, len(sample or {}))
         warned: list[str] = []
         with progress_of_runs(self.name, progress) as tell:
             try:
-                found = self._core.sweep(*arguments, jobs, (1, 1), tell, warned)
+                found = self._core.sweep(*arguments, jobs or 0, (1, 1), tell, warned)
             except BaseException as stopped:
                 if isinstance(getattr(stopped, "result", None), tuple):
-                    stopped.result = Sweep(with_results(stopped.result, self, arguments), shape)  # type: ignore[attr-defined]
+                    kept = with_results(stopped.result, self, arguments)  # type: ignore[attr-defined]
+                    stopped.result = Sweep(kept, shape, len(sample or {}))  # type: ignore[attr-defined]
                 raise
         _warn(warned)
-        return Sweep(with_results(found, self, arguments), shape)
+        return Sweep(with_results(found, self, arguments), shape, len(sample or {}))
 
     def _swept(self, over: Settings, set: Settings, options: dict[str, Value]) -> dict[str, Value]:
         """All that is swept, by the names of settings; keywords that have several values leave the options."""

@@ -9,7 +9,7 @@ import numpy as np
 from . import _core
 from ._spelling import in_python, keywords
 
-Array = np.ndarray
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
 class Status(str):
@@ -88,7 +88,7 @@ class Sensitivities(typing.NamedTuple):
 
 
 class Kept(typing.NamedTuple):
-    """What a sweep kept of a run ("final" or "events"), and how many events happened."""
+    """What a sweep kept of a run ("final", "events" or "trajectory"), and how many events happened."""
 
     what: str
     events: int

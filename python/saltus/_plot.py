@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import typing
 
-from ._data import need_rows
+from ._data import with_rows
 from ._expression import Expression
 from ._shape import broken_at_jumps, slides, sliding_spans
 
@@ -38,7 +38,7 @@ def _matplotlib() -> typing.Any:
 
 def plot(r: Result, names: typing.Sequence[str | Expression] | None, axes: typing.Any) -> typing.Any:
     """A row of axes for every name; sliding is shaded, every event marked at its value."""
-    need_rows(r, 2)
+    r = with_rows(r, 2)
     pyplot = _matplotlib()
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
@@ -85,7 +85,7 @@ def _row_before(r: Result, t: float) -> int:
 
 def phase(r: Result, x: str | Expression, y: str | Expression, axis: typing.Any) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
-    need_rows(r, 2)
+    r = with_rows(r, 2)
     pyplot = _matplotlib()
     x, y = str(x), str(y)
     if axis is None:

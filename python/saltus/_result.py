@@ -12,13 +12,13 @@ import typing
 import numpy as np
 
 from . import _card, _core, _data, _plot
-from ._errors import Stopped
+from ._errors import ModelError, Stopped
 from ._events import Event, Events
 from ._expression import Expression, refuse
 from ._facts import Facts
 from ._outcome import Final, Kept, Sensitivities, Status
 
-Array = np.ndarray
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
 _OF_OPTIMUM = (
@@ -43,10 +43,35 @@ class Result(Facts):
     False
     """
 
-    def __init__(self, run: _core.Run, again: Again | None = None, kept: Kept | None = None) -> None:
+    def __init__(self, run: _core.Run, origin: Again | str | None = None, kept: Kept | None = None) -> None:
         super().__init__(run)
-        self._again = again
+        self._origin = origin
         self._kept = kept
+
+    @functools.cached_property
+    def _again(self) -> Again | None:
+        """How it can be run once more; of a stored simulation by the model in its file."""
+        if not isinstance(self._origin, str):
+            return self._origin
+        from ._model import Model
+
+        try:
+            return (Model(self._origin), [], []) if self._run.command == "simulate" else None
+        except ModelError:
+            return None
+
+    @functools.cached_property
+    def whole(self) -> Result:
+        """All of a run of which a sweep kept a part only: it is simulated once more. Other results are whole already.
+
+        >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)
+        >>> len(s.results[1].whole.events)
+        2
+        """
+        if self._kept is None or self._again is None:
+            return self
+        model, settings, options = self._again
+        return Result(model._core.simulate(settings, options, None, []), self._again)
 
     # What was computed ---------------------------------------------------------------------------------------------
 
@@ -60,7 +85,8 @@ class Result(Facts):
         """
         if self._lost_events:
             raise ValueError(
-                f'events not kept; {self._lost_events} happened: sweep(…, keep="events") or keep="trajectory" keeps them'
+                f'events not kept; {self._lost_events} happened: sweep(…, keep="events") keeps them, r.whole.events has '
+                "them of a single run, simulated once more"
             )
         return Events(self._run.events)
 
@@ -209,8 +235,8 @@ class Result(Facts):
             raise ValueError(f"t={t!r}: expected a time, or a list of times") from None
         if self._again is None:
             raise ValueError(
-                "this result has its rows only (it was loaded, optimised, or is one of several): simulate its model to "
-                "have values at other times"
+                "this result has its rows only (it was optimised, is one of several, or its file has no model): simulate "
+                "its model to have values at other times"
             )
         model, settings, options = self._again
         with own_results():
@@ -239,7 +265,7 @@ class Result(Facts):
         >>> file.read_text().split(",")[0]
         't'
         """
-        self._run.save(os.fspath(path))
+        self.whole._run.save(os.fspath(path))
 
     def report(self, path: str | os.PathLike[str] | None = None) -> Page | None:
         """Writes the page with all pictures, which works offline; without a path shows it in the notebook.
@@ -252,7 +278,7 @@ class Result(Facts):
         """
         if path is not None and not os.fspath(path).lower().endswith((".html", ".htm")):
             raise refuse(f"{os.fspath(path)}: the name of a page must end in .html", "pictures for papers: r.plot()")
-        page = self._run.page()
+        page = self.whole._run.page()
         if path is None:
             return Page(page)
         _core.write_file(os.fspath(path), page)
@@ -314,7 +340,11 @@ class Result(Facts):
         """How many events and rows there are."""
         if self._lost_events:
             return f"events not kept; {self._lost_events} happened"
-        return f"{len(self.events)} events, " + ("rows not kept" if self._kept else f"{len(self.t)} rows")
+        return f"{len(self.events)} events, " + (f"{len(self.t)} rows" if self._rows_kept else "rows not kept")
+
+    @property
+    def _rows_kept(self) -> bool:
+        return self._kept is None or self._kept.what == "trajectory"
 
     def __str__(self) -> str:
         """The table of the tool."""
@@ -352,7 +382,7 @@ class Page:
 
 
 def load(path: str | os.PathLike[str]) -> Result:
-    """A result that was saved as .json.
+    """A result that was saved as .json. Of a simulation it has the model, too: ``r(t)`` runs it once more.
 
     >>> import tempfile, pathlib
     >>> file = pathlib.Path(tempfile.mkdtemp()) / "r.json"
@@ -360,10 +390,10 @@ def load(path: str | os.PathLike[str]) -> Result:
     >>> saltus.load(file).final.t
     1.0
     """
-    return Result(_core.load(os.fspath(path)))
+    return Result(_core.load(os.fspath(path)), os.path.abspath(path))
 
 
-def _restored(text: str, again: Again | None = None, kept: Kept | None = None) -> Result:
+def _restored(text: str, again: Again | str | None = None, kept: Kept | None = None) -> Result:
     return Result(_core.parse_result(text), again, kept)
 
 

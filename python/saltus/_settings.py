@@ -139,12 +139,27 @@ def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], l
     settings: list[str] = []
     options: list[Option] = []
     for name, value in _flat({name.rstrip("_"): value for name, value in keywords.items() if value is not None}):
-        key = next((key for key in (name, f"mpcc.{name}") if key in _OPTIMIZE), None)
+        key = _optimize_key(name)
+        if key is None and is_list(value):
+            raise refuse(
+                f"{name}=[…]: that states the problem, and cannot be changed from call to call",
+                f"write it under [optimize] of the model; saltus.Builder takes it: b.optimize({name}=[…])",
+            )
         if key is None:
             settings.append(f"optimize.{name}={text_of(value, name)}")
         else:
             options.append((f"optimize.{key}", text_of(value, name), f"{name}={_shown(value)}"))
     return settings, options
+
+
+def _optimize_key(name: str) -> str | None:
+    """The option of [optimize] that a keyword stands for."""
+    return next((key for key in (name, f"mpcc.{name}") if key in _OPTIMIZE), None)
+
+
+def states_the_problem(name: str) -> bool:
+    """Whether a keyword of an optimisation says what is to be optimised, not how."""
+    return _optimize_key(name.rstrip("_")) is None and name not in ("set", "start", "progress", *_ELSEWHERE_IN_OPTIMIZE)
 
 
 def is_list(value: Value) -> bool:
@@ -180,7 +195,8 @@ def is_several(value: Value) -> bool:
 
 def check_sweep(over: Value, sample: Value, runs: Value, seed: Value, jobs: Value) -> None:
     """What a sweep is asked for has the right kind."""
-    whole("jobs", jobs, 0)
+    if jobs is not None:
+        whole("jobs", jobs, 1)
     whole("seed", seed, 0)
     if runs is not None:
         whole("runs", runs, 1)

@@ -9,7 +9,7 @@ import numpy as np
 if typing.TYPE_CHECKING:
     from ._result import Result
 
-Array = np.ndarray
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 #: Kinds of events at which states may jump.
 JUMPS = frozenset({"jump", "impact", "accumulation"})
 

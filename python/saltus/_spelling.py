@@ -20,7 +20,7 @@ _SPELLINGS = [
     (r"--set (?:simulate|optimize)\.(?:\w+\.)*(\w+)=([\w.+-]+)", r"\1=\2"),
     (r"--set (?:simulate\.|optimize\.)?inputs\.([\w.]+)", r'inputs={"\1": …}'),
     (r"--set (?:simulate|optimize)\.(\w+)", r"\1=…"),
-    (r"in --set ([\w.]+)", r'in set={"\1": …}'),
+    (r"in --(set|over|sample) ([\w.]+)", r'in \1={"\2": …}'),
     (r"--set ([\w.]+)=(\S+?)(:?)(?=\s|$)", r'set={"\1": \2}\3'),
     (r"--set ([\w.]+)", r'set={"\1": …}'),
     # Sweeps.
@@ -41,6 +41,7 @@ _SPELLINGS = [
     (r"`?\bsaltus models\b`?", "saltus.models()"),
     (r"`?\bsaltus (simulate|optimize|sweep|check|compare|order)\b`?", r"m.\1()"),
 ]
+_FLAGS = ("--set ", "--over ", "--sample ")
 _PATTERNS = [(re.compile(found), written) for found, written in _SPELLINGS]
 _DOTTED = re.compile(r"(?<![\w.])(?:simulate|optimize)\.(?:(?:event|output|fesd|timestepping|smoothed|mpcc)\.)?(?=[a-z])")
 
@@ -67,7 +68,7 @@ def keywords(text: str) -> str:
 
 def is_option(file: str) -> bool:
     """Whether the place of a mistake is an option or a setting instead of a file."""
-    return file.startswith("--set ") or re.match(r"[\w.]+=", file) is not None
+    return file.startswith(_FLAGS) or re.match(r"[\w.]+=", file) is not None
 
 
 def at_option(text: str, file: str) -> str:
@@ -84,13 +85,14 @@ def at_option(text: str, file: str) -> str:
 
 
 def _given(file: str) -> str:
-    if not file.startswith("--set "):
+    if not file.startswith(_FLAGS):
         return file
-    name, equal, value = file.removeprefix("--set ").partition("=")
+    flag, _, setting = file.removeprefix("--").partition(" ")
+    name, equal, value = setting.partition("=")
     is_number = re.fullmatch(r"[-+]?[\d.]+(e[-+]?\d+)?", value) is not None
     shown = "…" if not equal else value if is_number else f'"{value}"'
     parts = name.split(".")
     if parts[0] in ("simulate", "optimize") and len(parts) > 1:
         inner = ".".join(parts[2:])
         return f'inputs={{"{inner}": {shown}}}' if parts[1] == "inputs" else f"{parts[-1]}={shown}"
-    return f'set={{"{name}": {shown}}}'
+    return f'{flag}={{"{name}": {shown}}}'

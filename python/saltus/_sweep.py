@@ -13,7 +13,7 @@ from ._outcome import Kept, unknown
 from ._result import Result, needed
 from ._settings import text_of
 
-Array = np.ndarray
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 #: Columns, results, and the names of what was changed.
 Found = tuple[dict[str, typing.Any], list[Result], list[str]]
@@ -37,8 +37,8 @@ def with_results(
         again = None
         if rows > 0:  # of a run without a row the values are not known here
             again = (model, [*settings, *(f"{name}={_text(column[row])}" for name, column in swept)], options)
-        events = int(columns["events"][row]) if keep == "final" else rows
-        results.append(Result(run, again, None if keep == "trajectory" else Kept(keep, events)))
+        events = int(columns["events"][row]) if keep == "final" else len(run.events)
+        results.append(Result(run, again, Kept(keep, events)))
         row += rows
     return columns, results, names
 
@@ -90,12 +90,14 @@ class Sweep:
     <saltus.Result 'stick-slip': completed at t = 5, events not kept; 2 happened>
     """
 
-    def __init__(self, found: Found, shape: tuple[int, ...]) -> None:
+    def __init__(self, found: Found, shape: tuple[int, ...], sampled: int = 0) -> None:
+        """`sampled` is how many of the names, the last ones, had random values."""
         columns, results, names = found
         self.table: dict[str, Array] = {name: _column(name, values) for name, values in columns.items()}
         self.results: list[Result] = results
         self.names: list[str] = names
         self._shape = shape
+        self._sampled = sampled
 
     def __len__(self) -> int:
         return len(self.results)
@@ -159,16 +161,18 @@ class Sweep:
             {name: (swept, values.reshape(self._shape)) for name, values in columns.items()}, coords=coordinates
         )
 
-    def plot(self, name: str, over: str | None = None, axis: typing.Any = None) -> typing.Any:
+    def plot(self, name: str | None = None, over: str | None = None, axis: typing.Any = None) -> typing.Any:
         """Draws a column of the table (matplotlib) over what was swept; of several, one line for each value of the
-        others. `over` says what lies along the axis, without it what has the most values. Needs ``keep="final"``.
+        others. `over` says what lies along the axis, without it what has the most values. Random samples are points, not
+        joined by lines. Without a name all states and
+        outputs at the end are drawn, each into axes of its own, which are returned. Needs ``keep="final"``.
 
         >>> s = saltus.catalogue("stick-slip").sweep(belt=np.linspace(0.1, 0.3, 5), q=[0, 0.1], until=5)
         >>> axis = s.plot("v")
         >>> axis.get_xlabel(), len(axis.lines)
         ('belt', 2)
         """
-        return _sweep_plot.plot(self, name, over, axis)
+        return _sweep_plot.plot(self, name, over, axis) if name is not None else _sweep_plot.plot_all(self, over, axis)
 
     def bifurcation(
         self,

@@ -28,12 +28,28 @@ def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
         runs = np.flatnonzero(np.ravel(line_of_run) == line)
         runs = runs[np.argsort(s[x][runs], kind="stable")]
         label = ", ".join(f"{other} = {_shown(s[other][runs[0]])}" for other in others)
-        axis.plot(s[x][runs], column[runs], marker="." if len(runs) < 60 else None, linewidth=1.2, label=label or None)
+        marker = "." if len(runs) < 60 or s._sampled else None
+        axis.plot(s[x][runs], column[runs], marker=marker, linewidth=0 if s._sampled else 1.2, label=label or None)
     if 1 < len(lines) <= 12:
         axis.legend()
     axis.set_xlabel(_caption(s, x))
     axis.set_ylabel(_caption(s, name))
     return axis
+
+
+def plot_all(s: Sweep, over: str | None, axes: typing.Any) -> typing.Any:
+    """The same for all states and outputs, below each other."""
+    first = s.results[0]
+    names = [*first.states, *first.output_names]
+    if axes is None:
+        needed("matplotlib", "plot")
+        _, axes = needed("matplotlib.pyplot", "plot").subplots(
+            len(names), 1, sharex=True, squeeze=False, figsize=(6, 1.2 + 1.8 * len(names)), layout="constrained"
+        )
+        axes = list(axes[:, 0])
+    for name, axis in zip(names, axes, strict=True):
+        plot(s, name, over, axis)
+    return axes
 
 
 def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str | None, axis: typing.Any) -> typing.Any:
@@ -63,8 +79,10 @@ def _axes(s: Sweep, over: str | None) -> tuple[str, list[str]]:
             raise unknown(over, numbers, "what was swept")
     if not numbers:
         raise ValueError("nothing with numbers was swept")
-    x = over if over is not None else max(numbers, key=lambda name: len(np.unique(s[name])))
-    return x, [name for name in swept if name != x]
+    stated = swept[: len(swept) - s._sampled]
+    across = [name for name in numbers if name in stated] or numbers
+    x = over if over is not None else max(across, key=lambda name: len(np.unique(s[name])))
+    return x, [name for name in stated if name != x]
 
 
 def _caption(s: Sweep, name: str) -> str:

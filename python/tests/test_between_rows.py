@@ -70,5 +70,6 @@ def test_frames_on_a_grid(jumps):
 def test_results_from_elsewhere(jumps, tmp_path):
     assert pickle.loads(pickle.dumps(jumps))(0.3) == jumps(0.3)
     jumps.save(tmp_path / "r.json")
+    assert saltus.load(tmp_path / "r.json")(0.3) == jumps(0.3)
     with pytest.raises(ValueError, match="rows only"):
-        saltus.load(tmp_path / "r.json")(0.3)
+        saltus.catalogue("stick-slip").compare(until=1)(0.3)

@@ -347,3 +347,21 @@ def test_free_parameters_are_chosen():
         best = m.optimize(set={"a": 0} if free == "v" else {}).require()
         value = best.optimization["parameters"]["a"] if free == "a" else best["v"][0]
         assert value == pytest.approx(found, abs=1e-5)
+
+
+def test_what_is_optimised_may_be_said_where_it_is():
+    b = saltus.Builder("block")
+    q, v, u = b.state("q", 0), b.state("v", 0), b.control("u", lower=-1, upper=1)
+    b.rate(q, v)
+    b.rate(v, u)
+    ends = [q == 1, v == 0]
+    free = {"free": True, "initial": 2.5, "lower": 1, "upper": 5}
+    whole = b.optimize(horizon=free, minimize_time=True, control_intervals=4, terminal_constraints=ends)
+    assert abs(whole.optimization["horizon"] - 2) < 1e-6
+    assert "[optimize]" not in b.to_toml()
+    b.optimal_control(horizon=free, minimize_time=True, control_intervals=4)
+    assert b.optimize(terminal_constraints=ends).optimization["u"] == whole.optimization["u"]
+    with pytest.raises(saltus.ModelError, match="did you mean '.*terminal_constraints'"):
+        b.optimize(terminal_constraint=ends)
+    with pytest.raises(saltus.ModelError, match="b.optimize.terminal_constraints="):
+        b.model().optimize(terminal_constraints=["q == 1"])

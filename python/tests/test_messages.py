@@ -85,7 +85,10 @@ def test_settings_by_expressions():
 @pytest.mark.parametrize(
     ("sweep", "told"),
     [
-        ({"bel": [1, 2]}, "in run 1\n  did you mean 'belt'?"),
+        ({"bel": [1, 2]}, 'over={"bel": 1}: expected the name'),
+        ({"sample": {"w": "normal(0,1)"}, "runs": 2}, 'in sample={"w": …}'),
+        ({"belt": [1, 2], "set": {"w": 1}}, 'in set={"w": …}'),
+        ({"bel": [1, 2]}, "in over={\"bel\": …}\n  in run 1\n  did you mean 'belt'?"),
         ({"belt": []}, "belt: an empty list"),
         ({}, "m.sweep(mu=np.linspace(0.1, 0.5, 50), until=10)"),
         ({"over": {"belt": "1:2:0"}}, 'over={"belt": "1:2:0"}: an empty range'),
@@ -103,8 +106,8 @@ def test_settings_by_expressions():
         ({"belt": np.linspace(0, 1, 10**4), "v": np.linspace(0, 1, 10**4)}, "yes=True"),
         ({"belt": [1, 2], "v": [1, 2, 3], "zip": True}, "without zip=True they make a grid"),
         ({"belt": [1, 2], "keep": "all"}, "keep='all': expected final, events or trajectory"),
-        ({"belt": [1, 2], "jobs": -1}, "jobs=-1: expected a whole number >= 0"),
-        ({"belt": [1, "x"]}, 'set={"belt": "x"}: unknown name'),
+        ({"belt": [1, 2], "jobs": 0}, "jobs=0: expected a whole number >= 1"),
+        ({"belt": [1, "x"]}, 'over={"belt": "x"}: unknown name'),
         ({"belt": np.ones((2, 2))}, "an array of shape (2, 2)"),
         ({"belt": 3}, 'write set={"belt": 3}'),
         ({"rtol": [1e-6, -1]}, "rtol=…: expected a finite number > 0, found -1\n  in run 2"),

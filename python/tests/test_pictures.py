@@ -185,11 +185,7 @@ def test_contacts_are_seen():
     assert np.isnan(curve.get_ydata()).any()
 
 
-def test_a_result_without_rows_is_told(slip):
-    run = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5, keep="events").results[0]
-    for draw in (run.plot, lambda: run.phase("q", "v")):
-        with pytest.raises(ValueError, match='keep="trajectory"'):
-            draw()
+def test_what_cannot_be_drawn_is_told(slip):
     with pytest.raises(ValueError, match="one for each of"):
         slip.plot(axes=[1])
     with pytest.raises(TypeError, match="by its name"):

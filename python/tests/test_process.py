@@ -86,6 +86,8 @@ v = "-x - 0.01*sign(v - cos(3*t))"
 
 
 def test_control_c():
+    # Python does not look at the signal where the shell has it ignored, as of what runs in its background.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     model = saltus.Model.from_text(LONG)
     sent = []
 
@@ -101,6 +103,7 @@ def test_control_c():
     assert r.status == "stopped_by_user"
     assert 0 < r.status.time_reached < 1e7
     assert r.t[-1] == r.status.time_reached
+    signal.signal(signal.SIGINT, before)
 
 
 def test_other_threads_run_meanwhile():

@@ -73,11 +73,37 @@ def test_a_sweep_is_gone_through_run_by_run(slip):
     assert [run is kept for run, kept in zip(s, s.results)] == [True] * 3
 
 
-def test_without_rows_tables_and_pictures_say_so(slip):
-    run = sweep(slip).results[0]
-    for show in (run.frame, run.dataset, run.plot, lambda: run.phase("q", "v")):
-        with pytest.raises(ValueError, match='keep="trajectory"'):
-            show()
+def test_pictures_tables_and_files_of_a_single_run_have_all_of_it(slip, alone, tmp_path):
+    for keep in ("final", "events", "trajectory"):
+        run = sweep(slip, keep).results[1]
+        assert run.whole.x.tobytes() == alone.x.tobytes() and len(run.whole.events) == 2
+        assert run.frame().equals(alone.frame())
+        assert run.dataset().equals(alone.dataset())
+        assert len(run.plot()[0].lines) == len(alone.plot()[0].lines)
+        run.save(tmp_path / "r.json")
+        stored = saltus.load(tmp_path / "r.json")
+        assert [e.t for e in stored.events] == [e.t for e in alone.events]
+        assert stored(2.5).tobytes() == alone(2.5).tobytes()
+        assert saltus.Model(tmp_path / "r.json").simulate().x.tobytes() == alone.x.tobytes()
+    assert alone.whole is alone
+    # Of a run without a row in the table its values are not known any more.
+    with pytest.raises(ValueError, match='keep="trajectory"'):
+        sweep(slip, "events").results[2].plot()
+
+
+def test_all_states_over_what_was_swept(slip):
+    axes = sweep(slip).plot()
+    assert [axis.get_ylabel() for axis in axes] == ["q", "v"]
+    assert axes[1].lines[0].get_ydata().tolist() == sweep(slip)["v"].tolist()
+
+
+def test_samples_are_points_over_what_was_stated(slip):
+    s = slip.sweep(belt=[0.1, 0.2], sample={"v": "normal(0, 0.1)"}, runs=5, until=2)
+    axis = s.plot("q")
+    assert axis.get_xlabel() == "belt" and len(axis.lines) == 1
+    assert axis.lines[0].get_linewidth() == 0 and len(axis.lines[0].get_xdata()) == 10
+    assert s.plot("q", over="v").get_xlabel() == "v(0)"
+    assert len(slip.sweep(sample={"v": "normal(0, 0.1)"}, runs=5, until=2).plot("q").lines) == 1
 
 
 def test_counts_are_whole_numbers(slip):

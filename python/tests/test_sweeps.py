@@ -103,7 +103,11 @@ def test_a_run_that_stops_early_is_a_row(tool, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--over", "bellt=1,2"], "did you mean 'belt'"),
+        (["--over", "bellt=1,2"], "--over bellt=1:1:1: error: expected the name"),
+        (["--over", "bellt=1,2"], "  in --over bellt\n  in run 1\n  did you mean 'belt'"),
+        (["--over", "simulate.rtoll=1,2"], "--over simulate.rtoll"),
+        (["--sample", "w=normal(0,0.1)", "--runs", "5"], "in --sample w\n"),
+        (["--over", "belt=1,2", "--set", "bellt=1"], "in --set bellt\n"),
         (["--over", "belt=1:2:0"], "empty range"),
         (["--over", "belt=1:2:1"], "empty range"),
         (["--over", "belt=1:2"], "FROM:TO:NUMBER"),
@@ -121,7 +125,8 @@ def test_a_run_that_stops_early_is_a_row(tool, tmp_path):
         (["--over", "belt=1,2", "--over", "belt=1,2"], "changed twice"),
         (["--over", "belt=1,2", "--over", "v=1,2,3", "--zip"], "--zip"),
         (["--over", "belt=1,2", "--keep", "everything"], "final, events or trajectory"),
-        (["--over", "belt=1,2", "--jobs", "-1"], "--jobs"),
+        (["--over", "belt=1,2", "--jobs", "-1"], "--jobs -1: expected a number of threads, 1 to 4096"),
+        (["--over", "belt=1,2", "--jobs", "0"], "--jobs 0: expected a number of threads, 1 to 4096"),
         (["--over", "belt=1,x"], "in run 2\n"),
     ],
 )

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <unistd.h>
 
@@ -32,7 +33,7 @@ struct SweepArguments {
   std::string page;
   std::string task;
   std::vector<std::string> join;
-  long jobs = 0;
+  std::optional<long> jobs;
 };
 
 Expected<Keep> keep_named(const std::string& word) {
@@ -46,12 +47,11 @@ Expected<Keep> keep_named(const std::string& word) {
                               {}});
 }
 
-Expected<std::size_t> jobs_of(long jobs) {
-  if (jobs >= 0 && jobs <= 4096) {
-    return jobs > 0 ? static_cast<std::size_t>(jobs) : std::max(1U, std::thread::hardware_concurrency());
-  }
+Expected<std::size_t> jobs_of(std::optional<long> jobs) {
+  if (!jobs) return std::max(1U, std::thread::hardware_concurrency());
+  if (*jobs >= 1 && *jobs <= 4096) return static_cast<std::size_t>(*jobs);
   return tl::unexpected(Error{ErrorCode::invalid_option,
-                              fmt::format("--jobs {}: expected a number of threads, 1 to 4096", jobs),
+                              fmt::format("--jobs {}: expected a number of threads, 1 to 4096", *jobs),
                               "without it there are as many as processors",
                               {},
                               {}});

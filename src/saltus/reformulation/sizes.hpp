@@ -37,7 +37,7 @@ struct Sizes {
 
 /// @return the sizes of reformulate's result, or the reason why there is none.
 [[nodiscard]] Expected<Sizes> sizes_of(const model::System& system, const ReformulationOptions& options = {});
-/// The same for several options, in little more time than for one.
+/// Counts the same for several options, in little more time than for one.
 [[nodiscard]] std::vector<Expected<Sizes>> sizes_of_all(const model::System& system,
                                                         std::span<const ReformulationOptions> options);
 

@@ -10,13 +10,13 @@
 
 namespace saltus::report {
 
-/// A number; NaN for null.
+/// Returns a number; NaN for null.
 [[nodiscard]] double number_of(const nlohmann::json& value);
-/// Whether all are numbers or null.
+/// Tells whether all are numbers or null.
 [[nodiscard]] bool all_numbers(const nlohmann::json& list);
 
-/// The values of one member, in the shortest form that fits all of them: numbers; few that differ; arrays of numbers of
-/// one length; or as they are.
+/// Holds the values of one member, in the shortest form that fits all of them: numbers; few that differ; arrays of
+/// numbers of one length; or as they are.
 class PackedColumn {
  public:
   void add(nlohmann::json value);

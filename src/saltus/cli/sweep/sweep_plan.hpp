@@ -35,6 +35,8 @@ class SweepPlan {
   [[nodiscard]] std::size_t runs() const { return runs_; }
   /// Returns what is changed, as it was typed: axes, then samples.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// Returns the flag by which names()[k] was given: "--over" or "--sample".
+  [[nodiscard]] std::string flag(std::size_t k) const { return k < axes_.size() ? "--over" : "--sample"; }
   /// Returns values as text, one per name; depends on seed and run only.
   [[nodiscard]] std::vector<std::string> values(std::size_t run) const;
 

@@ -17,7 +17,7 @@ class TouchingBodies {
   /// Both must outlive it.
   TouchingBodies(const model::System& system, const evaluation::ModelKernel& kernel);
 
-  /// Modes by gaps and rates alone: closed or open. Without contacts there are none.
+  /// Returns modes by gaps and rates alone: closed or open. Without contacts there are none.
   [[nodiscard]] std::vector<result::ContactMode> modes_at(double t, const std::vector<double>& x);
   void project(double t, const std::vector<result::ContactMode>& modes, std::vector<double>& x);
 
