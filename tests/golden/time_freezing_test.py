@@ -230,6 +230,17 @@ class TimeFreezing(tool.ToolTest):
             rows, drawn = result["trajectory"]["x"], result["drawing"]["rows"]
             self.assertEqual(drawn, [[0, x[0] + 0.1, 0.1] for x in rows])
 
+    def test_a_collision_is_not_smeared(self):
+        """Where the rate of the gap is 0, at the end of a collision, the gap stands whatever its selection is. Time could
+        move there, in an element that begins with the collision, and the event engine contradicts."""
+        landing = LANDING.replace("z = 0.5", "z = 0.35")
+        later = LANDING.replace("intervals = 2", "intervals = 5") + "[optimize.mpcc]\nsteering = 'l1'\n"
+        for text in (landing, landing.replace("elements", "reformulation = 'stewart'\nelements"),
+                     landing.replace("elements", "stages = 3\nelements"), later):
+            result = self.optimised(text)
+            self.assertEqual(len([event for event in result["events"] if event["kind"] == "impact"]), 1)
+            self.assertLess(result["verification"]["interval_defect"], 1e-12)
+
     def test_a_curved_gap_is_held(self):
         result = self.optimised(HUMP)
         self.assertLess(result["verification"]["penetration"]["solution"], 1e-9)

@@ -68,7 +68,8 @@ Eigen::VectorXd with_share(const OcpStructure& made, ConstVectorView w, const Oc
     if (h == element.length) {
       changed[h] = share;
     } else {
-      changed[h] = rest > vanished ? w[h] * (1.0 - share) / rest : (1.0 - share) / static_cast<double>(lengths.size() - 1);
+      changed[h] =
+          rest > vanished ? w[h] * (1.0 - share) / rest : (1.0 - share) / static_cast<double>(lengths.size() - 1);
     }
   }
   return changed;
@@ -102,13 +103,15 @@ Eigen::VectorXd with_boundary(const OcpStructure& made, ConstVectorView w, const
   };
   const double first = total(before) / static_cast<double>(boundary - before.first);
   const double second = total(after) / static_cast<double>(after.end - boundary);
-  for (std::size_t e = before.first; e < after.end; ++e) changed[made.element[e].length] = e < boundary ? first : second;
+  for (std::size_t e = before.first; e < after.end; ++e)
+    changed[made.element[e].length] = e < boundary ? first : second;
   return changed;
 }
 
-/// The same point with one more element for a stretch next to the boundary before element e: where a length is at its upper
-/// bound a stretch needs one to grow. The stretch that it is taken from has to keep one.
-std::optional<mpcc::BranchMove> with_longer_stretch(const OcpStructure& made, const mpcc::BranchMove& point, std::size_t e) {
+/// The same point with one more element for a stretch next to the boundary before element e: where a length is at its
+/// upper bound a stretch needs one to grow. The stretch that it is taken from has to keep one.
+std::optional<mpcc::BranchMove> with_longer_stretch(const OcpStructure& made, const mpcc::BranchMove& point,
+                                                    std::size_t e) {
   const auto is_longest = [&](std::size_t number) {
     const int h = made.element[number].length;
     return h >= 0 && point.start[h] > made.w_bounds.upper[h] - vanished;
@@ -146,8 +149,14 @@ struct Departure {
   bool at_upper = false;
 };
 
-/// The one at the left end of element e, if nothing else happens there. A switch or a beginning of sliding is an equation
-/// for the boundary, the end of sliding is none.
+/// The rate's selection says when a gap that is held begins to open.
+bool is_of_gap(const OcpStructure& made, std::size_t pair) {
+  const auto& gaps = made.kernel.closed_gaps;
+  return std::any_of(gaps.begin(), gaps.end(), [&](const auto& gap) { return at(gap.first_pair) == pair; });
+}
+
+/// The one at the left end of element e, if nothing else happens there. A switch or a beginning of sliding is an
+/// equation for the boundary, the end of sliding is none.
 std::optional<Departure> departure_at(const OcpStructure& made, const ElementSides& modes, std::size_t e) {
   const auto& pairs = made.kernel.pairs;
   std::optional<Departure> departure;
@@ -167,6 +176,7 @@ std::optional<Departure> departure_at(const OcpStructure& made, const ElementSid
     const bool differs = modes.of(e - 1, k) != modes.of(e, k) || modes.of(e - 1, k + 1) != modes.of(e, k + 1);
     if (!differs) continue;
     if (!slides(e - 1)) return std::nullopt;
+    if (is_of_gap(made, k)) continue;
     const bool to_upper = modes.of(e, k + 1) == ActiveSide::G;
     if (!departure) departure = {.selection = pairs[k].selection, .at_upper = to_upper};
   }
@@ -214,6 +224,14 @@ mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
     const auto left = made.left_lambda(static_cast<int>(e));
     for (std::size_t k = 0; k < kernel.pairs.size() && of_stages_only; ++k) {
       if (modes.of(e, k) == ActiveSide::H && left[k] >= 0) closure.at_lower.push_back(left[k]);
+    }
+    for (const auto& gap : kernel.closed_gaps) {
+      const bool is_closed =
+          modes.of(e, at(gap.first_pair)) == ActiveSide::H && modes.of(e, at(gap.second_pair)) == ActiveSide::H;
+      for (int m = 0; m < kernel.layout.stages && is_closed; ++m) {
+        const int selection = made.element[e].variable(kernel.layout.selection.at(m, gap.selection));
+        (gap.at_upper ? closure.at_upper : closure.at_lower).push_back(selection);
+      }
     }
     if (!equal_lengths || made.element[e].number == 0 || !modes.are_equal(e - 1, e)) continue;
     closure.equal.emplace_back(made.element[e - 1].length, made.element[e].length);

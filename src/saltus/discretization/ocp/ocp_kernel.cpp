@@ -4,6 +4,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/fesd_checks_internal.hpp"
 #include "saltus/discretization/ocp/ocp_kernel_internal.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 
 namespace saltus::discretization {
 namespace {
@@ -17,6 +18,35 @@ Error no_roots() {
       "[optimize] does not cover roots of a switching function (sqrt(abs(x))): the equations of elements have "
       "infinite derivatives there",
       "replace the root by a smooth function near zero, for example sqrt(abs(x) + 1e-6)");
+}
+
+/// Of a contact without restitution, in the step form and between two regions that only the gap tells apart.
+void take_closed_gap(const model::FrozenSelection& gap, const Dcs& dcs, OcpKernel::Implementation& kernel) {
+  const auto first_pair = [&](int selection) {
+    int k = 0;
+    while (kernel.pairs[at(k)].selection != selection) ++k;
+    return k;
+  };
+  for (const auto& part : dcs.parts) {
+    const bool is_step = part.form == reformulation::Form::step;
+    for (int j = 0; j < static_cast<int>(part.surfaces.size()); ++j) {
+      if (dcs.surfaces[at(part.surfaces[at(j)])].function != gap.function) continue;
+      if (is_step) {
+        const int k = first_pair(part.first + j);
+        kernel.closed_gaps.push_back({k, k + 1, part.first + j, gap.orientation < 0});
+        continue;
+      }
+      for (Eigen::Index i = 0; i < part.signs.rows(); ++i) {
+        if (part.signs(i, j) != gap.orientation) continue;
+        Eigen::RowVectorXi behind = part.signs.row(i);
+        behind[j] = -behind[j];
+        Eigen::Index other = 0;
+        while (part.signs.row(other) != behind) ++other;
+        const int open = part.first + static_cast<int>(i);
+        kernel.closed_gaps.push_back({first_pair(open), first_pair(part.first + static_cast<int>(other)), open, false});
+      }
+    }
+  }
 }
 
 void take_sizes(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation& kernel) {
@@ -34,6 +64,10 @@ void take_sizes(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation
     if (part.form == reformulation::Form::stewart) kernel.simplex_parts.emplace_back(part.first, part.count);
   }
   kernel.simplices = static_cast<int>(kernel.simplex_parts.size());
+  if (!ocp.system.freezing) return;
+  for (const auto& contact : ocp.system.freezing->contacts) {
+    if (!contact.is_elastic) take_closed_gap(contact.gap, dcs, kernel);
+  }
 }
 
 void compile_functions(const OcpExpressions& made, OcpKernel::Implementation& kernel) {

@@ -25,6 +25,17 @@ struct SharedSizes {
   [[nodiscard]] int size() const { return controls + parameters + held + 2 + samples; }
 };
 
+/// Where a gap is 0 throughout an element, time does not move by its being open: a selection, or the weight of a
+/// region, is at a bound. The rate's selection says whether it moves. Pairs of zero multipliers tell such elements.
+///
+/// Nothing else says so: where the rate is 0, as it is at the end of a collision, the gap stands in all regions. A
+/// collision could begin an element, and time move at its last stages.
+struct ClosedGap {
+  int first_pair = 0, second_pair = 0;
+  int selection = 0;
+  bool at_upper = false;
+};
+
 struct OcpKernel::Implementation {
   ButcherTableau tableau;
   FesdOptions options;
@@ -33,6 +44,7 @@ struct OcpKernel::Implementation {
   bool moves = true;  ///< lengths are variables
   int states = 0, selections = 0, simplices = 0;
   std::vector<SelectionPair> pairs;
+  std::vector<ClosedGap> closed_gaps;
   std::vector<std::pair<int, int>> simplex_parts;  ///< first selection and count
   SharedSizes shared;
   std::vector<int> free_parameters;  ///< indices into System::p
@@ -49,15 +61,15 @@ struct OcpKernel::Implementation {
   bool has_start_pairs = false;
   std::vector<bool> start_is_constant;  ///< per row of Dcs::indicator
 
-  casadi::Function indicator;        ///< (t, x, known) -> Dcs::indicator
-  casadi::Function held_arguments;   ///< (t, x, known) -> arguments of held symbols
+  casadi::Function indicator;       ///< (t, x, known) -> Dcs::indicator
+  casadi::Function held_arguments;  ///< (t, x, known) -> arguments of held symbols
   evaluation::NativeFunctions native;
 };
 
 /// Holds symbols and expressions on the way to the functions.
 struct OcpExpressions {
-  casadi::SX known;       ///< p, held, u
-  casadi::SX shared;      ///< SharedSizes
+  casadi::SX known;   ///< p, held, u
+  casadi::SX shared;  ///< SharedSizes
   casadi::SX horizon, speed, samples;
   casadi::SX parameters;  ///< fixed p, 1/N
   ElementExpressions element;
