@@ -25,8 +25,8 @@ struct SharedSizes {
   [[nodiscard]] int size() const { return controls + parameters + held + 2 + samples; }
 };
 
-/// Where a gap is 0 throughout an element, time does not move by its being open: a selection, or the weight of a
-/// region, is at a bound. The rate's selection says whether it moves. Pairs of zero multipliers tell such elements.
+/// Holds the condition of a gap that is 0 throughout an element. Time does not move there by its being open: a
+/// selection, or the weight of a region, is at a bound. The rate's selection says whether it moves. Pairs of zero multipliers tell such elements.
 ///
 /// Nothing else says so: where the rate is 0, as it is at the end of a collision, the gap stands in all regions. A
 /// collision could begin an element, and time move at its last stages.
