@@ -88,8 +88,8 @@ Expected<result::Result> simulate_frozen(const model::System& system, const Simu
   } else if (status.termination == result::Termination::completed) {
     status.termination = result::Termination::not_converged;
     status.message = "the clock stands still";
-  } else if (!status.message.empty()) {
-    status.message += fmt::format(" (of numerical time; bodies and relays are at t = {:.10g})", reached);
+  } else if (status.termination != result::Termination::stopped_by_event && !status.message.empty()) {
+    status.message += fmt::format(" (t is numerical time here; the clock shows {:.10g})", reached);
   }
   status.time_reached = ended ? until : reached;
   const double standing = standing_part * (until - from) / static_cast<double>(options.fesd.steps);
