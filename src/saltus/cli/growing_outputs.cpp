@@ -26,6 +26,7 @@ bool GrowingOutputs::pass(File& file, std::string_view piece) {
 }
 
 void GrowingOutputs::begin() {
+  begun_ = true;
   for (const auto& name : names_) {
     auto& file = *files_.emplace_back(std::make_unique<File>());
     file.name = name;
@@ -48,7 +49,7 @@ void GrowingOutputs::note(File& file, const Expected<void>& outcome) {
 }
 
 bool GrowingOutputs::add(const result::Result& part) {
-  if (files_.empty()) begin();
+  if (!begun_) begin();
   bool good = true;
   for (auto& file : files_) {
     if (file->good) note(*file, file->parts->add(part));

@@ -26,7 +26,9 @@ class GrowingOutputs {
   GrowingOutputs(std::vector<std::string> names, std::string format, std::size_t events)
       : names_(std::move(names)), format_(std::move(format)), most_(events) {}
 
-  [[nodiscard]] bool begun() const { return !files_.empty(); }
+  [[nodiscard]] bool begun() const { return begun_; }
+  /// Tells whether nothing is written: rows are wanted by nobody.
+  [[nodiscard]] bool only_counts() const { return names_.empty(); }
   /// Returns false if something could not be written: a run need not go on.
   bool add(const result::Result& part);
   /// Returns the first and the last events.
@@ -56,6 +58,7 @@ class GrowingOutputs {
   std::vector<std::string> names_;
   std::string format_;
   std::size_t most_;
+  bool begun_ = false;
   std::vector<std::unique_ptr<File>> files_;
   std::vector<result::Event> first_, last_;
   std::function<bool(const std::string& name, std::size_t bytes)> watch_;

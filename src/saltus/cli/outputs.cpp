@@ -174,7 +174,7 @@ bool Outputs::fill_standard_output() const {
 
 std::optional<GrowingOutputs> Outputs::growing(std::size_t events) const {
   constexpr std::size_t most_events = 10000;
-  if (names_.files.empty() || !names_.report.empty() || events > most_events) return std::nullopt;
+  if (!names_.report.empty() || events > most_events) return std::nullopt;
   return GrowingOutputs(names_.files, names_.format, events);
 }
 

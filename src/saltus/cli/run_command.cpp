@@ -230,10 +230,13 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
   const auto outputs = Outputs::make(arguments.outputs, input->path);
   if (!outputs) return refuse(outputs.error());
 
-  if (arguments.methods == RunMethods::chosen)
+  const bool one_run = arguments.methods == RunMethods::chosen;
+  if (one_run)
     for (const auto& warning : options_without_effect(input->file)) print_error(fmt::format("warning: {}", warning));
   tell_whose_controls(*input);
-  auto growing = outputs->growing(*shown);
+  auto growing = one_run ? outputs->growing(*shown) : std::nullopt;
+  // The table needs no row: those at steps tell what moves.
+  if (growing && growing->only_counts()) input->file.simulate.output = pipeline::EveryStep{};
   auto result = compute_all(arguments, *input, *outputs, growing ? &*growing : nullptr, compute);
   if (!result) return refuse_with_source(io::located(result.error(), input->file), *text);
 

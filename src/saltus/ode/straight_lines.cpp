@@ -21,10 +21,14 @@ ColumnRanges::ColumnRanges(std::size_t columns, double share, const Tolerances& 
       low_(columns, std::numeric_limits<double>::infinity()),
       high_(columns, -std::numeric_limits<double>::infinity()) {}
 
-void ColumnRanges::widen(std::size_t column, double value) {
-  if (!std::isfinite(value)) return;
-  low_[column] = std::min(low_[column], value);
-  high_[column] = std::max(high_[column], value);
+void ColumnRanges::widen(std::size_t first, std::span<const double> values) {
+  double* low = low_.data() + first;
+  double* high = high_.data() + first;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const bool finite = values[k] - values[k] == 0.0;  // no branch: the loop is vectorised
+    low[k] = std::min(low[k], finite ? values[k] : low[k]);
+    high[k] = std::max(high[k], finite ? values[k] : high[k]);
+  }
 }
 
 double ColumnRanges::tolerance(std::size_t column) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "saltus/base/function_ref.hpp"
@@ -16,7 +17,9 @@ class ColumnRanges {
   /// @param floor  what a column is known to, whatever its range
   ColumnRanges(std::size_t columns, double share, const Tolerances& floor);
   /// Widens the range by a value; those that are not finite leave the range as it is.
-  void widen(std::size_t column, double value);
+  void widen(std::size_t column, double value) { widen(column, {&value, 1}); }
+  /// Widens the ranges of columns from `first` on, likewise.
+  void widen(std::size_t first, std::span<const double> values);
   /// Returns max(share (high - low), atol + rtol max(|low|, |high|)); the second part before any value.
   [[nodiscard]] double tolerance(std::size_t column) const;
   [[nodiscard]] std::size_t size() const { return low_.size(); }

@@ -248,9 +248,20 @@ class SteadyTable {
   /// Appends a row; all have the width of the first one.
   template <class List>
   void push_back(const List& row) {
-    if (columns_.empty()) columns_.resize(row.size());
+    const bool first = columns_.empty();
+    if (first) columns_.resize(row.size());
     SALTUS_ASSERT(row.size() == columns_.size());
-    for (std::size_t k = 0; k < columns_.size(); ++k) columns_[k].set(rows_, static_cast<Number>(row[k]));
+    last_.resize(row.size());
+    constexpr std::size_t block = 64;  // few differ: blocks are compared without branches
+    for (std::size_t begin = 0; begin < row.size(); begin += block) {
+      const std::size_t end = std::min(begin + block, row.size());
+      bool differs = first;
+      for (std::size_t k = begin; k < end; ++k) {
+        differs |= !SteadyColumn<Number>::same(last_[k], static_cast<Number>(row[k]));
+      }
+      if (!differs) continue;
+      for (std::size_t k = begin; k < end; ++k) columns_[k].set(rows_, last_[k] = static_cast<Number>(row[k]));
+    }
     ++rows_;
   }
   void push_back(std::initializer_list<typename RowVector<Number>::value_type> row) {
@@ -261,6 +272,8 @@ class SteadyTable {
   void pop_back() {
     --rows_;
     for (auto& column : columns_) column.drop_from(rows_);
+    if (rows_ == 0) columns_.clear();
+    find_last();
   }
   /// Leaves these columns, ascending.
   void keep_columns(const std::vector<std::size_t>& columns) {
@@ -269,6 +282,7 @@ class SteadyTable {
       if (column < columns_.size()) kept.push_back(std::move(columns_[column]));
     }
     columns_ = std::move(kept);
+    find_last();
   }
   /// Leaves these rows, ascending.
   void keep(const std::vector<std::size_t>& rows) {
@@ -278,8 +292,14 @@ class SteadyTable {
   }
 
  private:
+  void find_last() {
+    last_.resize(columns_.size());
+    for (std::size_t k = 0; k < columns_.size(); ++k) last_[k] = columns_[k].back();
+  }
+
   std::size_t rows_ = 0;
   std::vector<SteadyColumn<Number>> columns_;
+  std::vector<Number> last_;  ///< what the columns have in the last row
 };
 
 /// Holds values that seldom change from one row to the next.

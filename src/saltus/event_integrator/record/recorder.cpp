@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -97,16 +98,16 @@ void Recorder::append_row(double t, const std::vector<double>& x, const std::vec
 
 /// By the row just appended.
 void Recorder::widen_ranges(const std::vector<double>& x, const std::vector<double>& alpha) {
-  std::size_t column = 0;
-  for (const double value : x) ranges_->widen(column++, value);
-  const double* inputs = recording_.row_inputs.data() + recording_.row_inputs.size() - recording_.n_u;
-  for (std::size_t k = 0; k < recording_.n_u; ++k) ranges_->widen(column++, inputs[k]);
+  ranges_->widen(0, x);
+  std::size_t column = x.size();
+  ranges_->widen(column, std::span(recording_.row_inputs).last(recording_.n_u));
+  column += recording_.n_u;
   const double* outputs = recording_.row_outputs.data() + recording_.row_outputs.size() - recording_.n_y;
   for (std::size_t k = 0; k < recording_.n_y; ++k) {
     const bool selection = k + cut_outputs_ >= recording_.n_y;
     ranges_->widen(column++, selection ? std::clamp(outputs[k], 0.0, 1.0) : outputs[k]);
   }
-  for (const double value : alpha) ranges_->widen(column++, value);
+  ranges_->widen(column, alpha);
 }
 
 std::size_t Recorder::number(const ModeState& state, const std::vector<double>& alpha, const HigherOrderSet* higher) {
@@ -349,7 +350,8 @@ Recording Recorder::hand_over() {
     if (list.size() - k > remembered) continue;
     const auto named = list[k].surfaces;
     auto& surfaces = past_.surfaces.emplace_back();
-    for (std::size_t i = named.begin; i < named.end && !list[k].of_jumps; ++i) surfaces.push_back(recording_.surfaces[i]);
+    for (std::size_t i = named.begin; i < named.end && !list[k].of_jumps; ++i)
+      surfaces.push_back(recording_.surfaces[i]);
   }
   if (past_.surfaces.size() > remembered) {
     past_.surfaces.erase(past_.surfaces.begin(), past_.surfaces.end() - remembered);

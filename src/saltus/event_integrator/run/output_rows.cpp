@@ -1,6 +1,7 @@
 #include "saltus/event_integrator/run/output_rows.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/steps/step_tolerances.hpp"
@@ -58,9 +59,9 @@ bool OutputRows::may_bend(const ode::Stepper& stepper) {
   rows.low.resize(x_.size());
   rows.high.resize(x_.size());
   if (!stepper.bounds(rows.low.data(), rows.high.data())) return true;
+  rows.ranges.widen(0, {stepper.x_new().data(), x_.size()});
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const double begin = here_.x[i], end = stepper.x_new()[i];
-    rows.ranges.widen(i, end);
     // The bounds are those of the chord, widened by the other terms.
     const double bend = std::max(rows.high[i] - std::max(begin, end), std::min(begin, end) - rows.low[i]);
     if (bend > rows.ranges.tolerance(i)) return true;
@@ -94,7 +95,8 @@ void OutputRows::write_lines(double t_end, const ode::DenseStep& dense) {
   const auto column = [&](std::size_t k) {
     return k < first_selection ? k : first_selection + at(sliding[k - first_selection]);
   };
-  for (std::size_t k = 0; k < tolerance.size(); ++k) ranges.widen(column(k), tolerance[k]);
+  ranges.widen(0, std::span(tolerance).first(first_selection));
+  for (std::size_t k = first_selection; k < tolerance.size(); ++k) ranges.widen(column(k), tolerance[k]);
   for (std::size_t k = 0; k < tolerance.size(); ++k) tolerance[k] = ranges.tolerance(column(k));
   // Series take steps over whole periods.
   const int parts = dense.is_series() ? 8 : 2;
