@@ -231,8 +231,7 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
   if (!outputs) return refuse(outputs.error());
 
   const bool one_run = arguments.methods == RunMethods::chosen;
-  if (one_run)
-    for (const auto& warning : options_without_effect(input->file)) print_error(fmt::format("warning: {}", warning));
+  if (one_run) print_warnings(options_without_effect(input->file));
   tell_whose_controls(*input);
   auto growing = one_run ? outputs->growing(*shown) : std::nullopt;
   // The table needs no row: those at steps tell what moves.
