@@ -59,7 +59,7 @@ bool OutputRows::may_bend(const ode::Stepper& stepper) {
   rows.low.resize(x_.size());
   rows.high.resize(x_.size());
   if (!stepper.bounds(rows.low.data(), rows.high.data())) return true;
-  rows.ranges.widen(0, {stepper.x_new().data(), x_.size()});
+  rows.ranges.widen(0, std::span(stepper.x_new(), x_.size()));
   for (std::size_t i = 0; i < x_.size(); ++i) {
     const double begin = here_.x[i], end = stepper.x_new()[i];
     // The bounds are those of the chord, widened by the other terms.
