@@ -29,6 +29,8 @@ _OF_OPTIMUM = (
 
 #: The model, settings and options of a simulation, with which it can be run once more.
 Again = tuple[typing.Any, list[str], list[tuple[str, str, str]]]
+#: The same, what makes it, or the file of a result that has it.
+Origin = typing.Union[Again, typing.Callable[[], Again], str, None]
 
 
 class Result(Facts):
@@ -43,7 +45,7 @@ class Result(Facts):
     False
     """
 
-    def __init__(self, run: _core.Run, origin: Again | str | None = None, kept: Kept | None = None) -> None:
+    def __init__(self, run: _core.Run, origin: Origin = None, kept: Kept | None = None) -> None:
         super().__init__(run)
         self._origin = origin
         self._kept = kept
@@ -51,6 +53,8 @@ class Result(Facts):
     @functools.cached_property
     def _again(self) -> Again | None:
         """How it can be run once more; of a stored simulation by the model in its file."""
+        if callable(self._origin):
+            return self._origin()
         if not isinstance(self._origin, str):
             return self._origin
         from ._model import Model
@@ -393,7 +397,7 @@ def load(path: str | os.PathLike[str]) -> Result:
     return Result(_core.load(os.fspath(path)), os.path.abspath(path))
 
 
-def _restored(text: str, again: Again | str | None = None, kept: Kept | None = None) -> Result:
+def _restored(text: str, again: Again | None = None, kept: Kept | None = None) -> Result:
     return Result(_core.parse_result(text), again, kept)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 _SPELLINGS = [
@@ -42,7 +43,14 @@ _SPELLINGS = [
     (r"`?\bsaltus (simulate|optimize|sweep|check|compare|order)\b`?", r"m.\1()"),
 ]
 _FLAGS = ("--set ", "--over ", "--sample ")
-_PATTERNS = [(re.compile(found), written) for found, written in _SPELLINGS]
+
+
+@functools.cache
+def _patterns() -> list[tuple[re.Pattern[str], str]]:
+    """Made at the first message, as that takes longer than most of an import."""
+    return [(re.compile(found), written) for found, written in _SPELLINGS]
+
+
 _DOTTED = re.compile(r"(?<![\w.])(?:simulate|optimize)\.(?:(?:event|output|fesd|timestepping|smoothed|mpcc)\.)?(?=[a-z])")
 
 
@@ -52,7 +60,7 @@ def in_python(text: str) -> str:
     >>> in_python("give --until T on the command line, or --runs 1000 with --zip")
     'give until=…, or runs=1000 with zip=True'
     """
-    for found, written in _PATTERNS:
+    for found, written in _patterns() if text else []:
         text = found.sub(written, text)
     return text
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import typing
 
@@ -10,7 +11,7 @@ import numpy as np
 from . import _core, _sweep_plot
 from ._expression import Expression
 from ._outcome import Kept, unknown
-from ._result import Result, needed
+from ._result import Again, Result, needed
 from ._settings import text_of
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
@@ -28,19 +29,24 @@ def with_results(
 ) -> Found:
     """What the library found, with its runs as results that know how they can be run once more."""
     columns, runs, names = found
-    settings, options, keep = arguments[0], arguments[1], arguments[7]
+    keep = arguments[7]
     swept = [(name, columns[column]) for name, column in zip(names, list(columns)[1:])]
     results = []
     row = 0
     for run in runs:
         rows = 1 if keep == "final" else len(run.events) if keep == "events" else len(run.t)
-        again = None
-        if rows > 0:  # of a run without a row the values are not known here
-            again = (model, [*settings, *(f"{name}={_text(column[row])}" for name, column in swept)], options)
+        # Of a run without a row the values are not known here.
+        origin = functools.partial(_again, model, arguments, swept, row) if rows > 0 else None
         events = int(columns["events"][row]) if keep == "final" else len(run.events)
-        results.append(Result(run, again, Kept(keep, events)))
+        results.append(Result(run, origin, Kept(keep, events)))
         row += rows
     return columns, results, names
+
+
+def _again(model: typing.Any, arguments: SweepArguments, swept: list[tuple[str, typing.Any]], row: int) -> Again:
+    """How the run of a row is run once more: with the settings of the sweep, and its own values."""
+    settings, options = arguments[:2]
+    return model, [*settings, *(f"{name}={_text(column[row])}" for name, column in swept)], options
 
 
 def _text(value: typing.Any) -> str:
