@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the wheel of a build folder into an empty environment, without the source tree, and runs the tests there.
 #   scripts/test_wheel.sh WHEEL_FOLDER PYTHON…     the environments are those of these interpreters
-#   scripts/test_wheel.sh WHEEL_FOLDER others      those of every other Python >= 3.10 on this machine, with a part of the tests
+#   scripts/test_wheel.sh WHEEL_FOLDER others      of the oldest and the newest other Python >= 3.10 here, with a part of the tests
 set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 wheels=$(cd "$1" && pwd)
@@ -27,6 +27,7 @@ if [[ "${pythons[*]}" == others ]]; then
       "$python" -c '' 2>/dev/null && pythons+=("$python") && break
     done
   done
+  ((${#pythons[@]} < 3)) || pythons=("${pythons[0]}" "${pythons[-1]}")
 fi
 for python in "${pythons[@]}"; do
   version=$("$python" -c 'import sys; print("%d.%d" % sys.version_info[:2])')
