@@ -44,9 +44,11 @@ std::string Run::advice_on_steps() {
   std::string norm = model::vanishing_norm(switching_context_.system, here_.t, here_.x);
   if (!norm.empty()) return norm;
   const std::string cycles = ContractingCycles(switching_context_, here_, recorder_).describe();
-  return fmt::format(
-      "; raise simulate.max_steps if they are meant, or {}",
-      cycles.empty() ? "try --integrator radau5: the model may be stiff" : "change the model: " + cycles);
+  const std::string raise = "; raise simulate.max_steps if they are meant";
+  if (!cycles.empty()) return fmt::format("{}, or change the model: {}", raise, cycles);
+  const bool explicit_steps = options_.method == ode::Method::dopri5 || options_.method == ode::Method::dop853;
+  const bool is_told = steps_.stiff_at().has_value();  // at the end of the message
+  return raise + (explicit_steps && !is_told ? ", or try --integrator radau5: the model may be stiff" : "");
 }
 
 bool Run::too_many_events() {
