@@ -20,8 +20,8 @@ Error no_roots() {
       "replace the root by a smooth function near zero, for example sqrt(abs(x) + 1e-6)");
 }
 
-/// Of a part with both of a contact's functions, numbers `gap` and `rate` of its surfaces. In the step form the pairs are
-/// those of both selections. Else they are of regions that only the gap tells apart, and that only the rate does.
+/// Of a part with both of a contact's functions, numbers `gap` and `rate` of its surfaces. In the step form the pairs
+/// are those of both selections. Else they are of regions that only the gap tells apart, and that only the rate does.
 void take_closing_gap(const model::FrozenContact& contact, const reformulation::DcsPart& part, int gap, int rate,
                       OcpKernel::Implementation& kernel) {
   const auto pair = [&](int selection, bool of_complement) {
