@@ -18,7 +18,7 @@ SECONDS, SECONDS_OF_LONG = 900 if "--all" in sys.argv else 240, 10
 
 # Beside the catalogue.
 EXAMPLES = [MODELS.parent / "examples" / "contacts" / f"{name}.toml"
-            for name in ("two-carts", "carts-apart", "discs-switch", "hopper-hop")]
+            for name in ("two-carts", "carts-apart", "discs-switch", "hopper-hop", "leg-hop")]
 
 
 def problems():
