@@ -261,8 +261,9 @@ class TimeFreezing(tool.ToolTest):
         self.assertLess(depths[1], 1.1e-5)
 
     def test_a_solution_is_followed_to_another_problem(self):
-        self.optimised(LANDING)
-        near = self.write("near.toml", LANDING.replace("u - 1", "u - 0.9"))
+        landing = LANDING.replace("intervals = 2", "intervals = 4")
+        self.optimised(landing)
+        near = self.write("near.toml", landing.replace("u - 1", "u - 0.9"))
         self.run_tool("optimize", near, "--start", "r.json", "--set", "optimize.mpcc.first=branch", "--quiet", "--out",
                       "s.json", code=0)
         result = json.loads((self.folder / "s.json").read_text(encoding="utf-8"))

@@ -16,6 +16,11 @@ LONG = set() if "--all" in sys.argv else {"block-train"}
 SECONDS, SECONDS_OF_LONG = 900 if "--all" in sys.argv else 240, 10
 
 
+# Beside the catalogue.
+EXAMPLES = [MODELS.parent / "examples" / "contacts" / f"{name}.toml"
+            for name in ("two-carts", "carts-apart", "discs-switch", "hopper-hop", "leg-hop")]
+
+
 def problems():
     return sorted(path.stem for path in MODELS.glob("*.toml") if "\n[optimize]" in path.read_text(encoding="utf-8"))
 
@@ -43,8 +48,8 @@ class Catalogue(unittest.TestCase):
     def test_problems(self):
         names = problems()
         self.assertGreaterEqual(len(names), 12)
-        for name in names:
-            with self.subTest(name):
+        for name in names + EXAMPLES:
+            with self.subTest(str(name)):
                 self.check(name)
 
 

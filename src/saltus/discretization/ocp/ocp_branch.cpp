@@ -149,12 +149,6 @@ struct Departure {
   bool at_upper = false;
 };
 
-/// The rate's selection says when a gap that is held begins to open.
-bool is_of_gap(const OcpStructure& made, std::size_t pair) {
-  const auto& gaps = made.kernel.closed_gaps;
-  return std::any_of(gaps.begin(), gaps.end(), [&](const auto& gap) { return at(gap.first_pair) == pair; });
-}
-
 /// The one at the left end of element e, if nothing else happens there. A switch or a beginning of sliding is an
 /// equation for the boundary, the end of sliding is none.
 std::optional<Departure> departure_at(const OcpStructure& made, const ElementSides& modes, std::size_t e) {
@@ -176,7 +170,6 @@ std::optional<Departure> departure_at(const OcpStructure& made, const ElementSid
     const bool differs = modes.of(e - 1, k) != modes.of(e, k) || modes.of(e - 1, k + 1) != modes.of(e, k + 1);
     if (!differs) continue;
     if (!slides(e - 1)) return std::nullopt;
-    if (is_of_gap(made, k)) continue;
     const bool to_upper = modes.of(e, k + 1) == ActiveSide::G;
     if (!departure) departure = {.selection = pairs[k].selection, .at_upper = to_upper};
   }
@@ -203,6 +196,23 @@ mpcc::BranchClosure::Freedom freedom_of(const OcpStructure& made, const ElementS
   return freedom;
 }
 
+/// ClosingGap: selections that stay where they are, at a bound.
+void hold_closing_gaps(const OcpStructure& made, const ElementSides& modes, std::size_t e,
+                       mpcc::BranchClosure& closure) {
+  const auto& kernel = made.kernel;
+  const auto is_zero = [&](int pair) { return modes.of(e, at(pair)) == ActiveSide::G; };
+  const auto hold = [&](int number) {
+    const auto& pair = kernel.pairs[at(number)];
+    for (int m = 0; m < kernel.layout.stages; ++m) {
+      const int selection = made.element[e].variable(kernel.layout.selection.at(m, pair.selection));
+      (pair.complement ? closure.at_upper : closure.at_lower).push_back(selection);
+    }
+  };
+  for (const auto& gap : kernel.closing_gaps) {
+    if (is_zero(gap.closing)) hold(is_zero(gap.closed) ? gap.closed : gap.open);
+  }
+}
+
 }  // namespace
 
 mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
@@ -225,14 +235,7 @@ mpcc::BranchClosure OcpProblem::close_branch(const Sides& sides) const {
     for (std::size_t k = 0; k < kernel.pairs.size() && of_stages_only; ++k) {
       if (modes.of(e, k) == ActiveSide::H && left[k] >= 0) closure.at_lower.push_back(left[k]);
     }
-    for (const auto& gap : kernel.closed_gaps) {
-      const bool is_closed =
-          modes.of(e, at(gap.first_pair)) == ActiveSide::H && modes.of(e, at(gap.second_pair)) == ActiveSide::H;
-      for (int m = 0; m < kernel.layout.stages && is_closed; ++m) {
-        const int selection = made.element[e].variable(kernel.layout.selection.at(m, gap.selection));
-        (gap.at_upper ? closure.at_upper : closure.at_lower).push_back(selection);
-      }
-    }
+    hold_closing_gaps(made, modes, e, closure);
     if (!equal_lengths || made.element[e].number == 0 || !modes.are_equal(e - 1, e)) continue;
     closure.equal.emplace_back(made.element[e - 1].length, made.element[e].length);
   }

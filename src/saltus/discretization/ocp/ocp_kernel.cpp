@@ -20,31 +20,49 @@ Error no_roots() {
       "replace the root by a smooth function near zero, for example sqrt(abs(x) + 1e-6)");
 }
 
-/// Of a contact without restitution, in the step form and between two regions that only the gap tells apart.
-void take_closed_gap(const model::FrozenSelection& gap, const Dcs& dcs, OcpKernel::Implementation& kernel) {
-  const auto first_pair = [&](int selection) {
+/// Of a part with both of a contact's functions, numbers `gap` and `rate` of its surfaces. In the step form the pairs
+/// are those of both selections. Else they are of regions that only the gap tells apart, and that only the rate does.
+void take_closing_gap(const model::FrozenContact& contact, const reformulation::DcsPart& part, int gap, int rate,
+                      OcpKernel::Implementation& kernel) {
+  const auto pair = [&](int selection, bool of_complement) {
     int k = 0;
-    while (kernel.pairs[at(k)].selection != selection) ++k;
-    return k;
+    while (kernel.pairs[at(k)].selection != part.first + selection) ++k;
+    return of_complement ? k + 1 : k;
   };
-  for (const auto& part : dcs.parts) {
-    const bool is_step = part.form == reformulation::Form::step;
-    for (int j = 0; j < static_cast<int>(part.surfaces.size()); ++j) {
-      if (dcs.surfaces[at(part.surfaces[at(j)])].function != gap.function) continue;
-      if (is_step) {
-        const int k = first_pair(part.first + j);
-        kernel.closed_gaps.push_back({k, k + 1, part.first + j, gap.orientation < 0});
-        continue;
+  if (part.form == reformulation::Form::step) {
+    const bool is_opposite = contact.gap.orientation < 0;
+    kernel.closing_gaps.push_back({.open = pair(gap, is_opposite),
+                                   .closed = pair(gap, !is_opposite),
+                                   .closing = pair(rate, contact.normal.orientation < 0)});
+    return;
+  }
+  const auto other_side = [&](int region, int surface) {
+    Eigen::RowVectorXi signs = part.signs.row(region);
+    signs[surface] = -signs[surface];
+    int other = 0;
+    while (part.signs.row(other) != signs) ++other;
+    return other;
+  };
+  for (int region = 0; region < part.count; ++region) {
+    const bool is_open = part.signs(region, gap) == contact.gap.orientation;
+    if (!is_open || part.signs(region, rate) == contact.normal.orientation) continue;
+    const int behind = other_side(region, gap);
+    kernel.closing_gaps.push_back(
+        {.open = pair(region, false), .closed = pair(behind, false), .closing = pair(other_side(behind, rate), false)});
+  }
+}
+
+void take_closing_gaps(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation& kernel) {
+  if (!ocp.system.freezing) return;
+  for (const auto& contact : ocp.system.freezing->contacts) {
+    for (const auto& part : dcs.parts) {
+      int gap = -1, rate = -1;
+      for (int j = 0; j < static_cast<int>(part.surfaces.size()); ++j) {
+        const int function = dcs.surfaces[at(part.surfaces[at(j)])].function;
+        if (function == contact.gap.function) gap = j;
+        if (function == contact.normal.function) rate = j;
       }
-      for (Eigen::Index i = 0; i < part.signs.rows(); ++i) {
-        if (part.signs(i, j) != gap.orientation) continue;
-        Eigen::RowVectorXi behind = part.signs.row(i);
-        behind[j] = -behind[j];
-        Eigen::Index other = 0;
-        while (part.signs.row(other) != behind) ++other;
-        const int open = part.first + static_cast<int>(i);
-        kernel.closed_gaps.push_back({first_pair(open), first_pair(part.first + static_cast<int>(other)), open, false});
-      }
+      if (!contact.is_elastic && gap >= 0 && rate >= 0) take_closing_gap(contact, part, gap, rate, kernel);
     }
   }
 }
@@ -64,10 +82,7 @@ void take_sizes(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation
     if (part.form == reformulation::Form::stewart) kernel.simplex_parts.emplace_back(part.first, part.count);
   }
   kernel.simplices = static_cast<int>(kernel.simplex_parts.size());
-  if (!ocp.system.freezing) return;
-  for (const auto& contact : ocp.system.freezing->contacts) {
-    if (!contact.is_elastic) take_closed_gap(contact.gap, dcs, kernel);
-  }
+  take_closing_gaps(ocp, dcs, kernel);
 }
 
 void compile_functions(const OcpExpressions& made, OcpKernel::Implementation& kernel) {

@@ -25,15 +25,15 @@ struct SharedSizes {
   [[nodiscard]] int size() const { return controls + parameters + held + 2 + samples; }
 };
 
-/// Holds the condition of a gap that is 0 throughout an element. Time does not move there by its being open: a
-/// selection, or the weight of a region, is at a bound. The rate's selection says whether it moves. Pairs of zero multipliers tell such elements.
+/// Holds pairs that say of an element whether a contact without restitution is open or closed, and that it closes.
+/// While it closes it is one of both throughout: closed if its gap stays 0.
 ///
-/// Nothing else says so: where the rate is 0, as it is at the end of a collision, the gap stands in all regions. A
-/// collision could begin an element, and time move at its last stages.
-struct ClosedGap {
-  int first_pair = 0, second_pair = 0;
-  int selection = 0;
-  bool at_upper = false;
+/// Nothing else says so. At the end of a collision the rate of the gap is 0, so that the gap stands whatever its
+/// selection is; a collision could begin an element, and time move at its last stages.
+struct ClosingGap {
+  int open = 0;     ///< of a selection that is 0 where the gap is closed
+  int closed = 0;   ///< of one that is 0 where it is open
+  int closing = 0;  ///< of one that is 0 where the gap closes
 };
 
 struct OcpKernel::Implementation {
@@ -44,7 +44,7 @@ struct OcpKernel::Implementation {
   bool moves = true;  ///< lengths are variables
   int states = 0, selections = 0, simplices = 0;
   std::vector<SelectionPair> pairs;
-  std::vector<ClosedGap> closed_gaps;
+  std::vector<ClosingGap> closing_gaps;
   std::vector<std::pair<int, int>> simplex_parts;  ///< first selection and count
   SharedSizes shared;
   std::vector<int> free_parameters;  ///< indices into System::p
