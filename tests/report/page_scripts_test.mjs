@@ -19,6 +19,12 @@ test("every script of the page is one that a browser reads", () => {
   }
 });
 
+test("every name has one meaning", () => {
+  const names = fs.readdirSync(page).filter((name) => name.endsWith(".js")).flatMap(
+      (file) => [...fs.readFileSync(new URL(file, page), "utf8").matchAll(/^saltus\.(\w+) = /gm)].map((match) => match[1]));
+  assert.deepEqual(names.filter((name, i) => names.indexOf(name) !== i), []);
+});
+
 test("rows of a window reach over both of its ends and take both rows of an event there", () => {
   const t = [0, 1, 2, 2, 3, 4];
   assert.deepEqual(saltus.rowsInWindow(t, [1.5, 2]), [1, 5]);

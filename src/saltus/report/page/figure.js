@@ -116,7 +116,7 @@ saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve,
   const color = saltus.curveColour(panel, i, view.palette);
   const steps = saltus.controlSteps(result, curve);
   const stems = saltus.isImpulse(result, curve) ?
-      saltus.stems(result.trajectory.t, curve.values, view.window, view.pixels) :
+      saltus.impulseLines(result.trajectory.t, curve.values, view.window, view.pixels) :
       null;
   const {x, y, jumps, envelope} =
       steps ?? stems ?? saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);

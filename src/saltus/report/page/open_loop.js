@@ -14,15 +14,6 @@ saltus.commonRows = (a, b, reach) => {
   return pairs;
 };
 
-/** Value of a curve between its rows, linearly; null beside them. */
-saltus.interpolated = (t, values, at) => {
-  if (t.length === 0 || at < t[0] || at > t[t.length - 1]) return null;
-  const i = Math.max(1, saltus.lowerBound(t, at));
-  if (i >= t.length || t[i] === t[i - 1]) return values[Math.min(i, t.length - 1)];
-  const share = (at - t[i - 1]) / (t[i] - t[i - 1]);
-  return values[i - 1] + share * (values[i] - values[i - 1]);
-};
-
 /** |simulated - optimised| of a state by its range, where both have a row; between rows if they have too few in common. */
 saltus.openLoopDifference = (trajectory, simulated, state) => {
   const [least, greatest] = saltus.range(trajectory.x[state]);

@@ -135,7 +135,7 @@ saltus.isImpulse = (result, {sort, name}) =>
     sort === "output" && (result.contacts ?? []).some((contact) => name === `impulse(${contact})`);
 
 /** Upright lines from 0 where values are not 0, of those nearer than a pixel the longest. */
-saltus.stems = (t, values, [from, to], pixels) => {
+saltus.impulseLines = (t, values, [from, to], pixels) => {
   const x = [Math.max(from, t[0])];
   const y = [0];
   values.forEach((value, i) => {
