@@ -99,7 +99,7 @@ class Mistakes(tool.ToolTest):
         return out, err.replace(f"{self.folder}/", "")
 
     def test_runs_show_the_line_of_their_first_mistake(self):
-        file = self.write("m.toml", '[model]\nname = "m"\n[states]\nx = "one"\n[dynamics]\nx = "-x"\n[simulate]\nuntil = 1\n[optimize]\nhorizon = 1\n')
+        file = self.write("m.toml", '[model]\nname = "m"\n[states]\nx = "one"\n[dynamics]\nx = "-x"\n[simulate]\nuntil = 1\n[optimize]\nhorizon = 1\ncontrol_intervals = 2\n')
         for command in ("simulate", "optimize"):
             _, err = self.run_tool(command, file, code=2)
             self.assertIn('\n    4 | x = "one"\n      |      ^\n', err, command)
