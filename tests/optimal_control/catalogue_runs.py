@@ -18,7 +18,8 @@ SECONDS, SECONDS_OF_LONG = 900 if "--all" in sys.argv else 240, 10
 
 # Beside the catalogue.
 EXAMPLES = [MODELS.parent / "examples" / "contacts" / f"{name}.toml"
-            for name in ("two-carts", "carts-apart", "discs-switch", "hopper-hop", "leg-hop")]
+            for name in ("two-carts", "carts-apart", "carts-on-ground", "discs-switch", "ball-across", "throw-mirrored",
+                         "hopper-hop", "leg-hop")]
 
 
 def problems():
