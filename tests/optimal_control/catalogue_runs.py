@@ -13,7 +13,7 @@ TOOL = sys.argv[1]
 MODELS = pathlib.Path(sys.argv[2]) / "models"
 # Takes more than two minutes: solved with the argument --all, else stopped by a time limit, which it says.
 LONG = set() if "--all" in sys.argv else {"block-train"}
-SECONDS, SECONDS_OF_LONG = 900 if "--all" in sys.argv else 240, 10
+SECONDS, SECONDS_OF_LONG = 900 if "--all" in sys.argv else 480, 10
 
 
 # Beside the catalogue.
