@@ -60,7 +60,7 @@ concept ListOfWords = std::is_enum_v<typename List::value_type>;
 template <class Enum>
 struct EnumWords {
   std::optional<Enum> (*named)(std::string_view word);
-  const char* what;
+  std::string_view what;
 };
 template <class Enum>
 inline constexpr EnumWords<Enum> enum_words{};
@@ -164,7 +164,7 @@ void read_value(JsonReader& reader, const Json& json, const std::string& path, V
   if constexpr (Listed<Value>) {
     read_record(reader, json, path, value);
   } else if constexpr (std::is_enum_v<Value>) {
-    static_assert(enum_words<Value>.named != nullptr);
+    static_assert(!enum_words<Value>.what.empty());
     reader.read_word(json, path, enum_words<Value>, value);
   } else if constexpr (std::is_same_v<Value, int> || std::is_same_v<Value, std::size_t>) {
     read_count(reader, json, path, value);
