@@ -169,6 +169,7 @@ class SteadyColumn {
     return values_[static_cast<std::size_t>(std::upper_bound(from_.begin(), from_.end(), row) - from_.begin()) - 1];
   }
   [[nodiscard]] const Value& back() const { return values_.back(); }
+  [[nodiscard]] bool empty() const { return values_.empty(); }
   /// Forgets what was set from this row on.
   void drop_from(std::size_t row) {
     while (!from_.empty() && from_.back() >= row) from_.pop_back(), values_.pop_back();
@@ -272,7 +273,8 @@ class SteadyTable {
   void pop_back() {
     --rows_;
     for (auto& column : columns_) column.drop_from(rows_);
-    if (rows_ == 0) columns_.clear();
+    const bool none_was_set = !columns_.empty() && columns_.front().empty();  // in any: a row sets all of them
+    if (none_was_set) columns_.clear();
     find_last();
   }
   /// Leaves these columns, ascending.

@@ -57,6 +57,16 @@ TEST(SteadyTable, GivesEveryRowBack) {
   EXPECT_EQ(list_of(table, 2), rows[7]);
 }
 
+TEST(SteadyTable, ForgetsItsOnlyRowBehindOneThatMayNotBeRead) {
+  SteadyTable<double> table;
+  table.repeat();
+  table.push_back({1.0, 2.0});
+  table.pop_back();
+  table.push_back({3.0, 4.0});
+  EXPECT_EQ(table.size(), 2U);
+  EXPECT_EQ(list_of(table, 1), (std::vector<double>{3.0, 4.0}));
+}
+
 TEST(SteadyTable, KeepsBits) {
   SteadyTable<double> table{{0.0}, {-0.0}, {nan}, {nan}, {1.0}};
   EXPECT_FALSE(std::signbit(table[0][0]));
