@@ -57,7 +57,9 @@ Expected<result::Result> compute_all(const RunArguments& arguments, const ModelI
       return can_write ? on_step(step) : pipeline::Proceed::stop;
     };
   }
-  auto result = compute(*system, input.file.simulate, observers);
+  auto options = input.file.simulate;
+  if (growing != nullptr && growing->only_counts()) pipeline::leave_out_rows(*system, options);
+  auto result = compute(*system, options, observers);
   if (!result) return result;
   complete_record(input, *result);
   if (outputs.show_surfaces()) pipeline::add_drawings(*system, *result);
@@ -234,8 +236,6 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
   if (one_run) print_warnings(options_without_effect(input->file));
   tell_whose_controls(*input);
   auto growing = one_run ? outputs->growing(*shown) : std::nullopt;
-  // The table needs no row: those at steps tell what moves.
-  if (growing && growing->only_counts()) input->file.simulate.output = pipeline::EveryStep{};
   auto result = compute_all(arguments, *input, *outputs, growing ? &*growing : nullptr, compute);
   if (!result) return refuse_with_source(io::located(result.error(), input->file), *text);
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -322,6 +323,12 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   add_penetration(system, *result);
   if (*kept) keep_columns(system, **kept, *result);
   return result;
+}
+
+void leave_out_rows(const model::System& system, SimulateOptions& options) {
+  const bool times_are_checked = std::holds_alternative<AtTimes>(options.output);
+  if (options.method != Method::event || times_are_checked || !system.contacts.empty()) return;
+  options.output = NumberOfPoints{2};
 }
 
 }  // namespace saltus::pipeline

@@ -7,7 +7,6 @@
 #include <optional>
 #include <thread>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 
@@ -31,14 +30,6 @@ void leave_what_is_kept(SweepRun& run, Keep keep) {
   run.result.options.clear();
   run.result.elements.reset();
   if (keep == Keep::final) run.result.events = {};
-}
-
-/// Rows change neither the end nor the events: where nobody keeps them, and nothing is said of them, the run makes two.
-void leave_out_rows(StatedRun& stated) {
-  auto& options = stated.options;
-  const bool times_are_checked = std::holds_alternative<AtTimes>(options.output);
-  if (options.method != Method::event || times_are_checked || !stated.system.contacts.empty()) return;
-  options.output = NumberOfPoints{2};
 }
 
 /// What all threads work on.
@@ -81,7 +72,7 @@ class Workshop {
       if (!made) return tl::unexpected(made.error());
       stated.emplace(std::move(*made));
     }
-    if (options_.keep != Keep::trajectory) leave_out_rows(*stated);
+    if (options_.keep != Keep::trajectory) leave_out_rows(stated->system, stated->options);
     auto result = simulate(stated->system, stated->options, watch_, &kernels_);
     {
       const SymbolicLock lock;

@@ -1,6 +1,5 @@
 #include "saltus/pipeline/mpcc/solve_mpcc.hpp"
 
-
 #include <fmt/format.h>
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
