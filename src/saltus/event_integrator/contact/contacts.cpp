@@ -204,8 +204,8 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
 }
 
 /// The impulses, and the velocities behind them; false where there are none.
-bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
-                       ContactPoint& point, std::vector<double>& x) {
+bool Contacts::push(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
+                    ContactPoint& point, std::vector<double>& x) {
   const auto impulses = impact(point, touching, pushed);
   if (!impulses) return false;
   const int m = point.contacts();
@@ -224,12 +224,34 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
     if (std::abs(point.velocity(row)) <= small_velocity * small_velocity * size + 64.0 * rounding_unit * size)
       point.velocity(row) = 0.0;
   }
+  return true;
+}
+
+/// An impact. What would rise by nothing has no restitution: its impulses, too, are those of bodies that come to rest.
+bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
+                       ContactPoint& point, std::vector<double>& x) {
+  const double fastest = point.velocity.cwiseAbs().maxCoeff();
+  const auto x_before = x;
+  auto before = point;
+  if (!push(moment, touching, pushed, point, x)) return false;
+  bool rests = false;
+  for (const int i : touching) {
+    if (before.restitution[at(i)] == 0.0 || point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x))
+      continue;
+    before.restitution[at(i)] = 0.0;
+    rests = true;
+  }
+  if (rests) {
+    x = x_before;
+    point = before;
+    if (!push(moment, touching, pushed, point, x)) return false;
+  }
   for (const int i : touching) {
     if (rises_by_nothing(moment, i, point, x)) point.velocity(i) = 0.0;
   }
   constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
-  for (int i = 0; i < m; ++i) {
-    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * size) continue;
+  for (int i = 0; i < point.contacts(); ++i) {
+    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * fastest) continue;
     for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
   }
   return true;

@@ -108,6 +108,8 @@ class Contacts {
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
              const std::vector<int>& ended) const;
   [[nodiscard]] bool touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const;
+  bool push(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
+            ContactPoint& point, std::vector<double>& x);
   bool collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
                ContactPoint& point, std::vector<double>& x);
   [[nodiscard]] std::optional<std::string> find_modes(const ContactMoment& moment, const std::vector<int>& touching,
