@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "bodies.hpp"
 #include "explicit_step.hpp"
 #include "gene_ring.hpp"
 #include "networks.hpp"
@@ -240,6 +241,8 @@ void sweep_problem(const Request& request) {
   if (request.problem == "gene-ring-active") return sweep_network<GeneRing<0>>(request);
   if (request.problem == "stick-slip") return sweep_method<StickSlip>(request);
   if (request.problem == "relay-feedback") return sweep_method<Relay>(request);
+  if (request.problem == "pile-of-balls") return sweep_method<ContactProblem<Pile>>(request);
+  if (request.problem == "hops") return sweep_method<ContactProblem<Hops>>(request);
   unknown(request);
 }
 

@@ -1,6 +1,7 @@
 // From a system's expressions to the functions that every run needs, and to their structure.
 #include <algorithm>
 #include <exception>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -93,7 +94,7 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
   by_values = limits.by_values;
   rooted = limits.rooted;
   continued_roots = limits.continued;
-  find_structure();
+  find_structure(system);
   compile_functions(system);
 }
 
@@ -121,7 +122,7 @@ void CompiledModel::compile_functions(const model::System& system) {
   }
 }
 
-void CompiledModel::find_structure() {
+void CompiledModel::find_structure(const model::System& system) {
   const int n_phi = static_cast<int>(phi.numel());
   affine = affine_entries(phi, symbols());
   time_only.assign(at(n_phi), true);
@@ -133,6 +134,16 @@ void CompiledModel::find_structure() {
     time_only[at(j)] = std::all_of(states.begin(), states.end(), is_discrete);
   }
   if (start.cells.size() > 0) on_cells = start.cells.dependencies(dependencies_of_rows(phi, p));
+  discrete_guards.assign(at(n_phi), false);
+  const auto on_time = dependencies_of_rows(phi, t);
+  for (std::size_t k = 0; k < jump_guards.size(); ++k) {
+    const auto j = at(first_jump_guard) + k;
+    const bool in_cell = !on_cells.empty() && std::any_of(on_cells[j].begin(), on_cells[j].end(), std::identity{});
+    discrete_guards[j] = time_only[j] && on_time[j].empty() && !in_cell &&
+                         std::all_of(inner[j].begin(), inner[j].end(), [&](int selection) {
+                           return system.switching[at(selection)].role == model::SwitchingRole::discrete;
+                         });
+  }
   free.depends = normal_dependencies(free.f);
   free.neighbours = neighbours_in(free.depends);
 }

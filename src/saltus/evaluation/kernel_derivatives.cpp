@@ -186,6 +186,10 @@ bool ModelKernel::has_root(int surface) const { return implementation_->compiled
 bool ModelKernel::root_is_continued(int surface) const {
   return implementation_->compiled->continued_roots[at(surface)];
 }
+bool ModelKernel::is_discrete_guard(int function) const {
+  return implementation_->compiled->discrete_guards[at(function)];
+}
+
 bool ModelKernel::is_time_only(int function) const { return implementation_->compiled->time_only[at(function)]; }
 const std::vector<int>& ModelKernel::inner(int function) const {
   return implementation_->compiled->inner[at(function)];

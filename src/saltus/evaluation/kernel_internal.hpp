@@ -75,6 +75,7 @@ struct KernelSymbols {
 struct KernelStructure {
   std::vector<std::vector<bool>> on_cells;  ///< by event function
   std::vector<bool> affine, time_only;
+  std::vector<bool> discrete_guards;          ///< by event function: guards of jumps that jumps alone change
   std::vector<bool> rooted, continued_roots;  ///< n_psi
   std::vector<std::vector<int>> inner;
   SymbolPlaces places;
@@ -133,7 +134,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   casadi::SX lie_expression(CompiledMotion& motion, int j, int order);
   void compile_field(CompiledMotion& target, const std::string& name) const;
   void compile_functions(const model::System& system);
-  void find_structure();
+  void find_structure(const model::System& system);
   [[nodiscard]] std::vector<std::vector<bool>> normal_dependencies(const casadi::SX& f) const;
   void compile_conditions(const model::System& system);
 

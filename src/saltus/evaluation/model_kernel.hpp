@@ -209,6 +209,8 @@ class ModelKernel {
   /// Returns whether phi_j depends on t and discrete states only (for fixed alpha): between jumps it is a function of
   /// time, which no selection changes, so that nothing slides on it.
   [[nodiscard]] bool is_time_only(int function) const;
+  /// Returns whether it is a guard of a jump that depends on discrete states and constants only.
+  [[nodiscard]] bool is_discrete_guard(int function) const;
   /// Returns switching functions whose alpha occurs in phi_j (after inputs are put in), ascending.
   [[nodiscard]] const std::vector<int>& inner(int function) const;
   /// Returns whether the normal component grad psi_i . f + d psi_i/dt depends on alpha_j (structurally).

@@ -43,6 +43,7 @@ void JumpCascade::note_guards() {
   auto& slope = slope_;
   kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
   for (std::size_t k = 0; k < switching_context_.system.jumps.size(); ++k) {
+    if (contacts_.owns(static_cast<int>(k))) continue;  // velocities that an impact ends are 0 exactly
     const int guards = static_cast<int>(switching_context_.system.jumps[k].guards.numel());
     for (int g = 0; g < guards; ++g) {
       const int function = kernel_.jump_guard(static_cast<int>(k), g);
@@ -111,13 +112,16 @@ Motion JumpCascade::find_motion(int function) {
   const Rate rate = rates_.here(function);
   const Rate& here = largest_rates_[at(function)];
   const double scale = std::max({here.value, std::abs(rate.value), cancelled * here.terms, cancelled * rate.terms});
+  const auto by_rate = ProjectedFields::motion_by_velocity(rate.value, scale);
+  // The mode of a contact has been decided with the next derivatives, and holds.
+  if (!by_rate && contacts_.guards(function)) return {{}, 2};
   // A rate that the second derivative turns around within the rounding of the function is none: it may as well be that
   // of a state at rest.
   const double bend = kernel_.lie_derivative(function, 2, here_.t, here_.x.data(), here_.state.alpha.data());
   if (rate.value * bend < 0.0 && rate.value * rate.value <= 2.0 * std::abs(bend) * rounding_unit * size_at(function)) {
     return {{0.0, bend > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
   }
-  if (const auto motion = ProjectedFields::motion_by_velocity(rate.value, scale)) return *motion;
+  if (by_rate) return *by_rate;
   const SwitchingPoint switching_point = at_this_time();
   const ProjectedFields fields(kernel_, switching_point);
   return fields.motion(here_.state.alpha, function, rate.value, scale);

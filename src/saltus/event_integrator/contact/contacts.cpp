@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/contact/impact.hpp"
+#include "saltus/event_integrator/contact/row_basis_internal.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -18,32 +18,6 @@ using Eigen::VectorXd;
 
 constexpr double small_velocity =
     1e-9;  ///< relative size of velocities that count as none at an event: location and projection
-
-/// Rows that do not depend on each other.
-class RowBasis {
- public:
-  explicit RowBasis(const Eigen::MatrixXd& rows) : rows_(rows) {}
-  [[nodiscard]] bool holds(int row) const { return !part_beside(row); }
-  /// Adds a row unless it depends on those that were taken.
-  bool takes(int row) {
-    const auto part = part_beside(row);
-    if (part) basis_.push_back(part->normalized());
-    return part.has_value();
-  }
-
- private:
-  [[nodiscard]] std::optional<VectorXd> part_beside(int row) const {
-    VectorXd e = rows_.row(row).transpose();
-    const double size = e.norm();
-    for (const auto& b : basis_) e -= b.dot(e) * b;
-    for (const auto& b : basis_) e -= b.dot(e) * b;
-    if (!(e.norm() > 1e-9 * size)) return std::nullopt;
-    return e;
-  }
-
-  const Eigen::MatrixXd& rows_;
-  std::vector<VectorXd> basis_;
-};
 
 }  // namespace
 
@@ -233,19 +207,19 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
   const double fastest = point.velocity.cwiseAbs().maxCoeff();
   const auto x_before = x;
   auto before = point;
-  if (!push(moment, touching, pushed, point, x)) return false;
-  bool rests = false;
-  for (const int i : touching) {
-    if (before.restitution[at(i)] == 0.0 || point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x))
-      continue;
-    before.restitution[at(i)] = 0.0;
-    rests = true;
-  }
-  if (rests) {
+  for (bool again = true; again;) {
     x = x_before;
     point = before;
     if (!push(moment, touching, pushed, point, x)) return false;
+    again = false;
+    for (const int i : touching) {
+      double& restitution = before.restitution[at(i)];
+      if (restitution == 0.0 || point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
+      restitution = 0.0;
+      again = true;
+    }
   }
+  // Without restitution it rises by what the others do to it, and their speeds are that small, too.
   for (const int i : touching) {
     if (rises_by_nothing(moment, i, point, x)) point.velocity(i) = 0.0;
   }
@@ -289,7 +263,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
   }
   const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, resting, found, x);
   enter(moment, point, found[chosen], x);
-  static_cast<void>(project(moment.t, moment.alpha, x));
+  static_cast<void>(project(moment.t, moment.alpha, x, touching));
   bound_speeds(moment, x);
   return std::nullopt;
 }
@@ -376,70 +350,6 @@ void Contacts::enter_slip(const ContactMoment& moment, const ContactPoint& point
   // Before: without a speed the force of a slip has no size either.
   if (contact.in_plane && is_still) start_slip(moment, i, found.directions[at(i)], x);
   x[at(contact.slip)] = 1.0;
-}
-
-std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
-  std::vector<int> rows;
-  const auto m = static_cast<int>(contacts_.size());
-  for (int i = 0; i < m; ++i) {
-    if (x[at(contacts_[at(i)].active)] != 0.0) rows.push_back(i);
-  }
-  for (int i = 0; i < m; ++i) {
-    const auto& contact = contacts_[at(i)];
-    for (int k = 0; k < contact.tangents(); ++k) {
-      if (x[at(contact.stick + k)] != 0.0) rows.push_back(m * (1 + k) + i);
-    }
-  }
-  return rows;
-}
-
-void Contacts::correct_positions(std::vector<double>& x) const {
-  std::vector<int> rows;
-  for (const int row : held_rows(x)) {
-    if (row < static_cast<int>(contacts_.size())) rows.push_back(row);
-  }
-  if (rows.empty()) return;
-  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
-  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
-  const VectorXd change = response * influence.ldlt().solve(values_.gap(rows));
-  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    x[at(system_.positions[k])] -= change(static_cast<Eigen::Index>(k));
-  }
-}
-
-void Contacts::correct_velocities(std::vector<double>& x) const {
-  const auto rows = held_rows(x);
-  if (rows.empty()) return;
-  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
-  const Eigen::MatrixXd normal = values_.rows(rows, Eigen::all);
-  const VectorXd change = response * (normal * response).ldlt().solve(values_.velocity(rows));
-  const auto before = x;
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    x[at(system_.velocities[k])] -= change(static_cast<Eigen::Index>(k));
-  }
-  // A velocity that sticks by itself is 0, not its rounding.
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const auto row = static_cast<Eigen::Index>(r);
-    if (rows[r] < static_cast<int>(contacts_.size()) || (normal.row(row).array() != 0.0).count() != 1) continue;
-    Eigen::Index only = 0;
-    static_cast<void>(normal.row(row).cwiseAbs().maxCoeff(&only));
-    const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
-    if (std::abs(x[k]) <= 64.0 * rounding_unit * std::abs(before[k])) x[k] = 0.0;
-  }
-}
-
-bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<double>& x) {
-  if (none() || held_rows(x).empty()) return false;
-  const auto before = x;
-  // The gap of a step is within its tolerances: two corrections leave rounding.
-  for (int iteration = 0; iteration < 3; ++iteration) {
-    kernel_.contacts(t, x.data(), alpha.data(), values_);
-    const auto x_before = x;
-    correct_positions(x);
-    if (x == x_before) break;
-  }
-  correct_velocities(x);
-  return x != before;
 }
 
 Contacts::Modes Contacts::modes_at(const std::vector<double>& x) const {

@@ -63,7 +63,8 @@ class Contacts {
   /// Says what is wrong where steps become ever smaller as a contact slips under a force that grows without bound.
   [[nodiscard]] std::optional<std::string> jam(const ContactMoment& moment, const std::vector<double>& x);
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
-  bool project(double t, const std::vector<double>& alpha, std::vector<double>& x);
+  bool project(double t, const std::vector<double>& alpha, std::vector<double>& x,
+               const std::vector<int>& touching = {});
   /// Returns whether a jump of a contact has only bounded the speed of a slip in a plane anew.
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
   /// Returns their names, for messages.
@@ -121,7 +122,7 @@ class Contacts {
              std::vector<double>& x);
   void enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
                   bool is_free, std::vector<double>& x);
-  void correct_positions(std::vector<double>& x) const;
+  void correct_positions(const std::vector<int>& touching, std::vector<double>& x) const;
   void correct_velocities(std::vector<double>& x) const;
   [[nodiscard]] std::vector<int> held_rows(const std::vector<double>& x) const;
 

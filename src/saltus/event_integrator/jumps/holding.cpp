@@ -142,7 +142,7 @@ std::optional<std::string> Holding::moves_what_is_compared(double t, const std::
     static_cast<void>(find_rate_row(guard.hold, system_.jumps[at(guard.hold.jump)].targets, t, alpha, x));
     for (std::size_t i = 0; i < row_.size(); ++i) {
       if (row_[i] == 0.0 || !system_.discrete_states[i]) continue;
-      const auto compared = compared_at_jumps_only(system_, static_cast<int>(i));
+      const auto compared = compared_at_jumps_only(kernel_, system_, static_cast<int>(i));
       if (!compared) continue;
       return fmt::format(
           "the state '{}' would have to move to hold the guard of '{}' at 0, but its right-hand side is 0, so '{}' is "

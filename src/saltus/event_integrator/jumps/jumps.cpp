@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -16,30 +17,10 @@ using model::JumpTrigger;
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// Whether none of the guards of a jump depends on time, on a continuous state, or on a selection that can change by
-/// motion.
-std::vector<bool> discrete_guards(const model::System& system, const model::Jump& jump) {
-  using casadi::SX;
-  std::vector<SX> moving{system.t, system.u};
-  for (casadi_int i = 0; i < system.x.numel(); ++i) {
-    if (!system.discrete_states[at(i)]) moving.push_back(system.x(i));
-  }
-  for (casadi_int j = 0; j < system.alpha.numel(); ++j) {
-    if (system.switching[at(j)].role != model::SwitchingRole::discrete) {
-      moving.push_back(system.alpha(j));
-    }
-  }
-  const SX variables = SX::vertcat(moving);
-  std::vector<bool> discrete;
-  for (casadi_int g = 0; g < jump.guards.numel(); ++g) {
-    discrete.push_back(!SX::depends_on(jump.guards(g), variables));
-  }
-  return discrete;
-}
-
 }  // namespace
 
-std::optional<std::string> compared_at_jumps_only(const model::System& system, int state) {
+std::optional<std::string> compared_at_jumps_only(const evaluation::ModelKernel& kernel, const model::System& system,
+                                                  int state) {
   const SymbolicLock lock;
   const casadi::SX symbol = system.x(state);
   for (const auto& function : system.switching) {
@@ -47,10 +28,11 @@ std::optional<std::string> compared_at_jumps_only(const model::System& system, i
       return function.name;
     }
   }
-  for (const auto& jump : system.jumps) {
-    const auto discrete = discrete_guards(system, jump);
-    for (std::size_t g = 0; g < discrete.size(); ++g) {
-      if (discrete[g] && casadi::SX::depends_on(jump.guards(static_cast<casadi_int>(g)), symbol)) return jump.name;
+  for (std::size_t k = 0; k < system.jumps.size(); ++k) {
+    const auto& jump = system.jumps[k];
+    for (int g = 0; g < static_cast<int>(jump.guards.numel()); ++g) {
+      const bool is_discrete = kernel.is_discrete_guard(kernel.jump_guard(static_cast<int>(k), g));
+      if (is_discrete && casadi::SX::depends_on(jump.guards(g), symbol)) return jump.name;
     }
   }
   return std::nullopt;
@@ -62,21 +44,15 @@ Jumps::Jumps(const evaluation::ModelKernel& kernel, const model::System& system,
       from_(from),
       truth_(system.jumps.size(), 0U),
       times_passed_(system.jumps.size(), 0),
-      discrete_guard_(at(kernel.event_functions()), false),
       values_(at(kernel.event_functions())),
       next_time_(never) {
-  const SymbolicLock lock;
   for (std::size_t k = 0; k < system.jumps.size(); ++k) {
-    const auto discrete = discrete_guards(system, system.jumps[k]);
-    for (std::size_t g = 0; g < discrete.size(); ++g) {
-      discrete_guard_[at(kernel.jump_guard(static_cast<int>(k), static_cast<int>(g)))] = discrete[g];
-    }
     const auto& times = system.jumps[k].times;
     times_passed_[k] = std::lower_bound(times.begin(), times.end(), from) - times.begin();
   }
 }
 
-bool Jumps::is_discrete_guard(int function) const { return discrete_guard_[at(function)]; }
+bool Jumps::is_discrete_guard(int function) const { return kernel_.is_discrete_guard(function); }
 
 /// The next time of a jump with given times.
 double Jumps::time_of(int jump) const {
@@ -98,7 +74,7 @@ void Jumps::find_next_time() {
 
 /// Pointwise as written: signs of continuous guards are known just behind this time, discrete ones are exact.
 int Jumps::guard_sign(int function, const JumpPoint& point) const {
-  if (!discrete_guard_[at(function)]) return point.signs[at(function - kernel_.switching_functions())];
+  if (!is_discrete_guard(function)) return point.signs[at(function - kernel_.switching_functions())];
   const double value = values_[at(function)];
   return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
 }

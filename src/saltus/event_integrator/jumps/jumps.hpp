@@ -20,7 +20,8 @@ struct JumpPoint {
 
 /// Returns a switching function or a jump that a discrete state decides, so that it is read at jumps only; nothing
 /// without.
-[[nodiscard]] std::optional<std::string> compared_at_jumps_only(const model::System& system, int state);
+[[nodiscard]] std::optional<std::string> compared_at_jumps_only(const evaluation::ModelKernel& kernel,
+                                                                const model::System& system, int state);
 
 /// Follows the truth of all conditions and the queue of executions (rules 1 to 5 of the model file's [[jumps]]). Knows
 /// no modes and takes no steps; it is asked at events only.
@@ -74,8 +75,7 @@ class Jumps {
   const model::System& system_;
   double from_;
   std::vector<unsigned> truth_;
-  std::vector<long> times_passed_;    ///< of every jump with given times
-  std::vector<bool> discrete_guard_;  ///< over the event functions
+  std::vector<long> times_passed_;  ///< of every jump with given times
   mutable std::vector<double> values_;
   std::vector<Execution> queue_;  ///< in the order of triggering
   double next_time_;

@@ -64,11 +64,16 @@ double path_violation(const Ocp& ocp, const Integration& run, double until) {
   return worst;
 }
 
-/// What errors of a state are divided by: its range, at least 1e-3 of its bound and 1e-6.
+/// What errors of a state are divided by: its range, at least 1e-3 of its bound and 1e-6. Of bodies that touch, a
+/// position or velocity may be held, and has no range of its own: then at least 1e-4 of the largest one of its kind.
 class Scales {
  public:
   Scales(const model::System& system, const OptimizedPath& path)
-      : system_(system), low_(path.state_min), high_(path.state_max) {}
+      : system_(system), low_(path.state_min), high_(path.state_max), kind_(low_.size(), nullptr) {
+    for (const auto* kind : {&system.contacts.positions, &system.contacts.velocities}) {
+      for (const int state : *kind) kind_[at(state)] = kind;
+    }
+  }
 
   void include(const Integration& run) {
     for (const auto& x : run.trajectory.x) {
@@ -81,7 +86,10 @@ class Scales {
   }
 
   [[nodiscard]] double of(std::size_t state) const {
-    double scale = std::max(high_[state] - low_[state], 1e-6);
+    double scale = std::max(range(state), 1e-6);
+    if (const auto* kind = kind_[state]) {
+      for (const int other : *kind) scale = std::max(scale, 1e-4 * range(at(other)));
+    }
     for (const double bound : {system_.state_lower[state], system_.state_upper[state]}) {
       if (std::isfinite(bound)) scale = std::max(scale, 1e-3 * std::abs(bound));
     }
@@ -95,8 +103,11 @@ class Scales {
   }
 
  private:
+  [[nodiscard]] double range(std::size_t state) const { return high_[state] - low_[state]; }
+
   const model::System& system_;
   std::vector<double> low_, high_;
+  std::vector<const std::vector<int>*> kind_;  ///< positions, velocities, or neither
 };
 
 /// Everything but the open loop.

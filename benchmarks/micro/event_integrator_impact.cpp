@@ -1,0 +1,62 @@
+// What does the resolution of an impact cost? Contacts of boxes: one without friction, one that slips and sticks, one
+// with two tangents whose slip turns, four corners at once.
+#include <cmath>
+#include <cstddef>
+
+#include <benchmark/benchmark.h>
+
+#include "saltus/event_integrator/contact/impact.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using Eigen::Index;
+
+/// Contacts of a body with 6 velocities (mass 1, moments of inertia 0.1) at points under it, 0.5 below its centre.
+/// @param tangents  of each contact
+ContactPoint body(int contacts, int tangents, double friction) {
+  const int rows = contacts * (1 + tangents);
+  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(rows, 6);
+  for (int i = 0; i < contacts; ++i) {
+    const double angle = 0.3 + 1.5707963267948966 * i;
+    const double x = 0.4 * std::cos(angle), y = 0.4 * std::sin(angle), z = -0.5;
+    const auto set = [&](int row, double nx, double ny, double nz) {
+      directions.row(row) << nx, ny, nz, y * nz - z * ny, z * nx - x * nz, x * ny - y * nx;
+    };
+    set(i, 0, 0, 1);
+    if (tangents > 0) set(contacts + i, 1, 0, 0);
+    if (tangents > 1) set(2 * contacts + i, 0, 1, 0);
+  }
+  Eigen::VectorXd inverse_mass(6), velocity(6);
+  inverse_mass << 1, 1, 1, 10, 10, 10;
+  velocity << 1.0, 0.2, -2.0, 0.3, -0.2, 0.1;
+  const auto m = static_cast<std::size_t>(contacts);
+  ContactPoint point;
+  point.influence = directions * inverse_mass.asDiagonal() * directions.transpose();
+  point.velocity = directions * velocity;
+  point.acceleration = Eigen::VectorXd::Zero(rows);
+  point.acceleration.head(contacts).setConstant(-9.81);
+  point.terms = 9.81;
+  point.friction.assign(m, friction);
+  point.restitution.assign(m, 0.3);
+  point.tangents.assign(m, tangents);
+  point.has_gap.assign(m, true);
+  return point;
+}
+
+void impacts(benchmark::State& state, int contacts, int tangents, double friction) {
+  const ContactPoint point = body(contacts, tangents, friction);
+  std::vector<int> touching;
+  for (int i = 0; i < contacts; ++i) touching.push_back(i);
+  if (!impact(point, touching)) state.SkipWithError("no impulses");
+  for (auto _ : state) benchmark::DoNotOptimize(impact(point, touching));
+}
+BENCHMARK_CAPTURE(impacts, one_without_friction, 1, 0, 0.0);
+BENCHMARK_CAPTURE(impacts, one_slips, 1, 1, 0.1);
+BENCHMARK_CAPTURE(impacts, one_sticks, 1, 1, 1.0);
+BENCHMARK_CAPTURE(impacts, one_in_a_plane, 1, 2, 0.3)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(impacts, four_without_friction, 4, 0, 0.0)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(impacts, four_with_friction, 4, 1, 0.3)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace saltus::event_integrator

@@ -1,0 +1,90 @@
+// Gaps, rates and tangential velocities that are held at 0.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <Eigen/Cholesky>
+
+#include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
+#include "saltus/event_integrator/contact/contacts.hpp"
+#include "saltus/event_integrator/contact/row_basis_internal.hpp"
+
+namespace saltus::event_integrator {
+
+using Eigen::VectorXd;
+
+std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
+  std::vector<int> rows;
+  const auto m = static_cast<int>(contacts_.size());
+  for (int i = 0; i < m; ++i) {
+    if (x[at(contacts_[at(i)].active)] != 0.0) rows.push_back(i);
+  }
+  for (int i = 0; i < m; ++i) {
+    const auto& contact = contacts_[at(i)];
+    for (int k = 0; k < contact.tangents(); ++k) {
+      if (x[at(contact.stick + k)] != 0.0) rows.push_back(m * (1 + k) + i);
+    }
+  }
+  return rows;
+}
+
+/// @param touching  what opens there does not begin below its gap: the correction of another one would leave it there,
+///                  to their roundings, and its fall would have no sign to change
+void Contacts::correct_positions(const std::vector<int>& touching, std::vector<double>& x) const {
+  std::vector<int> rows;
+  for (const int row : held_rows(x)) {
+    if (row < static_cast<int>(contacts_.size())) rows.push_back(row);
+  }
+  if (!touching.empty()) {
+    RowBasis basis(values_.rows);
+    for (const int row : rows) basis.takes(row);
+    std::copy_if(touching.begin(), touching.end(), std::back_inserter(rows),
+                 [&](int row) { return values_.gap(row) < 0.0 && basis.takes(row); });
+  }
+  if (rows.empty()) return;
+  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
+  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
+  const VectorXd change = response * influence.ldlt().solve(values_.gap(rows));
+  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
+    x[at(system_.positions[k])] -= change(static_cast<Eigen::Index>(k));
+  }
+}
+
+void Contacts::correct_velocities(std::vector<double>& x) const {
+  const auto rows = held_rows(x);
+  if (rows.empty()) return;
+  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
+  const Eigen::MatrixXd normal = values_.rows(rows, Eigen::all);
+  const VectorXd change = response * (normal * response).ldlt().solve(values_.velocity(rows));
+  const auto before = x;
+  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+    x[at(system_.velocities[k])] -= change(static_cast<Eigen::Index>(k));
+  }
+  // A velocity that sticks by itself is 0, not its rounding.
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto row = static_cast<Eigen::Index>(r);
+    if (rows[r] < static_cast<int>(contacts_.size()) || (normal.row(row).array() != 0.0).count() != 1) continue;
+    Eigen::Index only = 0;
+    static_cast<void>(normal.row(row).cwiseAbs().maxCoeff(&only));
+    const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
+    if (std::abs(x[k]) <= 64.0 * rounding_unit * std::abs(before[k])) x[k] = 0.0;
+  }
+}
+
+bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<double>& x,
+                       const std::vector<int>& touching) {
+  if (none() || held_rows(x).empty()) return false;
+  const auto before = x;
+  // The gap of a step is within its tolerances: two corrections leave rounding.
+  for (int iteration = 0; iteration < 3; ++iteration) {
+    kernel_.contacts(t, x.data(), alpha.data(), values_);
+    const auto x_before = x;
+    correct_positions(touching, x);
+    if (x == x_before) break;
+  }
+  correct_velocities(x);
+  return x != before;
+}
+
+}  // namespace saltus::event_integrator
