@@ -9,8 +9,6 @@ namespace saltus::event_integrator {
 int HeldRows::hold(int row) {
   const auto unknown = static_cast<int>(held.size());
   held.push_back(row);
-  columns.conservativeResize(Eigen::NoChange, unknown + 1);
-  columns.col(unknown).setZero();
   columns(row, unknown) = 1.0;
   return unknown;
 }
@@ -19,8 +17,13 @@ bool HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& st
   forces = given;
   if (held.empty()) return true;
   const Eigen::VectorXd before = start + influence * given;
-  const Eigen::MatrixXd response = influence * columns;
   const auto n = static_cast<Eigen::Index>(held.size());
+  if (n == 1) {
+    const double row = influence.row(held.front()).dot(columns.col(0)), right = -before(held.front());
+    if (row != 0.0) forces += columns.col(0) * (right / row);
+    return row != 0.0 || right == 0.0;
+  }
+  const Eigen::MatrixXd response = influence * columns.leftCols(n);
   Eigen::MatrixXd rows(n, n);
   Eigen::VectorXd right(n);
   for (Eigen::Index k = 0; k < n; ++k) {
@@ -33,7 +36,7 @@ bool HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& st
   const Eigen::VectorXd unknowns = factors.solve(right);
   const double size = rows.cwiseAbs().maxCoeff() * unknowns.cwiseAbs().maxCoeff() + right.cwiseAbs().maxCoeff();
   if (!((rows * unknowns - right).cwiseAbs().maxCoeff() <= 1e-8 * size)) return false;
-  forces += columns * unknowns;
+  forces += columns.leftCols(n) * unknowns;
   return true;
 }
 

@@ -31,14 +31,15 @@ struct ContactPoint {
   }
 };
 
-/// Holds unknown forces or impulses y of contacts, in forces = given + columns y, that keep the rows `held` of start +
-/// influence forces at 0; the least ones where rows depend on each other.
+/// Holds n <= r unknown forces or impulses y of contacts, in forces = given + columns y (its first n), that keep the
+/// rows `held` of start + influence forces at 0; the least ones where rows depend on each other.
 struct HeldRows {
   Eigen::VectorXd given;
   Eigen::MatrixXd columns;
   std::vector<int> held;
 
-  explicit HeldRows(Eigen::Index rows) : given(Eigen::VectorXd::Zero(rows)), columns(rows, 0) {}
+  explicit HeldRows(Eigen::Index rows)
+      : given(Eigen::VectorXd::Zero(rows)), columns(Eigen::MatrixXd::Zero(rows, rows)) {}
   /// Adds one more unknown and its row; returns its number.
   int hold(int row);
   /// Finds the forces; nothing where the rows contradict each other.
