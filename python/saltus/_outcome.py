@@ -88,7 +88,7 @@ class Sensitivities(typing.NamedTuple):
 
 
 class Kept(typing.NamedTuple):
-    """What a sweep kept of a run ("final", "events" or "trajectory"), and how many events happened; or "values" of it."""
+    """What a sweep kept of a run ("final", "events" or "trajectory"), and how many events happened."""
 
     what: str
     events: int

@@ -49,6 +49,7 @@ class Result(Facts):
         super().__init__(run)
         self._origin = origin
         self._kept = kept
+        self._asked: tuple[Result, list[float], str] | None = None  # of values: what they are of, when, on which side
 
     @functools.cached_property
     def _again(self) -> Again | None:
@@ -245,7 +246,9 @@ class Result(Facts):
         model, settings, options = self._again
         with own_results():
             values = model._core.values_at(self._run, settings, options, times.tolist(), side == "left")
-            return Result(values, None, Kept("values", 0))
+            found = Result(values)
+            found._asked = self, times.tolist(), side
+            return found
 
     # What to do with it --------------------------------------------------------------------------------------------
 
@@ -342,7 +345,7 @@ class Result(Facts):
         return _card.card(self)
 
     def __repr__(self) -> str:
-        if self._are_values:
+        if self._asked is not None:
             return f"<saltus.Result {self.model!r}: values at {len(self.t)} times>"
         return f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, {self._counts}>"
 
@@ -357,14 +360,9 @@ class Result(Facts):
     def _rows_kept(self) -> bool:
         return self._kept is None or self._kept.what == "trajectory"
 
-    @property
-    def _are_values(self) -> bool:
-        """Whether it is what :meth:`at` found, no whole run."""
-        return self._kept is not None and self._kept.what == "values"
-
     def __str__(self) -> str:
         """The table of the tool; of values what they are."""
-        if self._are_values:
+        if self._asked is not None:
             return repr(self)
         table = self._run.table()
         if not self._lost_events:
@@ -372,6 +370,8 @@ class Result(Facts):
         return re.sub(r"(?m)^(events +)none$", rf"\1not kept; {self._lost_events} happened", table)
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
+        if self._asked is not None:
+            return Result.at, self._asked
         # What is simulated to be known is not simulated for that.
         costly = callable(self._origin) and not isinstance(self._origin, functools.partial)
         return _restored, (self._run.json(True), self._origin if costly else self._again, self._kept)

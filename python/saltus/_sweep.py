@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import os
 import typing
@@ -28,7 +29,8 @@ SweepArguments = tuple[
 _KEEP = 7
 
 
-class RunWithoutRow(typing.NamedTuple):
+@dataclasses.dataclass(frozen=True)
+class RunWithoutRow:
     """A run without an event, which has no row of which its values could be read. A share of the sweep that is this run
     alone, and keeps its end, says them when they are asked for."""
 
@@ -77,7 +79,7 @@ class Results(typing.Sequence[Result]):
 
     def _one(self, i: int) -> Result:
         if i not in self._made:
-            run, keep, row = self.runs[i], self._arguments[_KEEP], int(self._rows[i])
+            run, keep, row = self.runs[i], str(self._arguments[_KEEP]), int(self._rows[i])
             swept = [(name, self._columns[column]) for name, column in zip(self._names, list(self._columns)[1:])]
             has_row = row < self._rows[i + 1]
             origin: Origin = None
