@@ -292,25 +292,33 @@ class Result(Facts):
         _core.write_file(os.fspath(path), page)
         return None
 
-    def plot(self, names: typing.Sequence[str | Expression] | None = None, axes: typing.Any = None) -> typing.Any:
+    def plot(
+        self,
+        names: typing.Sequence[str | Expression] | None = None,
+        axes: typing.Any = None,
+        *,
+        label: str | None = None,
+    ) -> typing.Any:
         """Draws columns over time (matplotlib): all states, controls and outputs, or those of `names`.
 
         Sliding is shaded, events are marked, the two sides of a jump are not joined. Returns the axes, one for every
-        name; `axes` of a figure of your own are drawn into.
+        name; `axes` of a figure of your own, or of another result, are drawn into. `label` names it in a legend.
 
         >>> axes = saltus.catalogue("stick-slip").simulate(until=10).plot(["v"])
         >>> axes[0].get_ylabel()
         'v'
         """
-        return _plot.plot(self, names, axes)
+        return _plot.plot(self, names, axes, label)
 
-    def phase(self, x: str | Expression, y: str | Expression, axis: typing.Any = None) -> typing.Any:
+    def phase(
+        self, x: str | Expression, y: str | Expression, axis: typing.Any = None, *, label: str | None = None
+    ) -> typing.Any:
         """Draws one column over another (matplotlib); the line is thick where the solution slides. Returns the axes.
 
         >>> saltus.catalogue("stick-slip").simulate(until=10).phase("q", "v").get_xlabel()
         'q'
         """
-        return _plot.phase(self, x, y, axis)
+        return _plot.phase(self, x, y, axis, label)
 
     def frame(self, grid: typing.Any = None) -> typing.Any:
         """A table of pandas, a row for every row of the result, with the time as its index.
