@@ -56,6 +56,16 @@ class Overlays(Page):
         self.becomes(gaps + " > 0", True)
 
 
+    def test_cards_that_scroll_are_reached_by_the_keyboard(self):
+        for name, q in ("a.json", "0"), ("b.json", "0.1"):
+            self.tool("simulate", "stick-slip", "--set", f"q={q}", "--quiet", "--out", name)
+        self.tool("report", "a.json", "b.json", "--out", "both.html")
+        self.browser.open((self.folder / "both.html").as_uri(), 390, 800, "light")
+        scrolling = ("[...document.querySelectorAll('.card')].filter((card) => getComputedStyle(card).overflowX === 'auto'"
+                     " && card.scrollWidth > card.clientWidth).map((card) => [card.tabIndex, card.getAttribute('aria-label')])")
+        self.assertEqual(self.value(scrolling), [[0, "Results laid over this one"]])
+
+
 class Sweep(Page):
     CELLS = ("[...document.querySelector('svg').querySelectorAll('.run')]"
              ".map((cell) => [cell.dataset.run, ...['x', 'width', 'y', 'height'].map((k) => Number(cell.getAttribute(k)))])")
