@@ -60,6 +60,7 @@ from ._outcome import Final, Sensitivities, Status  # noqa: E402
 from ._result import Result, load  # noqa: E402
 from ._sweep import Sweep  # noqa: E402
 
+del annotations  # is no word of the package
 __version__: str = _core.version
 __all__ = [
     "Alternative",

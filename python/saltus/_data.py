@@ -16,29 +16,37 @@ def frame(r: Result, grid: typing.Any = None) -> typing.Any:
     from ._result import needed
 
     pandas = needed("pandas", "data")
-    if grid is not None:
-        if np.ndim(grid) == 0 and (not isinstance(grid, numbers.Integral) or grid < 2):
-            raise ValueError(f"grid={grid!r}: expected a whole number of rows from 2 on, or a list of times")
-        r = r.at(np.linspace(*r.span, int(grid)) if np.ndim(grid) == 0 else grid)
-    r = with_rows(r)
+    r = with_rows(on_grid(r, grid))
     columns = {name: np.array(r[name]) for name in r.names if name != "t"}
     return pandas.DataFrame(columns, index=pandas.Index(np.array(r.t), name="t"))
 
 
-def dataset(r: Result) -> typing.Any:
-    """Variables over `row`, of which `t` is a coordinate: two rows of one time, before and behind an event, stay two."""
+def dataset(r: Result, grid: typing.Any = None) -> typing.Any:
+    """Variables over `row`, of which `t` is a coordinate: two rows of one time, before and behind an event, stay two.
+    On a grid there is one row of each time, and `t` itself is the dimension."""
     from ._result import needed
 
     xarray = needed("xarray", "data")
-    r = with_rows(r)
-    variables = {name: ("row", np.array(r[name])) for name in r.names if name != "t"}
+    parameters = r.parameters
+    r = with_rows(on_grid(r, grid))
+    over = "row" if grid is None else "t"
+    variables = {name: (over, np.array(r[name])) for name in r.names if name != "t"}
     attributes = {
         "model": r.model,
         "method": r.method,
         "status": str(r.status),
-        **{f"parameter.{name}": value for name, value in r.parameters.items()},
+        **{f"parameter.{name}": value for name, value in parameters.items()},
     }
-    return xarray.Dataset(variables, coords={"t": ("row", np.array(r.t))}, attrs=attributes)
+    return xarray.Dataset(variables, coords={"t": (over, np.array(r.t))}, attrs=attributes)
+
+
+def on_grid(r: Result, grid: typing.Any) -> Result:
+    """The result at the times of a grid, or at so many at equal distances; without one as it is."""
+    if grid is None:
+        return r
+    if np.ndim(grid) == 0 and (not isinstance(grid, numbers.Integral) or grid < 2):
+        raise ValueError(f"grid={grid!r}: expected a whole number of rows from 2 on, or a list of times")
+    return r.at(np.linspace(*r.span, int(grid)) if np.ndim(grid) == 0 else grid)
 
 
 def with_rows(r: Result, least: int = 1) -> Result:

@@ -85,6 +85,11 @@ class Expression:
     def __rpow__(self, other: Operand) -> Expression:
         return _power(other, self)
 
+    def __xor__(self, other: Operand) -> typing.NoReturn:
+        raise refuse(f"{self.text} ^ {other}: that is no power in Python", "write x**2; exactly one of two conditions: (a & ~b) | (~a & b)")
+
+    __rxor__ = __xor__
+
     def __mod__(self, other: Operand) -> typing.Any:
         return call("mod", self, other)
 

@@ -12,7 +12,10 @@ if typing.TYPE_CHECKING:
     from ._result import Result
 
 SLIDING = "#d95f02"
-LINE = "#1f5fa8"
+#: Of the first result in a picture, and of those that are drawn over it.
+LINES = ("#1f5fa8", "#1b9e77", "#e7298a", "#66a61e", "#a6761d", "#7570b3")
+#: Marks a line as a result's.
+_OURS = "saltus"
 MARKS = {
     "crossing": ("|", "#555555"),
     "enter_sliding": (">", SLIDING),
@@ -36,7 +39,9 @@ def _matplotlib() -> typing.Any:
     return needed("matplotlib.pyplot", "plot")
 
 
-def plot(r: Result, names: typing.Sequence[str | Expression] | None, axes: typing.Any) -> typing.Any:
+def plot(
+    r: Result, names: typing.Sequence[str | Expression] | None, axes: typing.Any, label: str | None = None
+) -> typing.Any:
     """A row of axes for every name; sliding is shaded, every event marked at its value."""
     r = with_rows(r, 2)
     pyplot = _matplotlib()
@@ -56,13 +61,28 @@ def plot(r: Result, names: typing.Sequence[str | Expression] | None, axes: typin
     for axis, (name, column) in zip(axes, columns.items(), strict=True):
         for begin, end in sliding_spans(r):
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
-        axis.plot(*broken_at_jumps(r, r.t, column), color=LINE, linewidth=1.2)
+        _line(axis, broken_at_jumps(r, r.t, column), label)
         _mark_events(axis, r, column)
         axis.set_ylabel(caption_of(r, name))
         axis.margins(x=0)
     axes[0].set_title(r.model)
     axes[-1].set_xlabel("t")
+    _legend(axes[0])
     return axes
+
+
+def _line(axis: typing.Any, curve: list[typing.Any], label: str | None) -> None:
+    """Another result over one that is there has another colour."""
+    before = sum(line.get_gid() == _OURS for line in axis.lines)
+    named = {"label": label} if label is not None else {}
+    axis.plot(*curve, color=LINES[before % len(LINES)], linewidth=1.2, gid=_OURS, **named)
+
+
+def _legend(axis: typing.Any) -> None:
+    """Of the results that were given a label."""
+    named = [line for line in axis.lines if line.get_gid() == _OURS and not line.get_label().startswith("_")]
+    if named:
+        axis.legend(handles=named)
 
 
 def caption_of(r: Result, name: str) -> str:
@@ -83,15 +103,16 @@ def _row_before(r: Result, t: float) -> int:
     return int(r.t.searchsorted(t, side="left"))
 
 
-def phase(r: Result, x: str | Expression, y: str | Expression, axis: typing.Any) -> typing.Any:
+def phase(
+    r: Result, x: str | Expression, y: str | Expression, axis: typing.Any, label: str | None = None
+) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
     r = with_rows(r, 2)
     pyplot = _matplotlib()
     x, y = str(x), str(y)
     if axis is None:
         _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")
-    across, up = broken_at_jumps(r, r[x], r[y])
-    axis.plot(across, up, color=LINE, linewidth=1.2)
+    _line(axis, broken_at_jumps(r, r[x], r[y]), label)
     held = slides(r)
     here, there = r[x].astype(float), r[y].astype(float)
     here[~held] = float("nan")
@@ -104,4 +125,5 @@ def phase(r: Result, x: str | Expression, y: str | Expression, axis: typing.Any)
     axis.set_xlabel(caption_of(r, x))
     axis.set_ylabel(caption_of(r, y))
     axis.set_title(r.model)
+    _legend(axis)
     return axis

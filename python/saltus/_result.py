@@ -49,6 +49,7 @@ class Result(Facts):
         super().__init__(run)
         self._origin = origin
         self._kept = kept
+        self._asked: tuple[Result, list[float], str] | None = None  # of values: what they are of, when, on which side
 
     @functools.cached_property
     def _again(self) -> Again | None:
@@ -244,7 +245,10 @@ class Result(Facts):
             )
         model, settings, options = self._again
         with own_results():
-            return Result(model._core.values_at(self._run, settings, options, times.tolist(), side == "left"))
+            values = model._core.values_at(self._run, settings, options, times.tolist(), side == "left")
+            found = Result(values)
+            found._asked = self, times.tolist(), side
+            return found
 
     # What to do with it --------------------------------------------------------------------------------------------
 
@@ -288,25 +292,33 @@ class Result(Facts):
         _core.write_file(os.fspath(path), page)
         return None
 
-    def plot(self, names: typing.Sequence[str | Expression] | None = None, axes: typing.Any = None) -> typing.Any:
+    def plot(
+        self,
+        names: typing.Sequence[str | Expression] | None = None,
+        axes: typing.Any = None,
+        *,
+        label: str | None = None,
+    ) -> typing.Any:
         """Draws columns over time (matplotlib): all states, controls and outputs, or those of `names`.
 
         Sliding is shaded, events are marked, the two sides of a jump are not joined. Returns the axes, one for every
-        name; `axes` of a figure of your own are drawn into.
+        name; `axes` of a figure of your own, or of another result, are drawn into. `label` names it in a legend.
 
         >>> axes = saltus.catalogue("stick-slip").simulate(until=10).plot(["v"])
         >>> axes[0].get_ylabel()
         'v'
         """
-        return _plot.plot(self, names, axes)
+        return _plot.plot(self, names, axes, label)
 
-    def phase(self, x: str | Expression, y: str | Expression, axis: typing.Any = None) -> typing.Any:
+    def phase(
+        self, x: str | Expression, y: str | Expression, axis: typing.Any = None, *, label: str | None = None
+    ) -> typing.Any:
         """Draws one column over another (matplotlib); the line is thick where the solution slides. Returns the axes.
 
         >>> saltus.catalogue("stick-slip").simulate(until=10).phase("q", "v").get_xlabel()
         'q'
         """
-        return _plot.phase(self, x, y, axis)
+        return _plot.phase(self, x, y, axis, label)
 
     def frame(self, grid: typing.Any = None) -> typing.Any:
         """A table of pandas, a row for every row of the result, with the time as its index.
@@ -318,25 +330,31 @@ class Result(Facts):
         """
         return _data.frame(self, grid)
 
-    def dataset(self) -> typing.Any:
-        """A data set of xarray: the columns over ``row``, with ``t`` as a coordinate.
+    def dataset(self, grid: typing.Any = None) -> typing.Any:
+        """A data set of xarray: the columns over ``row``, with ``t`` as a coordinate. With `grid`, as that of
+        :meth:`frame`, they lie over ``t``.
 
-        >>> saltus.catalogue("stick-slip").simulate(until=1).dataset()["v"].dims
-        ('row',)
+        >>> r = saltus.catalogue("stick-slip").simulate(until=1)
+        >>> r.dataset()["v"].dims, r.dataset(grid=11)["v"].dims
+        (('row',), ('t',))
         """
-        return _data.dataset(self)
+        return _data.dataset(self, grid)
 
     if not typing.TYPE_CHECKING:  # for who checks types there are only the attributes above
 
         def __getattr__(self, name):
-            if name in _OF_OPTIMUM:
+            if name in _OF_OPTIMUM and self._run.command == "optimize":
                 raise AttributeError(f'{name} is what an optimisation found: r.optimization["{name}"]')
+            if not name.startswith("_") and name in self.names:
+                raise AttributeError(f'{name} is a column of the result: r["{name}"]')
             raise AttributeError(f"a result has no attribute {name!r}")
 
     def _repr_html_(self) -> str:
         return _card.card(self)
 
     def __repr__(self) -> str:
+        if self._asked is not None:
+            return f"<saltus.Result {self.model!r}: values at {len(self.t)} times>"
         return f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, {self._counts}>"
 
     @property
@@ -351,14 +369,20 @@ class Result(Facts):
         return self._kept is None or self._kept.what == "trajectory"
 
     def __str__(self) -> str:
-        """The table of the tool."""
+        """The table of the tool; of values what they are."""
+        if self._asked is not None:
+            return repr(self)
         table = self._run.table()
         if not self._lost_events:
             return table
         return re.sub(r"(?m)^(events +)none$", rf"\1not kept; {self._lost_events} happened", table)
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
-        return _restored, (self._run.json(True), self._again, self._kept)
+        if self._asked is not None:
+            return Result.at, self._asked
+        # What is simulated to be known is not simulated for that.
+        costly = callable(self._origin) and not isinstance(self._origin, functools.partial)
+        return _restored, (self._run.json(True), self._origin if costly else self._again, self._kept)
 
 
 @contextlib.contextmanager
@@ -394,11 +418,15 @@ def load(path: str | os.PathLike[str]) -> Result:
     >>> saltus.load(file).final.t
     1.0
     """
-    return Result(_core.load(os.fspath(path)), os.path.abspath(path))
+    name = os.fspath(path)
+    for suffix, reader in (".csv", "pandas.read_csv"), (".npz", "numpy.load"):
+        if name.endswith(suffix):
+            raise refuse(f"{name}: it has numbers only, no result", f'{reader}("{name}") reads it; r.save("r.json") keeps all')
+    return Result(_core.load(name), os.path.abspath(path))
 
 
-def _restored(text: str, again: Again | None = None, kept: Kept | None = None) -> Result:
-    return Result(_core.parse_result(text), again, kept)
+def _restored(text: str, origin: Origin = None, kept: Kept | None = None) -> Result:
+    return Result(_core.parse_result(text), origin, kept)
 
 
 def needed(package: str, extra: str) -> typing.Any:

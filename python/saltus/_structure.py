@@ -38,6 +38,8 @@ class Structure(Statement):
         >>> m.simulate(until=0.5).events[0]
         <jump of bounce at t = 0.451523641>
         """
+        if not isinstance(set, typing.Mapping):
+            raise refuse(f"set={set}: expected a dict of states and their new values", "m.jump(x > 1, {x: 0})")
         if not set:
             raise refuse("the jump changes nothing", "say which states get which values: m.jump(x > 1, {x: 0})")
         if sum(cause is not None for cause in (when, at, every)) != 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import os
 import typing
@@ -11,36 +12,92 @@ import numpy as np
 from . import _core, _sweep_plot
 from ._expression import Expression
 from ._outcome import Kept, unknown
-from ._result import Again, Result, needed
+from ._result import Again, Origin, Result, needed
 from ._settings import text_of
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 #: Columns, results, and the names of what was changed.
-Found = tuple[dict[str, typing.Any], list[Result], list[str]]
+Found = tuple[dict[str, typing.Any], typing.Sequence[Result], list[str]]
+#: The same as the library gives it.
+FoundRuns = tuple[dict[str, typing.Any], list[_core.Run], list[str]]
 #: What the library's sweep takes before its number of threads.
 SweepArguments = tuple[
     list[str], list[tuple[str, str, str]], list[str], bool, list[str], typing.Optional[int], int, str, bool
 ]
+#: The place of ``keep`` among them.
+_KEEP = 7
 
 
-def with_results(
-    found: tuple[dict[str, typing.Any], list[_core.Run], list[str]], model: typing.Any, arguments: SweepArguments
-) -> Found:
-    """What the library found, with its runs as results that know how they can be run once more."""
-    columns, runs, names = found
-    keep = arguments[7]
-    swept = [(name, columns[column]) for name, column in zip(names, list(columns)[1:])]
-    results = []
-    row = 0
-    for run in runs:
-        rows = 1 if keep == "final" else len(run.events) if keep == "events" else len(run.t)
-        # Of a run without a row the values are not known here.
-        origin = functools.partial(_again, model, arguments, swept, row) if rows > 0 else None
-        events = int(columns["events"][row]) if keep == "final" else len(run.events)
-        results.append(Result(run, origin, Kept(keep, events)))
-        row += rows
-    return columns, results, names
+@dataclasses.dataclass(frozen=True)
+class RunWithoutRow:
+    """A run without an event, which has no row of which its values could be read. A share of the sweep that is this run
+    alone, and keeps its end, says them when they are asked for."""
+
+    model: typing.Any
+    arguments: SweepArguments
+    run: int
+    runs: int
+
+    def __call__(self) -> Again:
+        of_end = (*self.arguments[:_KEEP], "final", *self.arguments[_KEEP + 1 :])
+        columns, _, names = self.model._core.sweep(*of_end, 1, (self.run + 1, self.runs), None, [])
+        swept = [(name, columns[column]) for name, column in zip(names, list(columns)[1:])]
+        return _again(self.model, self.arguments, swept, 0)
+
+
+class Results(typing.Sequence[Result]):
+    """The runs of a sweep as results that know how they can be run once more. Each is made when it is asked for."""
+
+    def __init__(self, found: FoundRuns, model: typing.Any, arguments: SweepArguments, all_runs: bool = True) -> None:
+        """`all_runs` is false of a share, whose runs have other numbers in the sweep."""
+        self._columns, self.runs, self._names = found
+        self._model, self._arguments, self._all_runs = model, arguments, all_runs
+        self._made: dict[int, Result] = {}
+
+    def __len__(self) -> int:
+        return len(self.runs)
+
+    @typing.overload
+    def __getitem__(self, index: int) -> Result: ...
+    @typing.overload
+    def __getitem__(self, index: slice) -> list[Result]: ...
+    def __getitem__(self, index: int | slice) -> Result | list[Result]:
+        if isinstance(index, slice):
+            return [self._one(i) for i in range(*index.indices(len(self)))]
+        return self._one(range(len(self))[index])
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} results>"
+
+    @functools.cached_property
+    def _rows(self) -> Array:
+        """Of every run its first row in the table; behind the last one their number."""
+        keep = self._arguments[_KEEP]
+        counts = [1 if keep == "final" else len(run.events) if keep == "events" else len(run.t) for run in self.runs]
+        return np.concatenate([[0], np.cumsum(counts)]).astype(int)
+
+    def _one(self, i: int) -> Result:
+        if i not in self._made:
+            run, keep, row = self.runs[i], str(self._arguments[_KEEP]), int(self._rows[i])
+            swept = [(name, self._columns[column]) for name, column in zip(self._names, list(self._columns)[1:])]
+            has_row = row < self._rows[i + 1]
+            origin: Origin = None
+            if has_row:
+                origin = functools.partial(_again, self._model, self._arguments, swept, row)
+            elif self._all_runs:
+                origin = RunWithoutRow(self._model, self._arguments, i, len(self))
+            events = int(self._columns["events"][row]) if keep == "final" else len(run.events)
+            self._made[i] = Result(run, origin, Kept(keep, events))
+        return self._made[i]
+
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        return list, (list(self),)
+
+
+def with_results(found: FoundRuns, model: typing.Any, arguments: SweepArguments) -> Found:
+    """What the library found, with its runs as results."""
+    return found[0], Results(found, model, arguments), found[2]
 
 
 def _again(model: typing.Any, arguments: SweepArguments, swept: list[tuple[str, typing.Any]], row: int) -> Again:
@@ -56,8 +113,9 @@ def _text(value: typing.Any) -> str:
 
 
 def share_of(model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]) -> Found:
-    """One share of a sweep, in whatever process."""
-    return with_results(model._core.sweep(*arguments, jobs, share, None, []), model, arguments)
+    """One share of a sweep, in whatever process. Its results are made here: what they are made of stays."""
+    found = model._core.sweep(*arguments, jobs, share, None, [])
+    return found[0], list(Results(found, model, arguments, all_runs=False)), found[2]
 
 
 def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments, jobs: int) -> Found:
@@ -78,7 +136,11 @@ def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments,
     columns = max((part[0] for part in found), key=len)
     parts = [part for part in found if part[1]]
     joined = {name: np.concatenate([np.asarray(part[0][name]) for part in parts]) for name in columns}
-    return joined, [result for part in parts for result in part[1]], found[0][2]
+    results = [result for part in parts for result in part[1]]
+    for i, result in enumerate(results):
+        if result._origin is None:
+            result._origin = RunWithoutRow(model, arguments, i, len(results))
+    return joined, results, found[0][2]
 
 
 class Sweep:
@@ -100,7 +162,7 @@ class Sweep:
         """`sampled` is how many of the names, the last ones, had random values."""
         columns, results, names = found
         self.table: dict[str, Array] = {name: _column(name, values) for name, values in columns.items()}
-        self.results: list[Result] = results
+        self.results: typing.Sequence[Result] = results
         self.names: list[str] = names
         self._shape = shape
         self._sampled = sampled
@@ -132,7 +194,11 @@ class Sweep:
         >>> saltus.catalogue("stick-slip").sweep(max_steps=[3, 1000], until=5).done
         False
         """
-        return all(result.status.done for result in self.results)
+        return all(run.done for run in self._runs)
+
+    @property
+    def _runs(self) -> list[_core.Run]:
+        return self.results.runs if isinstance(self.results, Results) else [result._run for result in self.results]
 
     def frame(self) -> typing.Any:
         """The table as one of pandas.
@@ -202,8 +268,8 @@ class Sweep:
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}
-        for result in self.results:
-            counts[str(result.status)] = counts.get(str(result.status), 0) + 1
+        for run in self._runs:
+            counts[run.termination] = counts.get(run.termination, 0) + 1
         return f"<saltus.Sweep of {len(self)} runs over {', '.join(self.names)}: " + ", ".join(
             f"{count} {status}" for status, count in sorted(counts.items())
         ) + ">"

@@ -81,9 +81,17 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
     columns[nb::str(column.name.c_str())] = column_of(std::move(column.values));
   }
   nb::list results;
+  nb::object not_begun;  // one for all of them: they are alike
   for (auto& run : *runs) {
+    const bool begun = !run.result.states.empty();
+    if (!begun && not_begun.is_valid()) {
+      results.append(not_begun);
+      continue;
+    }
     run.result.model.captions = input.file.captions;
-    results.append(nb::cast(Run{std::make_shared<result::Result>(std::move(run.result)), nullptr, {}, {}, {}}));
+    nb::object made = nb::cast(Run{std::make_shared<result::Result>(std::move(run.result)), nullptr, {}, {}, {}});
+    if (!begun) not_begun = made;
+    results.append(made);
   }
   nb::object found = nb::make_tuple(columns, results, plan.names());
   watch.raise_what_came(found);

@@ -67,6 +67,21 @@ def test_frames_on_a_grid(jumps):
     assert list(jumps.frame(grid=[0.2, 0.4])["x"]) == pytest.approx([0.2, 0.4])
 
 
+def test_data_sets_on_a_grid(jumps):
+    pytest.importorskip("xarray")
+    data = jumps.dataset(grid=4)
+    assert data["x"].dims == ("t",) and data["t"].values.tolist() == [0, 0.5, 1.0, 1.5]
+    assert data["x"].sel(t=0.5).item() == jumps(0.5)[0]
+    with pytest.raises(ValueError, match="grid=1"):
+        jumps.dataset(grid=1)
+
+
+def test_values_say_that_they_are_no_run(jumps):
+    values = jumps.at([0.5, 1.0])
+    for text in (repr(values), str(values), repr(pickle.loads(pickle.dumps(values)))):
+        assert "values at 2 times" in text and "events" not in text
+
+
 def test_results_from_elsewhere(jumps, tmp_path):
     assert pickle.loads(pickle.dumps(jumps))(0.3) == jumps(0.3)
     jumps.save(tmp_path / "r.json")

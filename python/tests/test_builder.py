@@ -166,6 +166,8 @@ def test_what_python_must_not_decide(m):
     refused(lambda: x + float("nan"), "finite")
     refused(lambda: saltus.max(x), "2 arguments")
     refused(lambda: saltus.if_(x, 1, 2), "if_")
+    refused(lambda: x ^ 2, "x**2")
+    refused(lambda: (x > 0) ^ (y > 0), "(a & ~b)")
 
 
 def test_what_a_model_cannot_be(m):
@@ -182,6 +184,7 @@ def test_what_a_model_cannot_be(m):
     refused(lambda: m.rate(a, 1), "another builder")
     m.rate("y", x)
     refused(lambda: m.state("bad name", 0), "is no name")
+    refused(lambda: m.jump(x > 1, x), "set=x: expected a dict", "{x: 0}")
 
 
 def test_tables_inputs_events_and_regions():

@@ -59,6 +59,7 @@ def said_by(call, kind=ValueError):
         ({"x0": [0, 1]}, 'set={"name": value}'),
         ({"belt": 0.1}, 'write set={"belt": 0.1}'),
         ({"set": {"bel": 1}}, 'set={"bel": 1}: expected the name'),
+        ({"set": {"integrator": "radau5"}}, "'integrator' is an option, no name of the model"),
         ({"set": {"belt": "1+"}}, 'set={"belt": "1+"}: expected a number, a name'),
         ({"set": {"belt": "foo"}}, 'set={"belt": "foo"}: unknown name \'foo\''),
         ({"set": {"belt": None}}, "belt=None: that is no value"),

@@ -45,6 +45,16 @@ def test_curves_over_time(slip, tmp_path):
         slip.plot(["w"])
 
 
+def test_results_over_each_other_can_be_told_apart(slip):
+    other = saltus.catalogue("stick-slip").simulate(until=20, set={"belt": 0.3})
+    axes = other.plot(axes=slip.plot(label="belt 0.2"), label="belt 0.3")
+    for axis in (*axes, other.phase("q", "v", slip.phase("q", "v", label="a"), label="b")):
+        lines = [line for line in axis.lines if line.get_gid() == "saltus"]
+        assert len({line.get_color() for line in lines}) == len(lines) == 2
+    assert [text.get_text() for text in axes[0].get_legend().get_texts()] == ["belt 0.2", "belt 0.3"]
+    assert slip.plot()[0].get_legend() is None
+
+
 def test_the_sides_of_a_jump_are_not_joined(ball):
     (axis, *_) = ball.plot([ball.states[1]])
     x, y = (np.asarray(data) for data in axis.lines[0].get_data())

@@ -164,6 +164,30 @@ def test_rows_with_some_of_the_columns():
         model.simulate(until=1, output={"states": ["w"]})
 
 
+def test_what_is_no_attribute_is_told_where_it_is():
+    ball = saltus.Model.from_text('[model]\nname = "m"\n[states]\nh = 1\n[dynamics]\nh = "-1"')
+    r = ball.simulate(until=1)
+    with pytest.raises(AttributeError, match=r'h is a column of the result: r\["h"\]'):
+        r.h
+    with pytest.raises(AttributeError, match="a result has no attribute 'u0'"):
+        r.u0
+
+
+def test_files_of_numbers_are_no_results(slip, tmp_path):
+    for name, reader in ("r.csv", "pandas.read_csv"), ("r.npz", "numpy.load"):
+        slip.save(tmp_path / name)
+        with pytest.raises(saltus.ModelError, match="numbers only") as said:
+            saltus.load(tmp_path / name)
+        assert reader in said.value.remedy and "r.json" in said.value.remedy
+
+
+def test_a_stored_result_is_a_model_that_runs_again(slip, tmp_path):
+    slip.save(tmp_path / "r.json")
+    again = saltus.Model(tmp_path / "r.json")
+    assert again.name == "stick-slip" and again.simulate().x.tobytes() == slip.x.tobytes()
+    assert again.simulate(set={"belt": 0.3}).parameters == {"belt": 0.3}
+
+
 #: Of these it is to_dict() that has them: of the file, of pictures, of finite elements.
 IN_THE_FILE = set(
     "format saltus model command command_line status trajectory surfaces vector_field drawing elements kept_columns region_groups".split()

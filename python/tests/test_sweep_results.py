@@ -1,6 +1,8 @@
 """Single runs of a sweep: what they say of what was not kept, and that they can be asked like any other run."""
 
+import concurrent.futures
 import pickle
+import time
 
 import numpy as np
 import pytest
@@ -51,10 +53,36 @@ def test_spans_and_values_between(slip, alone, keep):
         assert s.results[1](2.5).tobytes() == alone(2.5).tobytes()
         assert s.results[1].frame(grid=3).equals(alone.frame(grid=3))
     assert sweep(slip, keep, from_=1).results[1].span == (1.0, 5.0)
-    # Of a run without a row in the table its values are not known any more.
-    if keep == "events":
-        with pytest.raises(ValueError, match='keep="trajectory"'):
-            sweep(slip, keep).results[2].span
+
+
+@pytest.mark.parametrize("again", [lambda s: s, lambda s: pickle.loads(pickle.dumps(s))], ids=["made", "pickled"])
+def test_runs_without_an_event_know_their_values(slip, again):
+    run = again(sweep(slip, "events")).results[2]
+    fast = slip.simulate(until=5, set={"belt": 5.0})
+    assert run.span == fast.span and run(2.5).tobytes() == fast(2.5).tobytes()
+    assert run.whole.parameters == {"belt": 5.0} and len(run.plot()) == 2
+    # Random ones, too.
+    ends = slip.sweep(sample={"v": "normal(5, 0.1)"}, runs=4, until=1)
+    sampled = again(slip.sweep(sample={"v": "normal(5, 0.1)"}, runs=4, until=1, keep="events", set={"belt": 9}))
+    assert [len(r.events) for r in sampled] == [0] * 4
+    assert [r(0.0)[1] for r in sampled] == ends["v(0)"].tolist()
+
+
+def test_shares_of_an_executor_know_the_values_of_runs_without_an_event(slip):
+    belts = np.linspace(5, 6, 11)
+    with concurrent.futures.ThreadPoolExecutor(2) as executor:
+        s = slip.sweep(belt=belts, until=1, keep="events", executor=executor)
+    assert [run.whole.parameters["belt"] for run in s.results] == belts.tolist()
+
+
+def test_results_of_many_runs_are_made_when_they_are_asked_for(slip):
+    s = slip.sweep(belt=np.linspace(0.05, 0.3, 2000), until=0.01)
+    start = time.perf_counter()
+    assert "2000 completed" in repr(s) and s.done and len(s.results) == 2000
+    assert time.perf_counter() - start < 0.05  # 0.1 s where each has to say its status in Python
+    assert s.results[-1] is s.results[1999] and [r is s.results[i] for i, r in enumerate(s.results[3:5], 3)] == [True] * 2
+    with pytest.raises(IndexError):
+        s.results[2000]
 
 
 def test_every_kind_of_setting_is_run_again(slip):
@@ -86,9 +114,6 @@ def test_pictures_tables_and_files_of_a_single_run_have_all_of_it(slip, alone, t
         assert stored(2.5).tobytes() == alone(2.5).tobytes()
         assert saltus.Model(tmp_path / "r.json").simulate().x.tobytes() == alone.x.tobytes()
     assert alone.whole is alone
-    # Of a run without a row in the table its values are not known any more.
-    with pytest.raises(ValueError, match='keep="trajectory"'):
-        sweep(slip, "events").results[2].plot()
 
 
 def test_all_states_over_what_was_swept(slip):

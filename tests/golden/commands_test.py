@@ -204,7 +204,9 @@ class Words(tool.ToolTest):
                                 (["simulate", "brak.toml"], "did you mean 'brake.toml'?"),
                                 (["simulate", "rows.csv"], "a .csv file is no model\n  a model is a .toml file"),
                                 (["simulate", "stick"], "did you mean 'stick-slip'"),
-                                (["simulate", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`"),
+                                (["simulate", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`: add --out r.json, then "
+                                 "saltus report r.json --figure"),
+                                (["sweep", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`\n"),
                                 (["check", "stick-slip", "--until", "3"], "--until is an option of `saltus simulate`"),
                                 (["simulate", "stick-slip", "--output", "x.json"], "did you mean '--out'?"),
                                 (["simulate", "stick-slip", "--show", "w"], "known: q, v, slip\n")):

@@ -651,6 +651,9 @@ test("differences to another result are taken at the times of the first, and not
   assert.deepEqual(y, [1, 1, null, -2, null]);
   assert.equal(largest, 2);
   assert.equal(saltus.differenceOf(first, {t: [0], x: [[]]}, {sort: "state", index: 0}).largest, null);
+  // No gap where the column of the first goes on.
+  const bent = {t: [0, 1, 1, 2], x: [[0, 1, 1, 0]]};
+  assert.deepEqual(saltus.differenceOf(bent, other, {sort: "state", index: 0}).y, [1, 1, 1, 3]);
 });
 
 test("the rows of a page are a table with both sides of events", () => {

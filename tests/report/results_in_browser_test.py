@@ -43,6 +43,57 @@ class Overlays(Page):
         self.assertLess(largest, 2)
 
 
+    def test_differences_of_what_is_continuous_have_no_gaps(self):
+        for name, e in ("a.json", "0.9"), ("b.json", "0.7"):
+            self.tool("simulate", "bouncing-ball", "--set", f"e={e}", "--until", "5", "--quiet", "--out", name)
+        self.tool("report", "a.json", "b.json", "--out", "both.html")
+        self.open("both.html")
+        gaps = "document.querySelectorAll('.phase-plot')[1].data[0].y.filter((value) => value === null).length"
+        self.assertEqual(self.value(gaps), 0)
+        # The velocity jumps, at other times in each.
+        self.value("(() => { const pick = document.querySelector('select[aria-label=column]');"
+                   " pick.value = 1; pick.dispatchEvent(new Event('change')); })()")
+        self.becomes(gaps + " > 0", True)
+
+
+    def test_cards_that_scroll_are_reached_by_the_keyboard(self):
+        for name, q in ("a.json", "0"), ("b.json", "0.1"):
+            self.tool("simulate", "stick-slip", "--set", f"q={q}", "--quiet", "--out", name)
+        self.tool("report", "a.json", "b.json", "--out", "both.html")
+        self.browser.open((self.folder / "both.html").as_uri(), 390, 800, "light")
+        scrolling = ("[...document.querySelectorAll('.card')].filter((card) => getComputedStyle(card).overflowX === 'auto'"
+                     " && card.scrollWidth > card.clientWidth).map((card) => [card.tabIndex, card.getAttribute('aria-label')])")
+        self.assertEqual(self.value(scrolling), [[0, "Results laid over this one"]])
+
+
+class Sweep(Page):
+    CELLS = ("[...document.querySelector('svg').querySelectorAll('.run')]"
+             ".map((cell) => [cell.dataset.run, ...['x', 'width', 'y', 'height'].map((k) => Number(cell.getAttribute(k)))])")
+    TICKS = ("Object.fromEntries([...document.querySelector('svg').querySelectorAll('text')]"
+             ".map((text) => [text.textContent, Number(text.getAttribute('x'))]))")
+
+    def map_of(self, width):
+        self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.4,0.1,0.2", "--over", "q=0,0.05", "--out", "s.csv",
+                  "--report", "sweep.html")
+        self.browser.open((self.folder / "sweep.html").as_uri(), width, 768, "light")
+        return {int(run): place for run, *place in self.value(self.CELLS)}, self.value(self.TICKS)
+
+    def test_cells_of_a_map_lie_around_their_values(self):
+        cells, ticks = self.map_of(1366)
+        for run, value in (1, "0.4"), (3, "0.1"), (5, "0.2"):
+            left, width, _, _ = cells[run]
+            self.assertLess(left, ticks[value])
+            self.assertLess(ticks[value], left + width)
+        # Twice as far from 0.2 to 0.4 as from 0.1 to 0.2, and half-way between them is a border.
+        self.assertAlmostEqual(cells[3][0] + cells[3][1], (ticks["0.1"] + ticks["0.2"]) / 2, delta=1)
+        self.assertAlmostEqual(cells[5][0] + cells[5][1], (ticks["0.2"] + ticks["0.4"]) / 2, delta=1)
+
+    def test_letters_keep_their_size_on_narrow_screens(self):
+        self.map_of(390)
+        size = "(() => { const svg = document.querySelector('svg'); return 12 * svg.clientWidth / svg.viewBox.baseVal.width; })()"
+        self.assertGreaterEqual(self.value(size), 11)
+
+
 ROTATING = """
 [model]
 name = "entry"

@@ -6,10 +6,12 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -41,6 +43,24 @@ Expected<void> check_grids(const std::vector<std::string>& settings) {
                               {}});
 }
 
+/// Whether the model declares what `--set NAME=VALUE` may change.
+bool is_settable(const model::Description& description, const std::string& name) {
+  const auto declared = [&](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return entry.name == name; });
+  };
+  return declared(description.parameters) || declared(description.states) || declared(description.controls) ||
+         declared(description.hysteresis);
+}
+
+/// The settings that are meant by the last word of an option, as "simulate.event.integrator=radau5"; empty if none.
+std::string option_meant(const std::string& name, const std::string& value) {
+  std::vector<std::string> meant;
+  for (const auto& key : pipeline::simulate_keys()) {
+    if (key == name || key.ends_with("." + name)) meant.push_back(fmt::format("simulate.{}={}", key, value));
+  }
+  return fmt::format("{}", fmt::join(meant, " or "));
+}
+
 }  // namespace
 
 Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
@@ -60,7 +80,16 @@ Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
       input.settings.push_back(setting);
     });
   }
-  auto tree = expression::parse(value, {fmt::format("--set {}", setting), 0, 0});
+  const SourceLocation place{fmt::format("--set {}", setting), 0, 0};
+  const auto meant = is_settable(input.file.description, name) ? std::string() : option_meant(name, value);
+  if (!meant.empty()) {
+    return tl::unexpected(Error{ErrorCode::unknown_name,
+                                fmt::format("'{}' is an option, no name of the model", name),
+                                fmt::format("write {}", meant),
+                                place,
+                                {}});
+  }
+  auto tree = expression::parse(value, place);
   if (!tree) return tl::unexpected(tree.error());
   input.overrides.push_back({name, std::move(*tree)});
   input.settings.push_back(setting);

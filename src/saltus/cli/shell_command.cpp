@@ -26,12 +26,22 @@ std::string listed_words(std::string type) {
   return listed ? type : "";
 }
 
+/// The same of the help "a, b or c".
+std::string words_of_help(std::string help) {
+  const auto last = help.rfind(" or ");
+  if (last == std::string::npos) return "";
+  help.replace(last, 4, "|");
+  for (std::size_t place = 0; (place = help.find(", ", place)) != std::string::npos;) help.replace(place, 2, "|");
+  return listed_words(std::move(help));
+}
+
 std::vector<ShownCommand> shown_commands(const CLI::App& app) {
   std::vector<ShownCommand> commands;
   for (const auto* command : app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); })) {
     ShownCommand shown{command->get_name(), command->get_description()};
     for (const auto* option : command->get_options()) {
-      const auto words = listed_words(option->get_type_name());
+      auto words = listed_words(option->get_type_name());
+      if (words.empty()) words = words_of_help(option->get_description());
       const bool positional = option->get_positional();
       for (const auto& name : option->get_lnames()) shown.options.emplace_back("--" + name, option->get_description());
       if (!words.empty()) shown.values.emplace_back(positional ? shown.name : shown.options.back().first, words);

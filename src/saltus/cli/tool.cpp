@@ -35,7 +35,12 @@ std::string about_option(const std::string& name, const CLI::App& app, const CLI
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     const auto names = option_names(*command);
     if (std::find(names.begin(), names.end(), name) == names.end()) continue;
-    return fmt::format("{} is an option of `saltus {}`", name, command->get_name());
+    auto remedy = fmt::format("{} is an option of `saltus {}`", name, command->get_name());
+    const bool writes_results = reader.get_option_no_throw("--format") != nullptr;
+    if (command->get_name() == "report" && writes_results) {
+      remedy += fmt::format(": add --out r.json, then saltus report r.json {} …", name);
+    }
+    return remedy;
   }
   return suggest(name, known);
 }

@@ -157,6 +157,11 @@ tl::unexpected<Error> not_settable(std::string_view key, std::string_view table)
                            fmt::format("nothing in '{}' can be set on the command line", table),
                            "write a parameter there, and set that: --set NAME=VALUE");
   }
+  const auto options = pipeline::simulate_keys();
+  if (std::find(options.begin(), options.end(), key) != options.end()) {
+    return refused_setting(key, ErrorCode::unknown_name, fmt::format("'{}' is a table of [simulate]", table),
+                           fmt::format("write simulate.{}", key));
+  }
   std::vector<std::string> known{"simulate", "optimize"};
   for (const auto& candidate : settable) known.emplace_back(candidate.name);
   return refused_setting(key, ErrorCode::unknown_name, fmt::format("'{}' is no table of a model file", table),

@@ -66,6 +66,8 @@ std::vector<double> times_to_compare(double from, double until) {
   return times;
 }
 
+constexpr double patience = 0.5;  ///< seconds for which Ctrl-C may wait
+
 /// The reference first.
 std::vector<PlannedRun> plan(SimulateOptions options) {
   options.event.trajectories = 1;
@@ -154,12 +156,13 @@ class ComparedStates {
 };
 
 /// States at one time, and how far they are from the reference's there.
+/// @param may_run_again  whether the reference may be run once more, where it has no row at that time
 Expected<void> compare_states(const model::System& system, const SimulateOptions& reference,
-                              const ComparedStates& states, result::Comparison& comparison) {
+                              const ComparedStates& states, bool may_run_again, result::Comparison& comparison) {
   comparison.time = states.common_time();
   if (!comparison.time) return {};
   auto expected = states.at_time(0, *comparison.time);
-  if (expected.empty()) {  // the reference has rows of its own
+  if (expected.empty() && may_run_again) {  // the reference has rows of its own
     const auto there = values_at(system, reference, {*comparison.time});
     if (!there) return tl::unexpected(there.error());
     expected = there->x.front();
@@ -232,9 +235,10 @@ Expected<result::Result> compare(const model::System& system, const SimulateOpti
     comparison.runs.push_back({next.method, next.variant, std::move(refusal), {}, {}, {}, {}, {}, {}, {}});
     states.add_none();
   }
-  if (const auto done = compare_states(system, planned.front().options, states, comparison); !done) {
-    return tl::unexpected(done.error());
-  }
+  // Who stops a comparison does not wait for another run.
+  const bool may_run_again = !watch.stopped() || reference->statistics.wall_seconds < patience;
+  const auto compared = compare_states(system, planned.front().options, states, may_run_again, comparison);
+  if (!compared) return tl::unexpected(compared.error());
   reference->command = "compare";
   reference->comparison = std::move(comparison);
   return reference;

@@ -63,6 +63,19 @@ function ticksOf(low, high) {
   return ticks;
 }
 
+// Of a map: cells reach half-way to their neighbours, wherever the values lie and in whatever order they were given.
+function cellsOf(values) {
+  const axis = axisOf(values), places = [...new Set(values.map(axis.at))].filter(Number.isFinite).sort((a, b) => a - b);
+  if (places.length < 2) return { ...axis, edgesOf: () => [axis.low, axis.high] };
+  const edges = places.slice(1).map((place, k) => (place + places[k]) / 2), last = places.length - 1;
+  edges.unshift(places[0] - (edges[0] - places[0]));
+  edges.push(places[last] + (places[last] - edges[last]));
+  const [low, high] = [edges[0], edges[last + 1]];
+  const apart = places.slice(1).every((place, k) => place - places[k] > (high - low) / 8);
+  const ticks = axis.words ? axis.ticks : apart ? places.map((place) => [place, shown(place)]) : ticksOf(low, high);
+  return { ...axis, low, high, ticks, edgesOf: (value) => edges.slice(places.indexOf(axis.at(value))).slice(0, 2) };
+}
+
 const size = { width: 720, height: 320, left: 70, right: 20, top: 12, bottom: 46 };
 function frame(title, xName, yName, xAxis, yAxis) {
   const picture = make("svg", { viewBox: `0 0 ${size.width} ${size.height}`, role: "img", "aria-label": title });
@@ -74,7 +87,9 @@ function frame(title, xName, yName, xAxis, yAxis) {
     : bottom - ((value - axis.low) / (axis.high - axis.low)) * (bottom - size.top));
   for (const [value, label] of xAxis.ticks) picture.append(make("text", { x: place(xAxis, value), y: bottom + 16, "text-anchor": "middle" }, label));
   for (const [value, label] of yAxis.ticks) picture.append(make("text", { x: size.left - 6, y: place(yAxis, value) + 4, "text-anchor": "end" }, label));
-  picture.append(make("text", { x: (size.left + size.width - size.right) / 2, y: size.height - 10, "text-anchor": "middle" }, xName));
+  // On narrow screens beside the scale of colours.
+  const middle = size.width < 500 ? size.left : (size.left + size.width - size.right) / 2;
+  picture.append(make("text", { x: middle, y: size.height - 10, "text-anchor": "middle" }, xName));
   // Words say themselves what they are.
   if (!yAxis.words) picture.append(make("text", { x: 14, y: size.height / 2, transform: `rotate(-90 14 ${size.height / 2})`, "text-anchor": "middle" }, yName));
   return { picture, x, y };
@@ -99,16 +114,17 @@ function points(title, xName, yName, chosen, yOf, joined, colourOf = () => palet
 const colourAt = (share) => `hsl(${240 - 200 * share} 60% ${30 + 40 * share}%)`;
 function map(title, xName, yName, valueOf) {
   const xs = [...new Set(runRows.map((row) => columns[xName][row]))], ys = [...new Set(runRows.map((row) => columns[yName][row]))];
-  const drawn = frame(title, xName, yName, axisOf(xs), axisOf(ys));
+  const [across, up] = [cellsOf(xs), cellsOf(ys)], drawn = frame(title, xName, yName, across, up);
+  const share = (axis, place) => (place - axis.low) / (axis.high - axis.low);
   const values = runRows.map(valueOf).filter((value) => value !== null);
   const scale = axisOf(values);
-  const width = (size.width - size.left - size.right) / xs.length, height = (size.height - size.top - size.bottom) / ys.length;
+  const width = size.width - size.left - size.right, height = size.height - size.top - size.bottom;
   let low = NaN, high = NaN;
   for (const row of runRows) {
-    const value = valueOf(row), i = xs.indexOf(columns[xName][row]), j = ys.indexOf(columns[yName][row]);
-    const share = value === null ? null : (value - scale.low) / (scale.high - scale.low);
-    const colour = share === null ? "#999" : colourAt(share);
-    const cell = make("rect", { x: size.left + i * width, y: size.height - size.bottom - (j + 1) * height, width: width + 0.3, height: height + 0.3, fill: colour, class: "run", "data-run": columns.run[row] });
+    const value = valueOf(row), colour = value === null ? "#999" : colourAt(share(scale, value));
+    const [left, right] = across.edgesOf(columns[xName][row]).map((place) => size.left + width * share(across, place));
+    const [bottom, top] = up.edgesOf(columns[yName][row]).map((place) => size.top + height * (1 - share(up, place)));
+    const cell = make("rect", { x: left, y: top, width: right - left + 0.3, height: bottom - top + 0.3, fill: colour, class: "run", "data-run": columns.run[row] });
     low = value !== null && !(value >= low) ? value : low;
     high = value !== null && !(value <= high) ? value : high;
     cell.append(make("title", {}, `${xName} ${shown(columns[xName][row])}, ${yName} ${shown(columns[yName][row])}: ${shown(value)}`));
@@ -153,8 +169,12 @@ function section(title, picture) {
   box.append(make("h2", {}, title), picture, save);
   document.getElementById("pictures").append(box);
 }
+const roomFor = (pictures) => Math.max(340, Math.min(720, pictures.clientWidth));
 function draw() {
-  document.getElementById("pictures").replaceChildren();
+  const pictures = document.getElementById("pictures");
+  // Letters keep their size on narrow screens.
+  size.width = roomFor(pictures);
+  pictures.replaceChildren();
   if (!rows || !swept.length) return;
   const grid = swept.length === 2 && data.grid;
   const over = (name, of, joined = true) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined && swept.length === 1 && isNumber(state.x)));
@@ -178,4 +198,5 @@ if (kinds.length) {
   controls.append(box);
 }
 draw();
+addEventListener("resize", () => { if (roomFor(document.getElementById("pictures")) !== size.width) draw(); });
 if (rows) choose(0);

@@ -65,7 +65,11 @@ class Beginning {
       : plan_(plan), begin_(begin), is_number_(plan.names().size(), true) {
     for (std::size_t i = 0; i < plan.runs(); ++i) {
       values_.push_back(plan.values(i));
-      for (std::size_t k = 0; k < is_number_.size(); ++k) is_number_[k] = is_number_[k] && number(values_[i][k]);
+      for (std::size_t k = 0; k < is_number_.size(); ++k) {
+        const auto value = number(values_[i][k]);
+        is_number_[k] = is_number_[k] && value;
+        numbers_.push_back(value.value_or(nothing));
+      }
     }
     columns_.push_back(Table::numbers("run"));
     for (std::size_t k = 0; k < is_number_.size(); ++k) {
@@ -82,7 +86,7 @@ class Beginning {
     table << static_cast<double>(i + 1);
     for (std::size_t k = 0; k < is_number_.size(); ++k) {
       if (is_number_[k]) {
-        table << *number(values_[i][k]);
+        table << numbers_[i * is_number_.size() + k];
       } else {
         table << values_[i][k];
       }
@@ -101,6 +105,7 @@ class Beginning {
   std::size_t begin_;
   std::vector<bool> is_number_;
   std::vector<std::vector<std::string>> values_;
+  std::vector<double> numbers_;  ///< the same, run by run
   std::vector<TableColumn> columns_;
 };
 

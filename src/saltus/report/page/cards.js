@@ -85,6 +85,21 @@ saltus.banners = (result, select) => {
 saltus.card = (title, ...content) =>
     saltus.element("section", {class: "card"}, saltus.element("h2", {}, title), ...content);
 
+/** Cards that scroll are reached by the keyboard, as long as they do. */
+saltus.reachCards = () => {
+  for (const card of document.querySelectorAll(".card")) {
+    const {overflowX, overflowY} = getComputedStyle(card);
+    const scrolls = (overflowX === "auto" && card.scrollWidth > card.clientWidth) ||
+        (overflowY === "auto" && card.scrollHeight > card.clientHeight);
+    if (scrolls) {
+      card.setAttribute("tabindex", "0");
+      card.setAttribute("aria-label", card.querySelector("h2")?.textContent ?? "card");
+    } else {
+      card.removeAttribute("tabindex");
+    }
+  }
+};
+
 /** Rows of a table of values at first; the others are in the result file. */
 saltus.firstRows = 100;
 

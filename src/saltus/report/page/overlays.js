@@ -59,9 +59,12 @@ saltus.interpolated = (t, values, time) => {
 saltus.differenceOf = (first, other, column) => {
   const [own, values] = [saltus.columnOf(first, column), saltus.columnOf(other, column) ?? []];
   let largest = null;
+  const [least, greatest] = saltus.range(own);
+  // Of doubled rows the last alone where the column jumps: events of the two are hardly ever at one time.
+  const leaves = (row) => !(Math.abs(own[row + 1] - own[row]) <= 1e-9 * (greatest - least));
   const y = first.t.map((time, row) => {
-    // Of doubled rows the last alone: events of the two are hardly ever at one time.
-    const at = values.length === 0 || first.t[row + 1] === time ? null : saltus.interpolated(other.t, values, time);
+    const out = values.length === 0 || (first.t[row + 1] === time && leaves(row));
+    const at = out ? null : saltus.interpolated(other.t, values, time);
     const difference = at === null || own[row] === null ? null : at - own[row];
     if (difference !== null) largest = Math.max(largest ?? 0, Math.abs(difference));
     return difference;

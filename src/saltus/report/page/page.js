@@ -149,8 +149,13 @@ saltus.start = () => {
   let pending = 0;
   window.addEventListener("resize", () => {
     clearTimeout(pending);
-    pending = setTimeout(redraw, 120);
+    pending = setTimeout(() => {
+      redraw();
+      saltus.reachCards();
+    }, 120);
   });
+  document.addEventListener("toggle", saltus.reachCards, true);  // of what is folded
+  saltus.reachCards();
   saltus.followPrinting(theme, table, redraw);
   const asked = Number(address.get("event")) - 1;
   if (result.events[asked] !== undefined) select(asked);
