@@ -224,8 +224,16 @@ class Contacts(tool.ToolTest):
         self.assertAlmostEqual(stick["t"] - impact["t"], speed / 3, delta=1e-9)
         self.assertEqual(result["final"]["x"][3:], [0.0, 0.0, 0.0])
         self.run_tool("report", "r.json", "--out", "r.html", code=0)
-        _, err = self.run_tool("simulate", "m.toml", "--method", "fesd", code=2)
-        self.assertIn("has two tangents", err)
+        # Frozen, the contact sticks up to the speed eps_t, which is what the end of the slip is off by.
+        for eps_t in ("1e-4", "1e-6"):
+            frozen = self.result(SPACE + f"[time_freezing]\na_n = 20\neps_t = {eps_t}\n", "--method", "fesd",
+                                 "--set", "simulate.fesd.steps=40")
+            self.assertEqual([event["kind"] for event in frozen["events"]], ["impact", "stick"])
+            for k in range(3):
+                self.assertAlmostEqual(frozen["events"][0]["impulse"][0][k], impact["impulse"][0][k], delta=1e-8)
+                self.assertAlmostEqual(frozen["final"]["x"][k], result["final"]["x"][k], delta=2 * float(eps_t))
+            self.assertLess(math.hypot(*frozen["final"]["x"][3:5]), 1.01 * float(eps_t))
+            self.assertEqual(frozen["final"]["contact_modes"], ["stick"])
 
     def test_a_block_pushed_sideways_on_an_incline(self):
         block = (tool.SOURCE / "examples/contacts/block-on-incline.toml").read_text(encoding="utf-8")

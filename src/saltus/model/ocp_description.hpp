@@ -90,6 +90,7 @@ struct ClockDescription {
   expression::NodePtr a_n, stiffness, stabilisation, transfer;  ///< null: the default
   /// { initial = a, final = b }: an optimisation begins with a, and `stabilisation` is b; null: it is fixed.
   expression::NodePtr stabilisation_initial;
+  expression::NodePtr eps_t;  ///< tangential speed up to which a contact with two tangents sticks; null: the default
   expression::NodePtr correction;   ///< of held gaps: a speed; null: the default
   expression::NodePtr penetration;  ///< how deep an optimum may be in a contact; null: the default
   SourceLocation location;

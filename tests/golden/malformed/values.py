@@ -112,7 +112,7 @@ FILES = {
     "optimize sigma factor": (after("[optimize.mpcc]\nsigma_factor = 1\n"), "14:16", "a number > 0 and < 1, found 1"),
     "optimize constraint": (after("[optimize]\npath_constraints = ['x < 3']\n"), "14:24", "'<' is no relation", "write <="),
     "optimize and": (after("[optimize]\npath_constraints = ['x <= 3 and x >= 0']\n"), "14:29", "without 'and'"),
-    "time freezing": (after("[time_freezing]\neps_t = 1\n"), 14, "eps_t of [time_freezing]", "a later one brings it"),
+    "time freezing": (after("[time_freezing]\neps_t = 0\n"), 14, "eps_t is 0", "it is a positive number"),
     "sensitivity": (after("[sensitivity]\nx = 1\n"), 13, "[sensitivity]", "a later one brings it"),
     "fesd": (after("[simulate.fesd]\nsteps = 0\n"), "14:9", "steps", "expected a whole number >= 1"),
     "fesd lifting": (after("[simulate.fesd]\nlifting = 1\n"), "14:11", 'from 2 to 64 or "off"'),

@@ -255,7 +255,7 @@ TEST(TomlOptimize, MistakesInTheProblemAreFoundWithTheirPlace) {
       {"[time_freezing]\nclock = 'tau'\nspeed = { lower = 3, upper = 2 }\n", 3, "lower (3) is above upper (2)", ""},
       {"[time_freezing]\nclock = 'tau'\nspeed = { lower = 0, upper = 2 }\n", 3, "expected lower > 0", ""},
       {"[time_freezing]\nclock = 'tau'\nspeed = { lower = 1 }\n", 3, "two bounds", ""},
-      {"[time_freezing]\nclock = 'tau'\neps_t = 1e-7\n", 3, "eps_t of [time_freezing] is not available", ""},
+      {"[time_freezing]\nclock = 'tau'\neps_t = 0\n", 3, "eps_t is 0", "positive"},
       {"[time_freezing]\nclock = 'tau'\na_n = 0\n", 3, "a_n is 0", "positive"},
   });
 }

@@ -225,6 +225,7 @@ Json time_freezing_schema() {
                 {"stabilisation", or_table(table({{"initial", expression}, {"final", expression}},
                                                  "followed down by the homotopy", {"initial"}))},
                 {"transfer", described(expression, "length of a switch of [[hysteresis]] in numerical time")},
+                {"eps_t", described(expression, "tangential speed up to which a contact with two tangents sticks")},
                 {"penetration", described(expression, "largest one; inf for none")},
                 {"correction", described(expression, "of gaps that are held")}},
                "impacts and hysteresis for finite elements");

@@ -100,7 +100,8 @@ void read_guess(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
 }
 
 void read_all_least_squares(TomlReader& reader, const TomlEntry& entry, model::OcpDescription& problem) {
-  for (const auto& value : reader.tables(entry.value, "optimize.least_squares")) problem.least_squares.push_back(read_least_squares(reader, value));
+  for (const auto& value : reader.tables(entry.value, "optimize.least_squares"))
+    problem.least_squares.push_back(read_least_squares(reader, value));
 }
 
 /// What is minimised and constrained; whether the key was one of those.
@@ -247,9 +248,9 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// A key of [time_freezing] that is a number or an expression of parameters; nothing if it is no such key.
 expression::NodePtr* freezing_number(model::ClockDescription& clock, const std::string& key) {
-  for (const auto& [name, node] :
-       {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness}, std::pair{"transfer", &clock.transfer},
-        std::pair{"penetration", &clock.penetration}, std::pair{"correction", &clock.correction}}) {
+  for (const auto& [name, node] : {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness},
+                                   std::pair{"transfer", &clock.transfer}, std::pair{"penetration", &clock.penetration},
+                                   std::pair{"correction", &clock.correction}, std::pair{"eps_t", &clock.eps_t}}) {
     if (key == name) return node;
   }
   return nullptr;
@@ -308,8 +309,6 @@ void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& m
       read_stabilisation(reader, field, clock);
     } else if (auto* number = freezing_number(clock, field.key)) {
       read_freezing_number(reader, field, *number);
-    } else if (field.key == "eps_t") {
-      reader.not_available(field.location, fmt::format("{} of [time_freezing]", field.key));
     } else {
       reader.unknown_key(field, {"clock", "speed", "a_n", "stiffness", "stabilisation", "eps_t", "transfer",
                                  "penetration", "correction"});

@@ -25,7 +25,7 @@ std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& sc
        {Key{"a_n", stated.a_n, numbers.a_n, false}, Key{"stiffness", stated.stiffness, numbers.stiffness, false},
         Key{"stabilisation", stated.stabilisation, numbers.stabilisation, true},
         Key{"stabilisation.initial", stated.stabilisation_initial, numbers.stabilisation_initial, true},
-        Key{"transfer", stated.transfer, numbers.transfer, false},
+        Key{"transfer", stated.transfer, numbers.transfer, false}, Key{"eps_t", stated.eps_t, numbers.eps_t, false},
         Key{"correction", stated.correction, numbers.correction, true},
         Key{"penetration", stated.penetration, numbers.penetration, false, true}}) {
     if (!key.node) continue;
@@ -91,6 +91,7 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
     if (plan.purpose == FrozenFor::simulation) {
       made.impulse = declare_state(recognition, statement, contact.name + ".impulse");
       declare_state(recognition, statement, contact.name + ".impulse_t");
+      if (contact.tangents.size() == 2) declare_state(recognition, statement, contact.name + ".impulse_t2");
     }
     plan.made.contacts.push_back(std::move(made));
   }

@@ -68,11 +68,6 @@ class ContactFreezing {
 
  private:
   [[nodiscard]] std::optional<Error> take(std::size_t i) {
-    if (system_.contacts[i].in_plane) {
-      return not_frozen(
-          fmt::format("the contact '{}' has two tangents: time-freezing covers one", system_.contacts[i].name),
-          "simulate with method = \"event\", or leave one of them out");
-    }
     return plan_.made.contacts[i].is_elastic ? take_elastic(i) : take_inelastic(i);
   }
 
@@ -101,13 +96,16 @@ class ContactFreezing {
     if (!rate) return rate.error();
     plan_.moves *= *gap + *rate - *gap * *rate;
     const SX normal = plan_.numbers.a_n * (1.0 - *gap) * (1.0 - *rate);
-    SX tangential = 0.0;
+    SX tangential(0, 1), rates = response(i) * normal;
     if (system_.contacts[k].has_friction) {
-      const auto side = selection(system_.velocity(m_ + i), made.name + ".slip", made.tangent);
+      const auto [psi, directions] = slip(k);
+      const auto side = selection(psi, made.name + ".slip", made.tangent);
       if (!side) return side.error();
-      tangential = -system_.friction(i) * (2.0 * *side - 1.0) * normal;
+      tangential = -system_.friction(i) * (2.0 * *side - 1.0) * normal * directions;
+      made.tangents = static_cast<int>(directions.numel());
     }
-    add_to(system_.velocities, response(i) * normal + response(m_ + i) * tangential);
+    for (int j = 0; j < made.tangents; ++j) rates += response((1 + j) * m_ + i) * tangential(j);
+    add_to(system_.velocities, rates);
     if (!plan_.stabilisation.is_zero()) {
       add_to(system_.positions, -plan_.stabilisation * response(i) * system_.gap(i) * (1.0 - *gap) * (1.0 - *rate));
     }
@@ -116,6 +114,18 @@ class ContactFreezing {
     }
     add_outputs(k, normal, tangential);
     return std::nullopt;
+  }
+
+  /// What is positive in slip, and the directions against which friction acts. In a plane it is the speed beyond eps_t,
+  /// rounded at 0, so that it has a gradient: slower ones are driven to it, and friction that holds has a direction.
+  [[nodiscard]] std::pair<SX, SX> slip(std::size_t k) const {
+    const auto i = static_cast<casadi_int>(k);
+    const SX first = system_.velocity(m_ + i);
+    if (!system_.contacts[k].in_plane) return {first, 1.0};
+    const double eps_t = plan_.numbers.eps_t, rounded = 0.1 * eps_t;
+    const SX velocity = SX::vertcat({first, system_.velocity(2 * m_ + i)});
+    const SX speed = sqrt(SX::sumsqr(velocity) + rounded * rounded);
+    return {speed - std::hypot(eps_t, rounded), velocity / speed};
   }
 
   /// Whether a scheme that holds its rate at the stages does not hold the gap.
@@ -160,7 +170,7 @@ class ContactFreezing {
     plan_.moves *= *open;
     plan_.added.push_back({plan_.depth[k], plan_.waits * (1.0 - *open) * rate});
     add_to(system_.velocities, response(i) * normal);
-    add_outputs(k, normal, 0.0);
+    add_outputs(k, normal, SX(0, 1));
     return std::nullopt;
   }
 
@@ -168,16 +178,19 @@ class ContactFreezing {
   void add_outputs(std::size_t k, const SX& normal, const SX& tangential) {
     auto& made = plan_.made.contacts[k];
     made.gap_output = static_cast<int>(statement_.outputs.size() + statement_.automatic_outputs.size());
-    const auto add = [&](const char* kind, const SX& value) {
-      statement_.automatic_outputs.push_back({fmt::format("{}({})", kind, made.name), SX::densify(value).scalar()});
+    const auto add = [&](const char* kind, const SX& value, const char* tangent = "") {
+      statement_.automatic_outputs.push_back(
+          {fmt::format("{}({}){}", kind, made.name, tangent), SX::densify(value).scalar()});
     };
     add("gap", system_.gap(static_cast<casadi_int>(k)));
     add("force", made.is_elastic ? SX(0.0) : plan_.waits * normal);
-    if (system_.contacts[k].has_friction) add("friction", plan_.waits * tangential);
+    for (int j = 0; j < made.tangents; ++j) {
+      add("friction", plan_.waits * tangential(j), made.tangents < 2 ? "" : j == 0 ? "[1]" : "[2]");
+    }
     add("impulse", 0.0);
     if (made.impulse < 0) return;
     plan_.added.push_back({made.impulse, plan_.waits * normal});
-    plan_.added.push_back({made.impulse + 1, plan_.waits * tangential});
+    for (int j = 0; j < made.tangents; ++j) plan_.added.push_back({made.impulse + 1 + j, plan_.waits * tangential(j)});
   }
 
   Recognition& recognition_;

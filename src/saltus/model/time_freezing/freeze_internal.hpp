@@ -20,6 +20,7 @@ struct FreezingNumbers {
   double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
   double stabilisation_initial = 0.0;
   double penetration = 5e-4;
+  double eps_t = 1e-7;      ///< tangential speed up to which a contact with two tangents sticks
   double correction = 0.1;  ///< largest speed with which a held gap is corrected
 };
 

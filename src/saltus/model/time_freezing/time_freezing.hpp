@@ -22,7 +22,8 @@ struct FrozenContact {
   bool is_elastic = false;
   FrozenSelection gap{};      ///< of the gap, elastic: of gap + depth
   FrozenSelection normal{};   ///< of the gap's rate; none if elastic
-  FrozenSelection tangent{};  ///< of the tangential velocity; none without friction
+  FrozenSelection tangent{};  ///< of the tangential velocity, with two tangents of its size; none without friction
+  int tangents = 0;           ///< with friction
   int impulse = -1;     ///< state: sum of normal impulses, and behind it of tangential ones; -1 in an optimisation
   int gap_output = -1;  ///< output gap(name); behind it force, friction (if any) and impulse
 };

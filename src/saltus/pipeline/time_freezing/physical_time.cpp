@@ -104,7 +104,7 @@ class PhysicalTime {
     const double rate = values[at(freezing_.clock_rate)];
     for (const auto& contact : freezing_.contacts) {
       const std::size_t force = at(contact.gap_output) + 1;
-      for (std::size_t k = force; k < force + (contact.tangent.function >= 0 ? 2U : 1U); ++k) {
+      for (std::size_t k = force; k <= force + at(contact.tangents); ++k) {
         values[k] = rate > 0.0 ? values[k] / rate : 0.0;
       }
     }
@@ -201,7 +201,10 @@ class PhysicalTime {
     for (const auto& contact : freezing_.contacts) {
       if (contact.impulse < 0) return take_jump_of_velocities(event);
       const std::size_t state = at(contact.impulse);
-      impulse.push_back({event.x_after[state] - event.x[state], event.x_after[state + 1] - event.x[state + 1]});
+      impulse.emplace_back();
+      for (std::size_t k = state; k <= state + std::max(1U, static_cast<unsigned>(contact.tangents)); ++k) {
+        impulse.back().push_back(event.x_after[k] - event.x[k]);
+      }
       if (impulse.back()[0] > 0.0) event.surfaces.push_back(contact.name);
     }
     if (event.surfaces.empty()) return false;
