@@ -1,0 +1,61 @@
+"""The monoped over 3 m in 30 intervals: a short way is solved, and five of it one behind the other are the start.
+
+python3 benchmarks/monoped/chain.py SALTUS [--by slide|hop] [--keep FOLDER] [--stages KEY=VALUE,… …]
+
+slide: 0.25 m in 6 intervals (0.6 s) with two stages, then three, then the goal moved on to 0.4 m.
+hop: 0.25 m with three stages at once, with a cost of a foot that moves near the ground, from a guess that lifts it.
+The stages of the long problem are those of run.py.
+"""
+
+import argparse
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).parent
+COMMON = {"optimize.native": "on", "optimize.control_intervals": 6}
+BRANCH = {"optimize.stages": 3, "optimize.mpcc.first": "branch", "optimize.mpcc.sigma_initial": 0.001}
+GUESS = {"x": "0.25*t/0.6", "z": "0.05*exp(-((t - 0.3)/0.15)^2)", "a": 0, "b": 0, "vx": 0.4, "vz": 0, "wa": 0, "wb": 0}
+LIFTED = {f"optimize.initial_guess.{name}": value for name, value in GUESS.items()}
+WAYS = {
+    "slide": [{}, {"optimize.stages": 3, "optimize.mpcc.sigma_initial": 0.01}, {**BRANCH, "way": 0.3},
+              {**BRANCH, "way": 0.4}],
+    "hop": [{"optimize.stages": 3, "clear": 5, **LIFTED}],
+}
+STAGES = {"slide": ["points=3,first=branch,sigma=0.001"],
+          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5"]}
+
+
+def way(saltus, folder, kind):
+    """The result of the short way."""
+    before = None
+    for number, settings in enumerate(WAYS[kind]):
+        out = folder / f"{kind}-{number}.json"
+        words = [word for key, value in {**COMMON, **settings}.items() for word in ("--set", f"{key}={value}")]
+        start = ["--start", before] if before else []
+        subprocess.run([saltus, "optimize", HERE / "by_foot.toml", "--quiet", "--time-limit", "300", "--out", out,
+                        *start, *words], check=False)
+        before = out
+    return before
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("saltus")
+    parser.add_argument("--by", choices=list(WAYS), default="slide")
+    parser.add_argument("--keep", help="folder for models and results")
+    parser.add_argument("--stages", nargs="+")
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="monoped-") as scratch:
+        folder = pathlib.Path(arguments.keep or scratch)
+        folder.mkdir(parents=True, exist_ok=True)
+        short, start = way(arguments.saltus, folder, arguments.by), folder / "start.json"
+        subprocess.run([sys.executable, HERE / "hops.py", *[short] * 5, "--out", start], check=True)
+        subprocess.run([sys.executable, HERE / "run.py", arguments.saltus, "--positions", "foot", "--intervals", "30",
+                        "--start", start, "--keep", folder, "--stages", *(arguments.stages or STAGES[arguments.by])],
+                       check=True)
+
+
+if __name__ == "__main__":
+    main()
