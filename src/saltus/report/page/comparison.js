@@ -35,7 +35,7 @@ saltus.comparisonCard = (result) => {
   if (comparison === null) return null;
   const states = Math.min(4, result.states.length);
   const head = [
-    "method", "", ...result.states.slice(0, states), "switches", "last at t", "end state differs by",
+    "method", "variant", ...result.states.slice(0, states), "switches", "last at t", "end state differs by",
     "switching times differ by", "seconds"
   ];
   return saltus.element(
