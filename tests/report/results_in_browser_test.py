@@ -66,6 +66,20 @@ class Overlays(Page):
         self.assertEqual(self.value(scrolling), [[0, "Results laid over this one"]])
 
 
+class Comparison(Page):
+    def test_a_run_without_states_has_all_its_cells(self):
+        self.tool("compare", "stick-slip", "--until", "5", "--quiet", "--out", "c.json")
+        compared = json.loads((self.folder / "c.json").read_text(encoding="utf-8"))
+        compared["comparison"]["runs"][2]["x"] = []  # as of one that stopped at its start
+        (self.folder / "c.json").write_text(json.dumps(compared), encoding="utf-8")
+        self.tool("report", "c.json")
+        self.open("c.html")
+        cells = "[...document.querySelectorAll('.comparison tr')].map((row) => row.cells.length)"
+        self.assertEqual(len(set(self.value(cells))), 1)
+        third = "document.querySelectorAll('.comparison tbody tr')[2].textContent"
+        self.assertIn("––", self.value(third))
+
+
 class Sweep(Page):
     CELLS = ("[...document.querySelector('svg').querySelectorAll('.run')]"
              ".map((cell) => [cell.dataset.run, ...['x', 'width', 'y', 'height'].map((k) => Number(cell.getAttribute(k)))])")

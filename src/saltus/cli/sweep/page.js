@@ -87,12 +87,11 @@ function frame(title, xName, yName, xAxis, yAxis) {
     : bottom - ((value - axis.low) / (axis.high - axis.low)) * (bottom - size.top));
   for (const [value, label] of xAxis.ticks) picture.append(make("text", { x: place(xAxis, value), y: bottom + 16, "text-anchor": "middle" }, label));
   for (const [value, label] of yAxis.ticks) picture.append(make("text", { x: size.left - 6, y: place(yAxis, value) + 4, "text-anchor": "end" }, label));
-  // On narrow screens beside the scale of colours.
-  const middle = size.width < 500 ? size.left : (size.left + size.width - size.right) / 2;
-  picture.append(make("text", { x: middle, y: size.height - 10, "text-anchor": "middle" }, xName));
+  const name = make("text", { x: (size.left + size.width - size.right) / 2, y: size.height - 10, "text-anchor": "middle" }, xName);
+  picture.append(name);
   // Words say themselves what they are.
   if (!yAxis.words) picture.append(make("text", { x: 14, y: size.height / 2, transform: `rotate(-90 14 ${size.height / 2})`, "text-anchor": "middle" }, yName));
-  return { picture, x, y };
+  return { picture, name, x, y };
 }
 function mark(picture, row, x, y, colour, radius, label) {
   const dot = make("circle", { cx: x, cy: y, r: radius, fill: colour, class: "run", "data-run": columns.run[row] });
@@ -131,6 +130,8 @@ function map(title, xName, yName, valueOf) {
     cell.addEventListener("click", () => choose(row));
     drawn.picture.append(cell);
   }
+  // On narrow screens the scale of colours takes the middle.
+  if (size.width < 500) drawn.name.setAttribute("x", size.left);
   const bar = { x: size.width - size.right - 150, y: size.height - 18, width: 80, steps: 20 };
   for (let k = 0; k < bar.steps; ++k) {
     drawn.picture.append(make("rect", { x: bar.x + (k * bar.width) / bar.steps, y: bar.y, width: bar.width / bar.steps + 0.3, height: 8, fill: colourAt(k / (bar.steps - 1)) }));

@@ -19,14 +19,14 @@ saltus.comparedRow = (run, isReference, states) => {
   }
   const cell = (content) => saltus.element("td", {class: "digits"}, content);
   const dash = (value) => (value === null ? "–" : saltus.brief(value, 10));
+  const values = Array.from({length: states}, (_, i) => cell(dash(run.x[i] ?? null)));  // none where it did not get there
   const differences = isReference ? ["reference", ""] :
                                     [run.state_difference, run.switch_time_difference].map(saltus.differenceBar);
   const stop = run.status.done ? [] : [saltus.statusBadge(run), ` at t = ${saltus.brief(run.status.time_reached, 8)}`];
   return saltus.element(
       "tr", {class: isReference ? "reference" : null, title: run.status.message},
       saltus.element("td", {}, run.method), saltus.element("td", {}, run.variant, " ", ...stop),
-      ...run.x.slice(0, states).map((value) => cell(saltus.brief(value, 10))), cell(dash(run.switches)),
-      cell(dash(run.last_switch)), ...differences.map(cell), cell(saltus.brief(run.statistics.wall_seconds, 3)));
+      ...values, cell(dash(run.switches)), cell(dash(run.last_switch)), ...differences.map(cell), cell(saltus.brief(run.statistics.wall_seconds, 3)));
 };
 
 /** The card; null for a result without a comparison. */
@@ -35,7 +35,7 @@ saltus.comparisonCard = (result) => {
   if (comparison === null) return null;
   const states = Math.min(4, result.states.length);
   const head = [
-    "method", "", ...result.states.slice(0, states), "switches", "last at t", "end state differs by",
+    "method", "variant", ...result.states.slice(0, states), "switches", "last at t", "end state differs by",
     "switching times differ by", "seconds"
   ];
   return saltus.element(

@@ -11,7 +11,8 @@ saltus.sensitivityTable = (rows, columns, values) => {
   const largest = values.flat().reduce((most, value) => (value === null ? most : Math.max(most, Math.abs(value))), 0);
   const cell = (value) => {
     if (value === null) return saltus.element("td", {class: "quiet", title: "not defined"}, "–");
-    const share = Math.round(70 * saltus.heat(value, largest));
+    // As much as leaves numbers readable, also in the dark.
+    const share = Math.round(45 * saltus.heat(value, largest));
     const colour = value < 0 ? "--curve-1" : "--sliding";
     const style = `background: color-mix(in srgb, var(${colour}) ${share}%, transparent)`;
     return saltus.element("td", {class: "digits", style, title: saltus.exact(value)}, saltus.brief(value, 5));
@@ -19,7 +20,7 @@ saltus.sensitivityTable = (rows, columns, values) => {
   const head = (name) => saltus.element("th", {title: name}, saltus.shorten(name, 14));
   return saltus.element(
       "table", {class: "heat"},
-      saltus.element("thead", {}, saltus.element("tr", {}, saltus.element("th", {}), ...columns.map(head))),
+      saltus.element("thead", {}, saltus.element("tr", {}, saltus.element("td", {}), ...columns.map(head))),
       saltus.element(
           "tbody", {}, ...rows.map((name, i) => saltus.element("tr", {}, head(name), ...values[i].map(cell)))));
 };
