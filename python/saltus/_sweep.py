@@ -160,12 +160,20 @@ class Sweep:
 
     def __init__(self, found: Found, shape: tuple[int, ...], sampled: int = 0) -> None:
         """`sampled` is how many of the names, the last ones, had random values."""
-        columns, results, names = found
-        self.table: dict[str, Array] = {name: _column(name, values) for name, values in columns.items()}
+        self._columns, results, names = found
         self.results: typing.Sequence[Result] = results
         self.names: list[str] = names
         self._shape = shape
         self._sampled = sampled
+
+    @functools.cached_property
+    def table(self) -> dict[str, Array]:
+        """All columns by their names, made when they are asked for: millions of words take seconds.
+
+        >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5).table["status"].tolist()
+        ['completed', 'completed']
+        """
+        return {name: _column(name, values) for name, values in self._columns.items()}
 
     def __len__(self) -> int:
         return len(self.results)

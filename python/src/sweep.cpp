@@ -33,9 +33,20 @@ pipeline::Keep keep_named(const std::string& word) {
          {}});
 }
 
+/// Words of millions of rows, of which most are that of the row before: then they are one object.
+nb::list list_of(const std::vector<std::string>& words) {
+  nb::list list;
+  nb::object last;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i == 0 || words[i] != words[i - 1]) last = nb::cast(words[i]);
+    list.append(last);
+  }
+  return list;
+}
+
 /// A column as an array that owns its numbers, or as a list of words.
 nb::object column_of(std::variant<std::vector<double>, std::vector<std::string>> values) {
-  if (auto* words = std::get_if<std::vector<std::string>>(&values)) return nb::cast(std::move(*words));
+  if (const auto* words = std::get_if<std::vector<std::string>>(&values)) return list_of(*words);
   return owned_array(std::move(std::get<std::vector<double>>(values)));
 }
 

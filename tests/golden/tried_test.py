@@ -313,7 +313,7 @@ class Editors(tool.ToolTest):
         self.assertEqual(completed("saltus", "new", "x", "--like", "g"), ["gene"])
         self.assertEqual(completed("saltus", "completion", "f"), ["fish"])
         self.assertEqual(completed("saltus", "simulate", "m.toml", "--integrator", "ta"), ["taylor"])
-        self.assertEqual(completed("saltus", "compare", "m.toml", "--set", "m"), ["mu="])
+        self.assertEqual(completed("saltus", "help", "scr"), [])  # no file beside it, as "script"
         self.assertEqual(completed("saltus", "sweep", "m.toml", "--method", "f"), ["fesd"])
         self.assertIn("final", completed("saltus", "sweep", "m.toml", "--keep", "''"))
         self.assertIn("--rtol", completed("saltus", "simulate", "m.toml", "--rt"))

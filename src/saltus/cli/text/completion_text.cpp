@@ -67,7 +67,7 @@ _saltus() {{
   case "${{COMP_WORDS[1]}} $before" in
 {}  esac
   case "${{COMP_WORDS[1]}}" in
-{}    help) words="{}" ;;
+{}    help) COMPREPLY=($(compgen -W "{}" -- "$current")); return ;;
   esac
   if [ "${{current#-}}" = "$current" ]; then
     case "${{COMP_WORDS[1]}}" in
