@@ -16,15 +16,24 @@ import tempfile
 
 HERE = pathlib.Path(__file__).parent
 BRANCH = {"optimize.stages": 3, "optimize.mpcc.first": "branch", "optimize.mpcc.sigma_initial": 0.001}
-GUESS = {"x": "0.25*t/0.6", "z": "0.05*exp(-((t - 0.3)/0.15)^2)", "a": 0, "b": 0, "vx": 0.4, "vz": 0, "wa": 0, "wb": 0}
-LIFTED = {f"optimize.initial_guess.{name}": value for name, value in GUESS.items()}
+LIFTED = """[optimize.initial_guess]
+x = "0.25*t/0.6"
+z = "0.05*exp(-((t - 0.3)/0.15)^2)"
+a = 0
+b = 0
+vx = 0.4
+vz = 0
+wa = 0
+wb = 0
+"""
+GUESSES = {"slide": "", "hop": LIFTED}
 WAYS = {
     "slide": [{}, {"optimize.stages": 3, "optimize.mpcc.sigma_initial": 0.01}, {**BRANCH, "way": 0.3},
               {**BRANCH, "way": 0.4}],
-    "hop": [{"optimize.stages": 3, "clear": 5, **LIFTED}],
+    "hop": [{"optimize.stages": 3, "clear": 5}],
 }
 STAGES = {"slide": ["points=3,first=branch,sigma=0.001"],
-          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5"]}
+          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5", "goal=3", "clear=0"]}
 
 
 def way(arguments, folder):
@@ -32,11 +41,14 @@ def way(arguments, folder):
     kind, before = arguments.by, None
     common = {"optimize.native": "on", "optimize.control_intervals": arguments.intervals // 5,
               "optimize.reformulation": arguments.form}
+    model = folder / "way.toml"
+    text = (HERE / "by_foot.toml").read_text(encoding="utf-8")
+    model.write_text(text.replace("[optimize.mpcc]", GUESSES[kind] + "[optimize.mpcc]"), encoding="utf-8")
     for number, settings in enumerate(WAYS[kind]):
         out = folder / f"{kind}-{number}.json"
         words = [word for key, value in {**common, **settings}.items() for word in ("--set", f"{key}={value}")]
         start = ["--start", before] if before else []
-        subprocess.run([arguments.saltus, "optimize", HERE / "by_foot.toml", "--quiet", "--out", out,
+        subprocess.run([arguments.saltus, "optimize", model, "--quiet", "--out", out,
                         "--time-limit", arguments.seconds, *start, *words], check=False)
         before = out
     return before
@@ -48,7 +60,7 @@ def main():
     parser.add_argument("--by", choices=list(WAYS), default="slide")
     parser.add_argument("--form", choices=["step", "stewart"], default="step")
     parser.add_argument("--intervals", type=int, default=30)
-    parser.add_argument("--seconds", default="300", help="of every problem")
+    parser.add_argument("--seconds", default="400", help="of every problem")
     parser.add_argument("--keep", help="folder for models and results")
     parser.add_argument("--stages", nargs="+")
     arguments = parser.parse_args()
