@@ -1,6 +1,7 @@
-"""The monoped over 3 m in 30 intervals: a short way is solved, and five of it one behind the other are the start.
+"""The monoped over 3 m in 30 intervals, or another multiple of 5: a short way is solved, and five of it are the start.
 
-python3 benchmarks/monoped/chain.py SALTUS [--by slide|hop] [--keep FOLDER] [--stages KEY=VALUE,… …]
+python3 benchmarks/monoped/chain.py SALTUS [--by slide|hop] [--form step|stewart] [--intervals 30] [--keep FOLDER]
+    [--stages KEY=VALUE,… …]
 
 slide: 0.25 m in 6 intervals (0.6 s) with two stages, then three, then the goal moved on to 0.4 m.
 hop: 0.25 m with three stages at once, with a cost of a foot that moves near the ground, from a guess that lifts it.
@@ -14,28 +15,41 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).parent
-COMMON = {"optimize.native": "on", "optimize.control_intervals": 6}
 BRANCH = {"optimize.stages": 3, "optimize.mpcc.first": "branch", "optimize.mpcc.sigma_initial": 0.001}
-GUESS = {"x": "0.25*t/0.6", "z": "0.05*exp(-((t - 0.3)/0.15)^2)", "a": 0, "b": 0, "vx": 0.4, "vz": 0, "wa": 0, "wb": 0}
-LIFTED = {f"optimize.initial_guess.{name}": value for name, value in GUESS.items()}
+LIFTED = """[optimize.initial_guess]
+x = "0.25*t/0.6"
+z = "0.05*exp(-((t - 0.3)/0.15)^2)"
+a = 0
+b = 0
+vx = 0.4
+vz = 0
+wa = 0
+wb = 0
+"""
+GUESSES = {"slide": "", "hop": LIFTED}
 WAYS = {
     "slide": [{}, {"optimize.stages": 3, "optimize.mpcc.sigma_initial": 0.01}, {**BRANCH, "way": 0.3},
               {**BRANCH, "way": 0.4}],
-    "hop": [{"optimize.stages": 3, "clear": 5, **LIFTED}],
+    "hop": [{"optimize.stages": 3, "clear": 5}],
 }
 STAGES = {"slide": ["points=3,first=branch,sigma=0.001"],
-          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5"]}
+          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5", "goal=3", "clear=0"]}
 
 
-def way(saltus, folder, kind):
+def way(arguments, folder):
     """The result of the short way."""
-    before = None
+    kind, before = arguments.by, None
+    common = {"optimize.native": "on", "optimize.control_intervals": arguments.intervals // 5,
+              "optimize.reformulation": arguments.form}
+    model = folder / "way.toml"
+    text = (HERE / "by_foot.toml").read_text(encoding="utf-8")
+    model.write_text(text.replace("[optimize.mpcc]", GUESSES[kind] + "[optimize.mpcc]"), encoding="utf-8")
     for number, settings in enumerate(WAYS[kind]):
         out = folder / f"{kind}-{number}.json"
-        words = [word for key, value in {**COMMON, **settings}.items() for word in ("--set", f"{key}={value}")]
+        words = [word for key, value in {**common, **settings}.items() for word in ("--set", f"{key}={value}")]
         start = ["--start", before] if before else []
-        subprocess.run([saltus, "optimize", HERE / "by_foot.toml", "--quiet", "--time-limit", "300", "--out", out,
-                        *start, *words], check=False)
+        subprocess.run([arguments.saltus, "optimize", model, "--quiet", "--out", out,
+                        "--time-limit", arguments.seconds, *start, *words], check=False)
         before = out
     return before
 
@@ -44,17 +58,23 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("saltus")
     parser.add_argument("--by", choices=list(WAYS), default="slide")
+    parser.add_argument("--form", choices=["step", "stewart"], default="step")
+    parser.add_argument("--intervals", type=int, default=30)
+    parser.add_argument("--seconds", default="400", help="of every problem")
     parser.add_argument("--keep", help="folder for models and results")
     parser.add_argument("--stages", nargs="+")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="monoped-") as scratch:
         folder = pathlib.Path(arguments.keep or scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        short, start = way(arguments.saltus, folder, arguments.by), folder / "start.json"
+        short, start = way(arguments, folder), folder / "start.json"
         subprocess.run([sys.executable, HERE / "hops.py", *[short] * 5, "--out", start], check=True)
-        subprocess.run([sys.executable, HERE / "run.py", arguments.saltus, "--positions", "foot", "--intervals", "30",
-                        "--start", start, "--keep", folder, "--stages", *(arguments.stages or STAGES[arguments.by])],
+        first, *others = arguments.stages or STAGES[arguments.by]
+        subprocess.run([sys.executable, HERE / "run.py", arguments.saltus, "--positions", "foot",
+                        "--intervals", str(arguments.intervals), "--start", start, "--keep", folder,
+                        "--seconds", arguments.seconds, "--stages", f"form={arguments.form},{first}", *others],
                        check=True)
+
 
 
 if __name__ == "__main__":

@@ -8,8 +8,8 @@ python3 benchmarks/monoped/run.py SALTUS [--positions hip|foot] [--intervals 30 
 Every stage begins at the result of the one before (the first one as --start says) and changes what it names, for
 itself and those behind it: goal (metres), friction, a_n, stabilisation (followed down to 0 with sigma), form
 (step|stewart), sigma (the first one), factor, steering (direct|l1|linf), first (relaxed|branch), elements,
-points (stages of the scheme), seconds, clear (weight of a cost of a foot that moves near the ground), penetration (of the foot, metres), correction (metres per second),
-or key.of.optimize.
+points (stages of the scheme), seconds, clear (weight of a cost of a foot that moves near the ground), penetration (of
+the foot, metres), correction (metres per second), or key.of.optimize.
 """
 
 import argparse
