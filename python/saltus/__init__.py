@@ -25,6 +25,7 @@ if _shared.is_dir():
 from ._array import Array, array  # noqa: E402
 from ._builder import Builder  # noqa: E402
 from ._catalogue import catalogue, compare, models, order  # noqa: E402
+from ._difference import Difference, diff  # noqa: E402
 from ._events import Alternative, Event, Events, Intersection  # noqa: E402
 from ._expression import Expression  # noqa: E402
 from ._functions import (  # noqa: E402
@@ -66,6 +67,7 @@ __all__ = [
     "Alternative",
     "Array",
     "Builder",
+    "Difference",
     "Event",
     "Events",
     "Expression",
@@ -82,6 +84,7 @@ __all__ = [
     "array",
     "catalogue",
     "compare",
+    "diff",
     "load",
     "models",
     "order",

@@ -275,8 +275,11 @@ class Result(Facts):
         """
         self.whole._run.save(os.fspath(path))
 
-    def report(self, path: str | os.PathLike[str] | None = None) -> Page | None:
+    def report(self, path: str | os.PathLike[str] | None = None, *, over: typing.Any = ()) -> Page | None:
         """Writes the page with all pictures, which works offline; without a path shows it in the notebook.
+
+        `over` are other results of the model, or their files, which are laid over this one, with their differences:
+        ``over=other``, ``over=["b.json", "c.json"]``, or a dict by the names in the page, ``over={"e = 0.7": other}``.
 
         >>> import tempfile, pathlib
         >>> file = pathlib.Path(tempfile.mkdtemp()) / "r.html"
@@ -286,7 +289,9 @@ class Result(Facts):
         """
         if path is not None and not os.fspath(path).lower().endswith((".html", ".htm")):
             raise refuse(f"{os.fspath(path)}: the name of a page must end in .html", "pictures for papers: r.plot()")
-        page = self.whole._run.page()
+        from ._difference import laid_over
+
+        page = self.whole._run.page(*laid_over(over))
         if path is None:
             return Page(page)
         _core.write_file(os.fspath(path), page)

@@ -31,8 +31,8 @@ _KEEP = 7
 
 @dataclasses.dataclass(frozen=True)
 class RunWithoutRow:
-    """A run without an event, which has no row of which its values could be read. A share of the sweep that is this run
-    alone, and keeps its end, says them when they are asked for."""
+    """A run of which no row was kept that says its values. A share of the sweep that is this run alone, and keeps its
+    end, says them when they are asked for."""
 
     model: typing.Any
     arguments: SweepArguments
@@ -74,7 +74,9 @@ class Results(typing.Sequence[Result]):
     def _rows(self) -> Array:
         """Of every run its first row in the table; behind the last one their number."""
         keep = self._arguments[_KEEP]
-        counts = [1 if keep == "final" else len(run.events) if keep == "events" else len(run.t) for run in self.runs]
+        counts = [
+            1 if keep == "final" else max(1, len(run.events)) if keep == "events" else len(run.t) for run in self.runs
+        ]
         return np.concatenate([[0], np.cumsum(counts)]).astype(int)
 
     def _one(self, i: int) -> Result:
@@ -147,7 +149,8 @@ class Sweep:
     """All runs of a sweep: ``results[i]``, and one table of them.
 
     ``table`` has a column for the number of the run, for what was changed (``"v(0)"`` for the initial value of a state
-    v), for the status, and what was kept of the runs: values at the end, events, or rows of trajectories.
+    v), for the status, for the number of events of the run, and what was kept: values at the end, events (a run without
+    one has a row whose ``event`` is 0), or rows of trajectories.
 
     >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)
     >>> s

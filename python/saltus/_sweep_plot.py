@@ -17,19 +17,25 @@ if typing.TYPE_CHECKING:
 def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
     """Lines of a column over what was swept, one for each value of everything else."""
     name = str(name)
-    if len(s["run"]) != len(s) or "events" not in s.table:
+    first_rows = np.unique(s["run"], return_index=True)[1]
+
+    def of_runs(name: str) -> typing.Any:
+        return s[name][first_rows]
+
+    if name != "events" and (len(s["run"]) != len(s) or "kind" in s.table):
         raise ValueError('a line has a value for every run: sweep(…, keep="final"), or s.bifurcation(…) for events')
-    column, (x, others) = s[name], _axes(s, over)
+    column, (x, others) = of_runs(name), _axes(s, over)
+    along = of_runs(x)
     axis = _axis(axis)
-    rows = np.column_stack([s[other] for other in others]) if others else np.zeros((len(s), 1))
+    rows = np.column_stack([of_runs(other) for other in others]) if others else np.zeros((len(along), 1))
     _, line_of_run = np.unique(rows, axis=0, return_inverse=True)
     lines = list(dict.fromkeys(np.ravel(line_of_run).tolist()))
     for line in lines:
         runs = np.flatnonzero(np.ravel(line_of_run) == line)
-        runs = runs[np.argsort(s[x][runs], kind="stable")]
-        label = ", ".join(f"{other} = {_shown(s[other][runs[0]])}" for other in others)
+        runs = runs[np.argsort(along[runs], kind="stable")]
+        label = ", ".join(f"{other} = {_shown(of_runs(other)[runs[0]])}" for other in others)
         marker = "." if len(runs) < 60 or s._sampled else None
-        axis.plot(s[x][runs], column[runs], marker=marker, linewidth=0 if s._sampled else 1.2, label=label or None)
+        axis.plot(along[runs], column[runs], marker=marker, linewidth=0 if s._sampled else 1.2, label=label or None)
     if 1 < len(lines) <= 12:
         axis.legend()
     axis.set_xlabel(_caption(s, x))

@@ -17,11 +17,13 @@
 #include "parts.hpp"
 #include "saltus/base/at.hpp"
 #include "saltus/cli/catalogue.hpp"
+#include "saltus/cli/text/difference_text.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/pipeline/vector_field.hpp"
 #include "saltus/report/html.hpp"
 #include "saltus/report/table.hpp"
+#include "saltus/result/difference.hpp"
 #include "saltus/result/kept_columns.hpp"
 
 namespace nb = nanobind;
@@ -151,9 +153,37 @@ std::string facts(const Run& run) {
   return io::to_json(about);
 }
 
-std::string page_of(Run& run) {
+/// The page of a run, with others of the model laid over it.
+std::string page_of(Run& run, const std::vector<std::string>& labels, const nb::list& others) {
   want_surfaces(run);
-  return report::to_html(*run.result, value_or_raise(cli::plotly_source()));
+  std::vector<report::Overlay> overlays;
+  for (nb::handle other : others) {
+    overlays.push_back({labels.at(overlays.size()), *nb::cast<Run&>(other).result});
+    value_or_raise(report::check_overlay(*run.result, overlays.back()));
+  }
+  return report::to_html(*run.result, value_or_raise(cli::plotly_source()), overlays);
+}
+
+/// (what, in a, in b) of each.
+nb::list numbers_of(const std::vector<result::NumberDifference>& differences) {
+  nb::list list;
+  for (const auto& number : differences) list.append(nb::make_tuple(number.what, number.a, number.b));
+  return list;
+}
+
+nb::dict difference_of(const Run& a, const Run& b, double rtol, std::optional<double> atol) {
+  const result::Tolerances tolerances{rtol, atol};
+  const auto found = value_or_raise(result::difference(*a.result, *b.result, tolerances));
+  nb::dict entries;
+  entries["same"] = found.is_none();
+  entries["parameters"] = numbers_of(found.parameters);
+  entries["end"] = numbers_of(found.end_state);
+  entries["rows"] = numbers_of(found.rows);
+  entries["events"] = nb::make_tuple(found.events_a, found.events_b);
+  entries["first_event"] = found.first_event;
+  entries["ends"] = found.ends;
+  entries["text"] = cli::difference_text(found, tolerances, a.result->states.size());
+  return entries;
 }
 
 void save(Run& run, const std::string& path) {
@@ -253,10 +283,11 @@ void add_result(nb::module_& module) {
              if (surfaces) want_surfaces(self);
              return io::to_json(*self.result);
            })
-      .def("page", page_of)
+      .def("page", page_of, nb::arg("labels"), nb::arg("others"))
       .def("save", save);
   module.def("load", load);
   module.def("parse_result", parse);
+  module.def("difference", difference_of, nb::arg("a"), nb::arg("b"), nb::arg("rtol"), nb::arg("atol").none());
 }
 
 }  // namespace saltus::python

@@ -213,3 +213,50 @@ def test_what_the_file_has_is_an_attribute(name):
         assert getattr(r, key) == stored.get(key, [] if key in ("contacts", "families") else None)
     assert r.contact_modes.tolist() == stored["trajectory"].get("contact_modes", [])
     assert [branch.left_at for branch in r.branches] == [branch["left_at"] for branch in stored.get("branches", [])]
+
+
+def test_two_results_are_compared_as_the_tool_does(slip, tool, tmp_path):
+    m = saltus.catalogue("stick-slip")
+    other = m.simulate(until=20, set={"belt": 0.1})
+    for name, result in (("a.json", slip), ("b.json", other)):
+        result.save(tmp_path / name)
+    d = saltus.diff(slip, other)
+    assert d and not d.same and d.parameters == [("belt", 0.2, 0.1)] and d.events == (len(slip.events), len(other.events))
+    assert [number.what for number in d.end] == ["q", "v"] and d.end[0].a == slip.final["q"] and d.end[0].b == other.final["q"]
+    assert d.rows[0].what.startswith("q at t = ") and d.first_event.startswith("event 1: enter_sliding slip: t = ")
+    assert repr(d).startswith("<saltus.Difference: different to rtol 1e-06") and "lines more" in repr(d)
+    told = subprocess.run([tool, "diff", "a.json", "b.json"], cwd=tmp_path, capture_output=True, text=True)
+    assert told.returncode == 1 and told.stdout.rstrip() == str(d)
+    assert str(saltus.diff(tmp_path / "a.json", str(tmp_path / "b.json"))) == str(d)
+    same = saltus.diff(slip, tmp_path / "a.json", rtol=0, atol=0)
+    assert same.same and not same and same.end == same.rows == [] and same.ends == ""
+    assert repr(same).startswith("<saltus.Difference: the same to rtol 0, atol 0 (")
+    # Runs of sweeps are whole for it.
+    assert saltus.diff(m.sweep(belt=[0.1, 0.2], until=20).results[1], slip, rtol=0, atol=0).same
+
+
+def test_results_that_cannot_be_compared(slip):
+    ball = saltus.catalogue("bouncing-ball").simulate(until=1)
+    for wrong, told in [
+        (lambda: saltus.diff(slip, ball), "different models"),
+        (lambda: saltus.diff(slip, 3), "int: expected a result"),
+        (lambda: saltus.diff(slip, slip, rtol=-1), "rtol=-1: expected a number that is not negative"),
+        (lambda: saltus.diff(slip, slip, atol=float("nan")), "atol=nan"),
+        (lambda: slip.report(over=ball), "result 2 is a result of the model 'bouncing-ball'"),
+        (lambda: slip.report(over=[3]), "int: expected a result"),
+    ]:
+        with pytest.raises(saltus.ModelError, match=told):
+            wrong()
+
+
+def test_a_page_with_others_laid_over_it_is_that_of_the_tool(slip, tool, tmp_path):
+    other = saltus.catalogue("stick-slip").simulate(until=20, set={"belt": 0.1})
+    for name, result in (("a.json", slip), ("b.json", other)):
+        result.save(tmp_path / name)
+    subprocess.run([tool, "report", "a.json", "b.json", "--out", "tool.html"], cwd=tmp_path, check=True, capture_output=True)
+    of_tool = (tmp_path / "tool.html").read_text()
+    stored = saltus.load(tmp_path / "a.json")
+    for over in ({"b.json": other}, tmp_path / "b.json", [tmp_path / "b.json"]):
+        stored.report(tmp_path / "python.html", over=over)
+        assert (tmp_path / "python.html").read_text() == of_tool
+    assert slip.report(over=[other, other]).html != slip.report(over=other).html != slip.report().html

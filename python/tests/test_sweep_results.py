@@ -132,9 +132,28 @@ def test_samples_are_points_over_what_was_stated(slip):
     assert len(slip.sweep(sample={"v": "normal(0, 0.1)"}, runs=5, until=2).plot("q").lines) == 1
 
 
+@pytest.mark.parametrize("keep", ["final", "events", "trajectory"])
+def test_the_number_of_events_of_every_run_is_a_column(slip, keep):
+    s = sweep(slip, keep)
+    events_of = dict(zip(s["run"].tolist(), s["events"].tolist()))
+    assert events_of == {1: 1, 2: 2, 3: 0}
+    assert list(s.frame().groupby("run")["events"].first()) == [1, 2, 0]
+    line = s.plot("events").lines[0]
+    assert (line.get_xdata().tolist(), line.get_ydata().tolist()) == ([0.1, 0.2, 5.0], [1, 2, 0])
+
+
+def test_a_run_without_an_event_has_a_row_that_names_none(slip):
+    s = sweep(slip, "events")
+    assert s["event"].tolist() == [1, 1, 2, 0] and s["belt"].tolist() == [0.1, 0.2, 0.2, 5.0]
+    assert s["kind"][-1] == s["name"][-1] == s["surfaces"][-1] == "" and s["status"][-1] == "completed"
+    assert np.isnan(s["t"][-1]) and np.isnan(s["v"][-1]) and np.isnan(s["v(after)"][-1])
+    assert [len(run.events) for run in s] == [1, 2, 0] and s.results[2].whole.parameters == {"belt": 5.0}
+    assert len(s.bifurcation("v").lines[0].get_xdata()) == 3
+
+
 def test_counts_are_whole_numbers(slip):
     pytest.importorskip("pandas")
-    for keep, names in (("final", ["run", "events"]), ("events", ["run", "event"]), ("trajectory", ["run", "mode(slip)"])):
+    for keep, names in (("final", ["run", "events"]), ("events", ["run", "events", "event"]), ("trajectory", ["run", "events", "mode(slip)"])):
         s = sweep(slip, keep)
         for name in names:
             assert s[name].dtype == np.int64

@@ -503,6 +503,21 @@ test("an impulse is a stem and no slope to the next row", () => {
   assert.deepEqual([line.x, line.y], [[0, 2, 2, 2, 3], [0, 0, 3, 0, 0]]);
 });
 
+test("jumps of a result that lies over another are not joined, over time and in a plane", () => {
+  const result = mixed();
+  const [rest, count] = result.trajectory.x;
+  result.overlays = [{label: "b.json", trajectory: {...result.trajectory, x: [rest, count, [0, 1, 2, 7, 8]]}}];
+  const palette = {simulated: "#aa0000"};
+  const view = {window: [0, 3], pixels: 600, palette};
+  const [line, jumps] = saltus.overlayCurves(result, saltus.columns(result)[2], "y", view);
+  assert.deepEqual([line.meta, line.y], ["overlay", [0, 1, 2, null, 7, 8]]);
+  assert.deepEqual([jumps.line.dash, jumps.y], ["dot", [2, 7, null]]);
+  const time = saltus.axes(result).length - 1;
+  const [free, dotted] = saltus.overlayOrbits(result, [2, time], view, palette, "scatter");
+  assert.deepEqual([free.x, free.y], [[0, 1, 2, null, 7, 8], [0, 1, 2, null, 2, 3]]);
+  assert.deepEqual([dotted.line.dash, dotted.x, dotted.showlegend], ["dot", [2, 7, null], false]);
+});
+
 test("in space the time stands on the third axis where only two states move and do not step", () => {
   const result = mixed();
   result.trajectory.x[0] = [0, 1, 2, 2, 5];

@@ -102,6 +102,20 @@ class Sweep(Page):
         self.assertAlmostEqual(cells[3][0] + cells[3][1], (ticks["0.1"] + ticks["0.2"]) / 2, delta=1)
         self.assertAlmostEqual(cells[5][0] + cells[5][1], (ticks["0.2"] + ticks["0.4"]) / 2, delta=1)
 
+    def test_runs_without_an_event_are_drawn_with_their_number(self):
+        self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.1,0.2,5", "--keep", "events", "--report", "sweep.html")
+        self.open("sweep.html")
+        drawn = ("[...document.querySelectorAll('section')].map((part) => [part.querySelector('h2').textContent,"
+                 " [...part.querySelectorAll('.run')].map((dot) => dot.textContent)])")
+        counts = dict(self.value(drawn))
+        self.assertEqual(counts["number of events"], ["0.1: 1", "0.2: 2", "5: 0"])
+        self.assertEqual(counts['number of events "enter_sliding slip"'], ["0.1: 1", "0.2: 1", "5: 0"])
+        self.assertEqual(len(counts["status"]), 3)
+        kinds = "[...document.querySelectorAll('#controls select')].at(-1).textContent"
+        self.assertNotIn("undefined", self.value(kinds))
+        self.value("[...document.querySelectorAll('section')].at(-1).querySelectorAll('.run')[2].dispatchEvent(new Event('click'))")
+        self.assertIn("run 3: belt = 5; completed, 0 events", self.value("document.getElementById('chosen').textContent"))
+
     def test_letters_keep_their_size_on_narrow_screens(self):
         self.map_of(390)
         size = "(() => { const svg = document.querySelector('svg'); return 12 * svg.clientWidth / svg.viewBox.baseVal.width; })()"

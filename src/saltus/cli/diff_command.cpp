@@ -1,13 +1,12 @@
 #include <charconv>
 #include <filesystem>
 #include <memory>
-#include <string_view>
-#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "saltus/cli/commands.hpp"
+#include "saltus/cli/text/difference_text.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/result/difference.hpp"
@@ -20,37 +19,6 @@ struct DiffArguments {
   result::Tolerances tolerances;
 };
 
-std::string numbers_text(std::string_view title, const std::vector<result::NumberDifference>& numbers) {
-  if (numbers.empty()) return "";
-  std::string text = fmt::format("{}\n", title);
-  for (const auto& [what, a, b] : numbers) {
-    text += fmt::format("  {:<20} {:>22.15g} {:>22.15g}   difference {:.3g}\n", what, a, b, b - a);
-  }
-  return text;
-}
-
-std::string difference_text(const result::Difference& difference, const DiffArguments& arguments,
-                            std::size_t states_of_model) {
-  std::string text = numbers_text("parameters", difference.parameters);
-  if (!difference.ends.empty()) text += fmt::format("the runs ended differently: {}\n", difference.ends);
-  text += numbers_text("at the end", difference.end_state) + numbers_text("on the way", difference.rows);
-  if (difference.events_a != difference.events_b) {
-    text += fmt::format("numbers of events: {} and {}\n", difference.events_a, difference.events_b);
-  }
-  if (!difference.first_event.empty()) text += fmt::format("first event that differs: {}\n", difference.first_event);
-  const auto& [rtol, atol] = arguments.tolerances;
-  const auto absolute = atol ? fmt::format("atol {:g}", *atol) : fmt::format("atol {:g} of each range", rtol);
-  const auto states = difference.common_states == states_of_model
-                          ? ""
-                          : fmt::format(" of {} of {} states", difference.common_states, states_of_model);
-  const auto between = difference.between_times == 0
-                           ? ""
-                           : fmt::format(", {} between rows to 0.2 % of the range", difference.between_times);
-  return text + fmt::format("{} to rtol {:g}, {} ({} events, {} common times{}{})\n",
-                            difference.is_none() ? "the same" : "different", rtol, absolute, difference.events_a,
-                            difference.common_times, between, states);
-}
-
 ExitCode run_diff(const DiffArguments& arguments) {
   const auto a = io::read_result(arguments.a);
   if (!a) return refuse(a.error());
@@ -58,7 +26,7 @@ ExitCode run_diff(const DiffArguments& arguments) {
   if (!b) return refuse(b.error());
   const auto difference = result::difference(*a, *b, arguments.tolerances);
   if (!difference) return refuse(difference.error());
-  print(difference_text(*difference, arguments, a->states.size()));
+  print(difference_text(*difference, arguments.tolerances, a->states.size()));
   return difference->is_none() ? ExitCode::done : ExitCode::different;
 }
 

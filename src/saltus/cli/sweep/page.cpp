@@ -1,7 +1,6 @@
 #include "saltus/cli/sweep/page.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -23,8 +22,7 @@ h1{font-size:1.4rem}h2{font-size:1rem;margin:1rem 0 .2rem}svg{width:100%;height:
 /// Rows that are drawn: all, or of every run as many of its last ones as leave room for all runs.
 struct DrawnRows {
   std::vector<std::size_t> rows;
-  std::vector<std::pair<double, std::size_t>> counts;  ///< of every run, where some are left out
-  std::size_t most_of_run = 0;                         ///< likewise
+  std::size_t most_of_run = 0;  ///< where some are left out
 };
 
 DrawnRows drawn_rows(const std::vector<TableColumn>& table) {
@@ -37,11 +35,11 @@ DrawnRows drawn_rows(const std::vector<TableColumn>& table) {
   }
   begins.push_back(runs.size());
   const bool all = runs.size() <= rows_of_page;
-  drawn.most_of_run = all ? runs.size() : std::max<std::size_t>(1, rows_of_page / (begins.size() - 1));
+  if (!all) drawn.most_of_run = std::max<std::size_t>(1, rows_of_page / (begins.size() - 1));
   for (std::size_t k = 0; k + 1 < begins.size(); ++k) {
     const std::size_t count = begins[k + 1] - begins[k];
-    if (!all) drawn.counts.emplace_back(runs[begins[k]], count);
-    for (std::size_t row = begins[k + 1] - std::min(count, drawn.most_of_run); row < begins[k + 1]; ++row) {
+    const std::size_t left_out = all ? 0 : count - std::min(count, drawn.most_of_run);
+    for (std::size_t row = begins[k] + left_out; row < begins[k + 1]; ++row) {
       drawn.rows.push_back(row);
     }
   }
@@ -58,10 +56,7 @@ std::vector<Value> rows_in(const std::vector<Value>& values, const std::vector<s
 
 std::string data_of(const std::vector<TableColumn>& table, const DrawnRows& drawn, const SweepPage& page) {
   using report::script_json;
-  result::OptionRecord columns, counts;
-  for (const auto& [run, count] : drawn.counts) {
-    counts.emplace_back(fmt::format("{}", run), static_cast<std::int64_t>(count));
-  }
+  result::OptionRecord columns;
   std::vector<std::string> swept;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (k > 0 && k <= page.names.size()) swept.push_back(table[k].name);
@@ -70,8 +65,7 @@ std::string data_of(const std::vector<TableColumn>& table, const DrawnRows& draw
   }
   const auto said =
       script_json({{"swept", swept}, {"names", page.names}, {"command", page.command}, {"grid", page.grid}});
-  return fmt::format(R"({{"columns":{},"rows_of_runs":{},{})", script_json(columns), script_json(counts),
-                     std::string_view(said).substr(1));
+  return fmt::format(R"({{"columns":{},{})", script_json(columns), std::string_view(said).substr(1));
 }
 
 }  // namespace
@@ -87,7 +81,7 @@ std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& p
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
   html += fmt::format("<title>{} - Saltus</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n<h1>{}</h1>\n", title,
                       style, title);
-  if (!drawn.counts.empty()) {
+  if (drawn.most_of_run > 0) {
     html += fmt::format("<p>The table has {} rows: the last {} of every run are drawn.</p>\n", rows_of(table.front()),
                         drawn.most_of_run);
   }

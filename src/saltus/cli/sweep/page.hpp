@@ -9,7 +9,7 @@
 
 namespace saltus::cli {
 
-/// Rows that a page draws; of a longer table the first ones, which the page says.
+/// Rows that a page draws; of a longer table the last ones of every run, which it says.
 inline constexpr std::size_t rows_of_page = 100'000;
 
 /// Holds what the page says beside the table.

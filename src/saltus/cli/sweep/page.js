@@ -18,13 +18,14 @@ const palette = ["#1f5fa8", "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#66a61e
 
 // A run is the first of its rows; events and trajectories have several.
 const firstRow = new Map();
-const rowsOf = new Map();
 columns.run.forEach((run, row) => {
   if (!firstRow.has(run)) firstRow.set(run, row);
-  rowsOf.set(run, (rowsOf.get(run) || 0) + 1);
 });
 const runRows = [...firstRow.values()];
-const eventsOf = (row) => (columns.events ? columns.events[row] : data.rows_of_runs[columns.run[row]] ?? rowsOf.get(columns.run[row]));
+const eventsOf = (row) => columns.events?.[row] ?? null;
+// Those of kept events; a run without one has a row that names none.
+const eventRows = columns.kind ? columns.run.map((_, row) => row).filter((row) => columns.kind[row]) : [];
+const allEvents = eventRows.length === runRows.reduce((sum, row) => sum + eventsOf(row), 0);
 
 function commandOf(row) {
   const settings = swept.map((name, k) => `--set ${data.names[k]}=${columns[name][row] === null ? "nan" : columns[name][row]}`);
@@ -150,11 +151,10 @@ function selector(label, options, value, onChange) {
   return box;
 }
 
-const values = numeric.filter((name) => name !== "run" && !swept.includes(name) && name !== "event");
+const values = numeric.filter((name) => !["run", "event", ...swept, ...(columns.kind ? ["events"] : [])].includes(name));
 const kindOf = (row) => columns.name[row] || (columns.surfaces[row] ? `${columns.kind[row]} ${columns.surfaces[row]}` : columns.kind[row]);
 // What the model calls an event comes first: at a switching surface its own value is a threshold.
-const named = columns.kind ? columns.run.map((_, row) => row).filter((row) => columns.name[row]).map(kindOf) : [];
-const kinds = columns.kind ? [...new Set([...named, ...columns.run.map((_, row) => kindOf(row))])] : [];
+const kinds = [...new Set([...eventRows.filter((row) => columns.name[row]), ...eventRows].map(kindOf))];
 const state = { value: values.find((name) => name !== "t") || values[0], x: swept[0], y: swept[1], kind: kinds[0], behind: -Infinity };
 
 function section(title, picture) {
@@ -180,11 +180,14 @@ function draw() {
   const grid = swept.length === 2 && data.grid;
   const over = (name, of, joined = true) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined && swept.length === 1 && isNumber(state.x)));
   if (kinds.length) {
-    const chosen = columns.run.map((_, row) => row).filter((row) => kindOf(row) === state.kind && columns.t[row] > state.behind);
+    const chosen = eventRows.filter((row) => kindOf(row) === state.kind && columns.t[row] > state.behind);
     const behind = state.behind > -Infinity ? ` behind t = ${shown(state.behind)}` : "";
     section(`${state.value} at every event "${state.kind}"${behind}`, points("bifurcation", state.x, state.value, chosen, (row) => columns[state.value][row], false));
-  } else section(state.value, over(state.value, (row) => columns[state.value][row]));
-  section(columns.events || kinds.length ? "number of events" : "number of rows", over("number", eventsOf));
+    const counts = new Map();
+    for (const row of chosen) counts.set(columns.run[row], (counts.get(columns.run[row]) ?? 0) + 1);
+    if (allEvents) section(`number of events "${state.kind}"${behind}`, over("number", (row) => counts.get(columns.run[row]) ?? 0));
+  } else if (!columns.kind) section(state.value, over(state.value, (row) => columns[state.value][row]));
+  section("number of events", over("number", eventsOf));
   const statuses = [...new Set(columns.status)];
   section("status", points("status", state.x, "status", runRows, (row) => columns.status[row], false, (row) => palette[statuses.indexOf(columns.status[row]) % palette.length]));
 }

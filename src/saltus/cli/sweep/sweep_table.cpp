@@ -132,7 +132,7 @@ Table final_table(const Beginning& beginning, const Result& first, const std::ve
 
 Table event_table(const Beginning& beginning, const Result& first, const std::vector<SweepRun>& runs) {
   auto columns = beginning.columns();
-  append(columns, {"event", "t"});
+  append(columns, {"events", "event", "t"});
   for (const char* name : {"kind", "name", "surfaces"}) columns.push_back(Table::words(name));
   append(columns, first.states);
   append(columns, first.states, "(after)");
@@ -141,10 +141,15 @@ Table event_table(const Beginning& beginning, const Result& first, const std::ve
     double number = 0.0;
     for (const auto& event : runs[i].result.events) {
       beginning.write(table, i, runs[i]);
-      table << ++number << event.t << std::string(result::name(event.kind)) << event.name.value_or("")
-            << fmt::format("{}", fmt::join(event.surfaces, " "));
+      table << static_cast<double>(runs[i].events) << ++number << event.t << std::string(result::name(event.kind))
+            << event.name.value_or("") << fmt::format("{}", fmt::join(event.surfaces, " "));
       table.add(event.x, first.states.size()).add(event.x_after, first.states.size());
     }
+    if (number > 0.0) continue;
+    // A run without an event is no run that is missing: it has a row, too.
+    beginning.write(table, i, runs[i]);
+    table << 0.0 << 0.0 << nothing << std::string() << std::string() << std::string();
+    table.add({}, 2 * first.states.size());
   }
   return table;
 }
@@ -152,7 +157,7 @@ Table event_table(const Beginning& beginning, const Result& first, const std::ve
 Table trajectory_table(const Beginning& beginning, const Result& first, const std::vector<SweepRun>& runs) {
   auto columns = beginning.columns();
   const auto states = states_in_rows(first);
-  append(columns, {"t"});
+  append(columns, {"events", "t"});
   append(columns, states);
   append(columns, first.controls);
   append(columns, first.outputs);
@@ -162,7 +167,7 @@ Table trajectory_table(const Beginning& beginning, const Result& first, const st
     const auto& rows = runs[i].result.trajectory;
     for (std::size_t k = 0; k < rows.t.size(); ++k) {
       beginning.write(table, i, runs[i]);
-      table << rows.t[k];
+      table << static_cast<double>(runs[i].events) << rows.t[k];
       table.add(rows.x[k], states.size()).add(rows.u[k], first.controls.size());
       table.add(rows.outputs[k], first.outputs.size());
       for (const int sign : rows.mode[k]) table << static_cast<double>(sign);

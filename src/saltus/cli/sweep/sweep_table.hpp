@@ -20,8 +20,9 @@ struct TableColumn {
 /// Returns a row for every run (Keep::final), event or row of a trajectory: `run` from 1, what was changed ("v(0)" if v
 /// is a state, whose value has the column "v"), `status`, then
 ///   final:       t, states, outputs at the end, `events` (their number);
-///   events:      `event` from 1, t, kind, name, surfaces, states before, states behind ("v(after)");
-///   trajectory:  t, states, controls, outputs, modes.
+///   events:      `events`, `event` from 1, t, kind, name, surfaces, states before, states behind ("v(after)"); a run
+///                without one has a row whose `event` is 0, without time and kind;
+///   trajectory:  `events`, t, states, controls, outputs, modes.
 /// @param begin  which run of the plan is the first of `runs`, from 0
 [[nodiscard]] std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<pipeline::SweepRun>& runs,
                                                    pipeline::Keep keep, std::size_t begin = 0);

@@ -59,10 +59,11 @@ saltus.curveColour = (panel, i, palette) => {
 /** More jumps than this in one view: dotted lines alone, their ends would cover each other. */
 saltus.maximumJumpEnds = 80;
 
-/** Jumps of one curve: a dotted line, open where the curve ends, full where it goes on. */
-saltus.jumpTrace = (curve, jumps, axis, color) => {
+/** Jumps of one curve, if there are any: a dotted line, open where the curve ends, full where it goes on. */
+saltus.jumpTraces = (curve, jumps, axis, color) => {
+  if (jumps.x.length === 0) return [];
   const ends = !saltus.isFraction(curve.sort) && jumps.x.length <= 3 * saltus.maximumJumpEnds;
-  return {
+  return [{
     type: "scatter",
     mode: ends ? "lines+markers" : "lines",
     xaxis: "x",
@@ -72,7 +73,7 @@ saltus.jumpTrace = (curve, jumps, axis, color) => {
     ...jumps,
     marker: {size: 5, color, symbol: jumps.x.map((_, i) => (i % 3 === 0 ? "circle-open" : "circle")), line: {width: 1}},
     line: {simplify: false, color, width: 1, dash: "dot"},
-  };
+  }];
 };
 
 saltus.lineOverTime = (axis, x, y) => ({
@@ -90,8 +91,9 @@ saltus.lineOverTime = (axis, x, y) => ({
 saltus.faint = (colour, part) => `${colour}${Math.round(255 * part).toString(16).padStart(2, "0")}`;
 
 /** Where a curve jumps to and fro within pixels: between which values, and its mean there. */
-saltus.envelopeTraces = ({x, low, high, mean}, axis, color) => {
-  if (x.length === 0) return [];
+saltus.envelopeTraces = (envelope, axis, color) => {
+  if ((envelope?.x ?? []).length === 0) return [];
+  const {x, low, high, mean} = envelope;
   const box = {x: [], y: []};
   const line = {x: [], y: []};
   x.forEach(([from, to], i) => {
@@ -112,23 +114,23 @@ saltus.envelopeTraces = ({x, low, high, mean}, axis, color) => {
   ];
 };
 
+/** What is drawn of a curve, of this result or another one: stems of impulses, else lines with gaps at jumps. */
+saltus.pointsOf = (result, curve, t, values, view) => saltus.isImpulse(result, curve) ?
+    saltus.impulseLines(t, values, view.window, view.pixels) :
+    saltus.points(t, values, view.window, view.pixels, curve.discrete);
+
 saltus.curveTraces = (result, panel, axis, view) => panel.curves.flatMap((curve, i) => {
   const color = saltus.curveColour(panel, i, view.palette);
   const steps = saltus.controlSteps(result, curve);
-  const stems = saltus.isImpulse(result, curve) ?
-      saltus.impulseLines(result.trajectory.t, curve.values, view.window, view.pixels) :
-      null;
-  const {x, y, jumps, envelope} =
-      steps ?? stems ?? saltus.points(result.trajectory.t, curve.values, view.window, view.pixels, curve.discrete);
+  const {x, y, jumps, envelope} = steps ?? saltus.pointsOf(result, curve, result.trajectory.t, curve.values, view);
   const line = {
     ...saltus.lineOverTime(axis, x, y),
     // Plotly's own simplification moves curves visibly off their points (a sliding v = 0.2 sank below its line).
     line: {simplify: false, color, width: 1.6, shape: curve.stepwise || steps !== null ? "hv" : "linear"},
   };
-  const jumpTraces = jumps.x.length === 0 ? [] : [saltus.jumpTrace(curve, jumps, axis, color)];
   return [
     ...saltus.boundLines(result, curve, axis, view), ...saltus.branchCurves(result, curve, axis, color, view),
-    ...(envelope === undefined ? [] : saltus.envelopeTraces(envelope, axis, color)), line, ...jumpTraces,
+    ...saltus.envelopeTraces(envelope, axis, color), line, ...saltus.jumpTraces(curve, jumps, axis, color),
     ...saltus.simulatedCurve(result, curve, axis, view), ...saltus.overlayCurves(result, curve, axis, view)
   ];
 });

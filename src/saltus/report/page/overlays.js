@@ -13,13 +13,17 @@ saltus.overlayLine = (i, palette) => ({
 saltus.overlayCurves = (result, curve, axis, view) => (result.overlays ?? []).flatMap(({trajectory, label}, i) => {
   const values = saltus.columnOf(trajectory, curve);
   if ((values ?? []).length === 0) return [];
-  const {x, y} = saltus.points(trajectory.t, values, view.window, view.pixels, true);
-  return [{
-    ...saltus.lineOverTime(axis, x, y),
-    meta: "overlay",
-    name: saltus.plain(label),
-    line: saltus.overlayLine(i, view.palette),
-  }];
+  const line = saltus.overlayLine(i, view.palette);
+  const {x, y, jumps, envelope} = saltus.pointsOf(result, curve, trajectory.t, values, view);
+  return [
+    ...saltus.envelopeTraces(envelope, axis, line.color), {
+      ...saltus.lineOverTime(axis, x, y),
+      meta: "overlay",
+      name: saltus.plain(label),
+      line: {...line, shape: curve.stepwise ? "hv" : "linear"},
+    },
+    ...saltus.jumpTraces(curve, jumps, axis, line.color)
+  ];
 });
 
 /** The other results that have all of some columns. */
@@ -32,9 +36,9 @@ saltus.overlayOrbits = (result, choice, view, palette, type) => (result.overlays
   const lists = choice.map((axis) => saltus.columnOf(overlay.trajectory, saltus.axes(result)[axis]) ?? []);
   if (t.length === 0 || lists.some((list) => list.length === 0)) return [];
   const rows = saltus.rowsToDraw(t, lists, saltus.rowsInWindow(t, view.window), view.pixels);
-  const [x, y, z] = lists.map((list) => rows.map((row) => list[row]));
+  const {free, jumps} = saltus.phaseParts(overlay, lists, rows, []);
   const line = saltus.overlayLine(i, palette);
-  return [{
+  const trace = ([x, y, z], style) => ({
     type,
     mode: "lines",
     x,
@@ -42,8 +46,12 @@ saltus.overlayOrbits = (result, choice, view, palette, type) => (result.overlays
     ...(z === undefined ? {} : {z}),
     name: saltus.plain(saltus.shorten(overlay.label, 24)),
     hoverinfo: "skip",
-    line: type === "scatter" ? line : {color: line.color, width: 3, dash: line.dash},
-  }];
+    connectgaps: false,
+    line: type === "scatter" ? {...line, ...style} : {color: line.color, width: 3, dash: line.dash, ...style},
+  });
+  return [
+    trace(free, {}), ...(jumps[0].length === 0 ? [] : [{...trace(jumps, {width: 1, dash: "dot"}), showlegend: false}])
+  ];
 });
 
 /** Value of a column at a time, linear between rows; at doubled rows the one behind. Null outside of its times. */
@@ -87,10 +95,11 @@ saltus.overlayCard = (result, palette) => {
                     })
                     .reduce((most, one) => (one.part > most.part ? one : most), {name: "", part: 0});
     const parameters = overlay.parameters.map(([name, value]) => `${name} = ${saltus.exact(value)}`).join(", ");
-    const ends = `${overlay.status.termination.replaceAll("_", " ")} at t = ${saltus.brief(overlay.status.time_reached, 6)}`;
+    const ends =
+        `${overlay.status.termination.replaceAll("_", " ")} at t = ${saltus.brief(overlay.status.time_reached, 6)}`;
     return [
-      saltus.element("span", {}, line, " ", overlay.label), overlay.method, parameters || "the same", String(overlay.events),
-      ends, far.part === 0 ? "none" : `${saltus.brief(far.part, 3)} of the range of ${far.name}`
+      saltus.element("span", {}, line, " ", overlay.label), overlay.method, parameters || "the same",
+      String(overlay.events), ends, far.part === 0 ? "none" : `${saltus.brief(far.part, 3)} of the range of ${far.name}`
     ];
   });
   const head = ["result", "method", "other values", "events", "ends", "largest difference"];
@@ -123,8 +132,8 @@ saltus.differencePicture = (result, timeline) => {
       showlegend: true,
     }),
   });
-  const option = (column, i) => saltus.element(
-      "option", {value: String(i), ...(i === chosen ? {selected: ""} : {})}, saltus.columnLabel(column));
+  const option = (column, i) =>
+      saltus.element("option", {value: String(i), ...(i === chosen ? {selected: ""} : {})}, saltus.columnLabel(column));
   const picker = saltus.element(
       "select", {
         "aria-label": "column",

@@ -1,0 +1,44 @@
+#include "saltus/cli/text/difference_text.hpp"
+
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace saltus::cli {
+namespace {
+
+std::string numbers_text(std::string_view title, const std::vector<result::NumberDifference>& numbers) {
+  if (numbers.empty()) return "";
+  std::string text = fmt::format("{}\n", title);
+  for (const auto& [what, a, b] : numbers) {
+    text += fmt::format("  {:<20} {:>22.15g} {:>22.15g}   difference {:.3g}\n", what, a, b, b - a);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string difference_text(const result::Difference& difference, const result::Tolerances& tolerances,
+                            std::size_t states_of_model) {
+  std::string text = numbers_text("parameters", difference.parameters);
+  if (!difference.ends.empty()) text += fmt::format("the runs ended differently: {}\n", difference.ends);
+  text += numbers_text("at the end", difference.end_state) + numbers_text("on the way", difference.rows);
+  if (difference.events_a != difference.events_b) {
+    text += fmt::format("numbers of events: {} and {}\n", difference.events_a, difference.events_b);
+  }
+  if (!difference.first_event.empty()) text += fmt::format("first event that differs: {}\n", difference.first_event);
+  const auto& [rtol, atol] = tolerances;
+  const auto absolute = atol ? fmt::format("atol {:g}", *atol) : fmt::format("atol {:g} of each range", rtol);
+  const auto states = difference.common_states == states_of_model
+                          ? ""
+                          : fmt::format(" of {} of {} states", difference.common_states, states_of_model);
+  const auto between = difference.between_times == 0
+                           ? ""
+                           : fmt::format(", {} between rows to 0.2 % of the range", difference.between_times);
+  return text + fmt::format("{} to rtol {:g}, {} ({} events, {} common times{}{})\n",
+                            difference.is_none() ? "the same" : "different", rtol, absolute, difference.events_a,
+                            difference.common_times, between, states);
+}
+
+}  // namespace saltus::cli
