@@ -2,7 +2,6 @@
 
 import concurrent.futures
 import pickle
-import time
 
 import numpy as np
 import pytest
@@ -77,9 +76,8 @@ def test_shares_of_an_executor_know_the_values_of_runs_without_an_event(slip):
 
 def test_results_of_many_runs_are_made_when_they_are_asked_for(slip):
     s = slip.sweep(belt=np.linspace(0.05, 0.3, 2000), until=0.01)
-    start = time.perf_counter()
     assert "2000 completed" in repr(s) and s.done and len(s.results) == 2000
-    assert time.perf_counter() - start < 0.05  # 0.1 s where each has to say its status in Python
+    assert not s.results._made
     assert "table" not in vars(s) and len(s["status"]) == 2000 and s.table is s.table
     assert s.results[-1] is s.results[1999] and [r is s.results[i] for i, r in enumerate(s.results[3:5], 3)] == [True] * 2
     with pytest.raises(IndexError):

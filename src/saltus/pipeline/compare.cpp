@@ -66,8 +66,6 @@ std::vector<double> times_to_compare(double from, double until) {
   return times;
 }
 
-constexpr double patience = 0.5;  ///< seconds for which Ctrl-C may wait
-
 /// The reference first.
 std::vector<PlannedRun> plan(SimulateOptions options) {
   options.event.trajectories = 1;
@@ -236,8 +234,7 @@ Expected<result::Result> compare(const model::System& system, const SimulateOpti
     states.add_none();
   }
   // Who stops a comparison does not wait for another run.
-  const bool may_run_again = !watch.stopped() || reference->statistics.wall_seconds < patience;
-  const auto compared = compare_states(system, planned.front().options, states, may_run_again, comparison);
+  const auto compared = compare_states(system, planned.front().options, states, !watch.stopped(), comparison);
   if (!compared) return tl::unexpected(compared.error());
   reference->command = "compare";
   reference->comparison = std::move(comparison);
