@@ -29,7 +29,7 @@ TEST_P(RandomSystems, AreSolvedOrRefusedWithAStatus) {
 INSTANTIATE_TEST_SUITE_P(Families, RandomSystems, testing::ValuesIn(families),
                          [](const auto& instance) { return name(instance.param); });
 
-/// Systems that were got wrong once, each for a reason of its own; three that take long are in slow/.
+/// Systems that were got wrong once, each for a reason of its own; those that take long are in slow/.
 TEST(RandomSystems, OnesThatFailedOnceAreSolvedOrRefused) {
   constexpr std::pair<Family, std::uint64_t> systems[] = {
       {Family::affine, 1588},    {Family::affine, 1774},     {Family::affine, 1875},     {Family::affine, 2383},
