@@ -1,6 +1,6 @@
 """Hops of the monoped one behind the other: a start for a longer way whose sides are right.
 
-python3 benchmarks/monoped/hops.py RESULT.json RESULT.json … --out START.json [--points S]
+python3 benchmarks/monoped/hops.py RESULT.json RESULT.json … --out START.json [--points S] [--fill]
 
 Every result is one of `saltus optimize` that begins and ends at rest, leg straight, with equally long intervals and the
 same number of elements. A hop may be there several times: the robot moves the same wherever it stands.
@@ -14,10 +14,35 @@ import pathlib
 
 STATES = 9  # of the frozen system: positions, velocities, clock
 CLOCK = 8
+EMPTY = 1e-5  # relative length
 GROUPS = [STATES, 3, 1, 6]  # of a stage in the step form: states, selections, lifted products, multipliers
-RADAU = {2: [1 / 3, 1], 3: [(4 - 6**0.5) / 10, (4 + 6**0.5) / 10, 1],
-         4: [0.08858795951270395, 0.4094668644407347, 0.787659461760847, 1],
-         5: [0.05710419611451768, 0.2768430136381238, 0.5835904323689168, 0.8602401356562195, 1]}
+
+
+def legendre(degree, x):
+    before, value = 0.0, 1.0
+    for n in range(degree):
+        before, value = value, ((2 * n + 1) * x * value - n * before) / (n + 1)
+    return value
+
+
+def radau(count):
+    """Nodes of Radau IIA: where Legendre polynomials of two degrees meet; the last is 1."""
+    def difference(x):
+        return legendre(count, 2 * x - 1) - legendre(count - 1, 2 * x - 1)
+
+    nodes, steps = [], 1000
+    for i in range(steps - 1):
+        low, high = i / steps, (i + 1) / steps
+        if difference(low) * difference(high) > 0:
+            continue
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if difference(low) * difference(middle) > 0 else (low, middle)
+        nodes.append(0.5 * (low + high))
+    return [*nodes, 1.0]
+
+
+RADAU = {count: radau(count) for count in range(2, 8)}
 
 
 def shifted(result, x, t):
@@ -51,6 +76,75 @@ def interpolated(nodes, values, at):
             weight *= (at - other) / (node - other) if j != i else 1.0
         weights.append(weight)
     return [sum(weight * row[i] for weight, row in zip(weights, values)) for i in range(len(values[0]))]
+
+
+class Elements:
+    """Of one interval: local lengths (their sum is 1), and blocks of variables by stage."""
+
+    def __init__(self, values, controls, count, stages):
+        first = controls + 1
+        self.lengths = values[first : first + count]
+        self.stages, self.head, self.blocks = stages, values[:first], []
+        at = first + count
+        for _ in range(count):
+            block = []
+            for group in GROUPS:
+                block.append([values[at + i * group : at + (i + 1) * group] for i in range(stages)])
+                at += stages * group
+            self.blocks.append(block)
+
+    def values(self):
+        flat = [value for block in self.blocks for rows in block for row in rows for value in row]
+        return [*self.head, *self.lengths, *flat]
+
+    def run_of(self, empty):
+        """The empty element and its neighbours on one side, those behind it first, that are equally long."""
+        count = len(self.lengths)
+        side = list(range(empty + 1, count)) or list(range(empty - 1, -1, -1))
+        length = self.lengths[side[0]]
+        while side and abs(self.lengths[side[-1]] - length) > 1e-9:
+            side.pop()
+        return sorted([empty, *side])
+
+    def fill(self, left):
+        """left: the states at the start of the interval."""
+        for empty in [n for n, length in enumerate(self.lengths) if length < EMPTY]:
+            run = self.run_of(empty)
+            begin = self.blocks[run[0] - 1][0][-1] if run[0] > 0 else left
+            old, total = [], sum(self.lengths[n] for n in run)
+            for n in run:
+                if n != empty:
+                    old.append((self.lengths[n], begin, self.blocks[n]))
+                    begin = self.blocks[n][0][-1]
+            for i, n in enumerate(run):
+                times = [total * (i + node) / len(run) for node in RADAU[self.stages]]
+                self.blocks[n] = [[sampled(old, group, time, self.stages) for time in times] for group in range(len(GROUPS))]
+                self.lengths[n] = total / len(run)
+
+
+def sampled(elements, group, time, stages):
+    """Variables at a time since the start of the first element; an element: length, states at its start, block."""
+    for number, (length, left, block) in enumerate(elements):
+        if time <= length * (1 + 1e-12) or number == len(elements) - 1:
+            local = min(time / length, 1.0)
+            if group == 0:
+                return interpolated([0.0, *RADAU[stages]], [left, *block[0]], local)
+            return [max(value, 0.0) for value in interpolated(RADAU[stages], block[group], local)]
+        time -= length
+    raise AssertionError
+
+
+def filled(start):
+    """A result without elements of length zero."""
+    values, controls, count = start["start_values"], len(start["u"][0]), len(start["h"][0])
+    old, primal, left = values["primal"], [], [*start["trajectory"]["x"][0][:CLOCK], 0.0]
+    block = len(old) // len(start["u"])
+    for first in range(0, len(old), block):
+        elements = Elements(old[first : first + block], controls, count, stages(start))
+        elements.fill(left)
+        primal += elements.values()
+        left = elements.blocks[-1][0][-1]
+    return {**start, "start_values": {**values, "primal": primal}}
 
 
 def with_points(start, points):
@@ -103,11 +197,14 @@ def main():
     parser.add_argument("hops", nargs="+")
     parser.add_argument("--out", required=True)
     parser.add_argument("--points", type=int, help="stages")
+    parser.add_argument("--fill", action="store_true", help="elements of length zero")
     arguments = parser.parse_args()
     hops = [json.loads(pathlib.Path(name).read_text(encoding="utf-8")) for name in arguments.hops]
     start = joined(hops)
     if arguments.points:
         start = with_points(start, arguments.points)
+    if arguments.fill:
+        start = filled(start)
     pathlib.Path(arguments.out).write_text(json.dumps(start), encoding="utf-8")
 
 
