@@ -9,11 +9,12 @@ end state against DOP853 by hand at 1e-13, whose events must be the same in numb
 
 import argparse
 import json
-import math
 import pathlib
 import statistics
 import subprocess
 import tempfile
+
+import accuracy
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TOLERANCES = [10.0 ** -k for k in range(6, 12)]
@@ -37,18 +38,6 @@ def runs(program, problem, method, variant, seconds, tolerances):
     return [json.loads(line) for line in out.splitlines()]
 
 
-def time_at(points):
-    """Where the curve of time over error crosses WANTED, by interpolation of logarithms; the first time if all are better."""
-    points = sorted(points, reverse=True)
-    if points[0][0] <= WANTED:
-        return min(time for _, time in points)
-    for (error, time), (better, longer) in zip(points, points[1:]):
-        if better <= WANTED:
-            part = math.log(error / WANTED) / math.log(error / better)
-            return math.exp(math.log(time) + part * math.log(longer / time))
-    return math.nan
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=pathlib.Path)
@@ -70,8 +59,10 @@ def main():
                     for run in zip(*rounds):
                         assert len(run[0]["events"]) == len(exact["events"]), (problem, who, run[0]["tolerance"])
                         error = max(abs(a - b) for a, b in zip(run[0]["x"][:states], exact["x"]))
-                        points.append((max(error, 1e-16), statistics.median(one["seconds"] for one in run)))
-                    times[who], steps[who] = time_at(points), rounds[0][2]["steps"]
+                        points.append({"error": error, "seconds": statistics.median(one["seconds"] for one in run),
+                                       "time_stepping": False})
+                    times[who], _ = accuracy.at_error(points, WANTED, "seconds")
+                    steps[who] = rounds[0][2]["steps"]
                 hand, saltus = times["compare_hand"], times["compare_saltus"]
                 print(f"| {problem} | {method} | {1e3 * hand:.3g} ms | {1e3 * saltus:.3g} ms | {saltus / hand:.2g} | "
                       f"{steps['compare_hand']}, {steps['compare_saltus']} |", flush=True)

@@ -135,7 +135,7 @@ void CompiledModel::find_structure(const model::System& system) {
   }
   if (start.cells.size() > 0) on_cells = start.cells.dependencies(dependencies_of_rows(phi, p));
   discrete_guards.assign(at(n_phi), false);
-  const auto on_time = dependencies_of_rows(phi, t);
+  const auto on_time = jump_guards.empty() ? std::vector<std::vector<int>>() : dependencies_of_rows(phi, t);
   for (std::size_t k = 0; k < jump_guards.size(); ++k) {
     const auto j = at(first_jump_guard) + k;
     const bool in_cell = !on_cells.empty() && std::any_of(on_cells[j].begin(), on_cells[j].end(), std::identity{});

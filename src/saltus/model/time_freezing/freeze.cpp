@@ -61,16 +61,13 @@ class ContactFreezing {
 
   [[nodiscard]] std::optional<Error> run(const std::vector<ContactStatement>& contacts) {
     for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
-      if (auto error = take(i)) return with_location(*error, contacts[i].location);
+      auto error = plan_.made.contacts[i].is_elastic ? take_elastic(i) : take_inelastic(i);
+      if (error) return with_location(*error, contacts[i].location);
     }
     return std::nullopt;
   }
 
  private:
-  [[nodiscard]] std::optional<Error> take(std::size_t i) {
-    return plan_.made.contacts[i].is_elastic ? take_elastic(i) : take_inelastic(i);
-  }
-
   Expected<SX> selection(const SX& psi, const std::string& name, FrozenSelection& found) {
     const auto alpha = recognition_.step(SX::densify(psi).scalar(), name);
     if (!alpha) return tl::unexpected(alpha.error());
