@@ -104,12 +104,17 @@ nb::object optimize(Model& model, std::vector<std::string> settings, std::vector
   Watch watch{nb::none()};
   pipeline::OptimizeObservers observers;
   observers.is_interrupted = [&] { return watch.look(); };
-  observers.on_warning = [&](const std::string& warning) { warnings.append(warning); };
+  observers.on_warning = [&](const std::string& warning) {
+    const nb::gil_scoped_acquire held;
+    warnings.append(warning);
+  };
   if (!on_step.is_none()) {
     observers.on_step = [&](const result::HomotopyStep& step) { watch.call(on_step, report::to_line(step)); };
   }
-  // Its expressions are made, and dropped, while it runs: it keeps the interpreter's lock.
-  auto result = pipeline::optimize(*ocp, *input.file.optimize, observers);
+  auto result = [&] {
+    const nb::gil_scoped_release released;
+    return pipeline::optimize(*ocp, *input.file.optimize, observers);
+  }();
   if (result) {
     cli::complete_optimum(input, *result);
     cli::add_surfaces(*ocp, *result);

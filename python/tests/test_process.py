@@ -107,13 +107,17 @@ def test_control_c():
     signal.signal(signal.SIGINT, before)
 
 
-def test_other_threads_run_meanwhile():
-    model = saltus.Model.from_text(LONG)
+@pytest.mark.parametrize("long_run", [
+    lambda: saltus.Model.from_text(LONG).simulate(until=3000, points=2, max_events=10**9),
+    lambda: saltus.Model.from_text(LONG).simulate(until=1000, method="fesd", steps=2000, max_events=10**9),
+    lambda: saltus.catalogue("slide-and-hide").optimize(),
+], ids=["event", "fesd", "optimize"])
+def test_other_threads_run_meanwhile(long_run):
     ticks = 0
     done = threading.Event()
 
     def run():
-        model.simulate(until=3000, points=2, max_events=10**9)
+        long_run()
         done.set()
 
     threading.Thread(target=run).start()
@@ -121,6 +125,19 @@ def test_other_threads_run_meanwhile():
         ticks += 1
         time.sleep(0.001)
     assert ticks >= 20
+
+
+def test_problems_of_threads_equal_those_of_one():
+    """Programs with complementarities and elements are made and dropped while others are solved."""
+    tasks = [
+        lambda: saltus.catalogue("slide-and-hide").optimize().x.tobytes(),
+        lambda: saltus.catalogue("stick-slip").simulate(until=5, method="fesd").x.tobytes(),
+        lambda: saltus.catalogue("stick-slip").simulate(until=2, method="fesd", step_equilibration="none",
+                                                        steps=5).x.tobytes(),
+    ] * 3
+    with concurrent.futures.ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda task: task(), tasks))
+    assert found == [task() for task in tasks[:3]] * 3
 
 
 def test_who_stops_a_comparison_does_not_wait_for_another_run():

@@ -121,7 +121,7 @@ def faults_of_impacts(bodies, run):
         for k, impulse in enumerate(event.impulse):
             push += impulse[0] * bodies.normal(k, q) + np.array(impulse[1 : 1 + len(bodies.tangents[k])]) @ bodies.tangents[k]
             if impulse[0] < -1e-12:
-                found.append(f"an impact at {event.t} pulls c{k}")
+                found.append(f"an impact at {event.t} pulls c{k} by {impulse[0]:.1e}")
             closed = event.contact_modes_after[k] != "open" or impulse[0] > 0
             if closed and bodies.normal(k, q) @ after < -1e-9 * (1 + np.abs(before).max()):
                 found.append(f"behind an impact at {event.t} c{k} closes at {bodies.normal(k, q) @ after:.1e}")

@@ -15,16 +15,33 @@ class SymbolicLock {
   SymbolicLock& operator=(const SymbolicLock&) = delete;
 
   /// Says what to take instead of a mutex of this process: an interpreter's lock, for a program whose other parts use
-  /// CasADi under that one. What acquire() returns goes to release().
+  /// CasADi under that one. What acquire() returns goes to release(). let_go() gives up what this thread has acquired
+  /// `times` times; what it returns goes to take_back().
   struct Means {
     int (*acquire)();
     void (*release)(int);
+    void* (*let_go)(int times);
+    void (*take_back)(void*, int times);
   };
   /// Is called before the first thread begins.
   static void use(Means means);
 
  private:
   int token_;
+};
+
+/// Lets go of this thread's SymbolicLock while compiled functions are only evaluated, and takes it back at its end.
+/// A SymbolicLock may be taken meanwhile.
+class SymbolicPause {
+ public:
+  SymbolicPause();
+  ~SymbolicPause();
+  SymbolicPause(const SymbolicPause&) = delete;
+  SymbolicPause& operator=(const SymbolicPause&) = delete;
+
+ private:
+  int times_;
+  void* token_ = nullptr;
 };
 
 }  // namespace saltus

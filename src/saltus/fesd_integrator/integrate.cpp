@@ -1,5 +1,6 @@
 #include "saltus/fesd_integrator/integrate.hpp"
 
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/fesd_integrator/run/run_internal.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/reformulation/dcs.hpp"
@@ -26,12 +27,17 @@ Expected<Integration> integrate(const model::System& system, const reformulation
   const auto functions = discretization::PointFunctions::compile(dcs, system.parameter_values, options.native);
   if (!functions) return tl::unexpected(functions.error());
   const Facts known = facts(system, dcs);
-  if (!options.sensitivities) return Run(*kernel, *functions, known, options, observer, nullptr).run();
+  const auto evaluated = [&](SensitivityPropagation* propagation) {
+    Run run(*kernel, *functions, known, options, observer, propagation);
+    const SymbolicPause pause;
+    return run.run();
+  };
+  if (!options.sensitivities) return evaluated(nullptr);
   if (!dcs.root_exponents.empty()) return tl::unexpected(no_derivatives());
   const auto tangent = discretization::TangentKernel::compile(dcs, system.parameter_values, options.native);
   if (!tangent) return tl::unexpected(tangent.error());
   SensitivityPropagation propagation(*tangent, options.tableau);
-  auto integration = Run(*kernel, *functions, known, options, observer, &propagation).run();
+  auto integration = evaluated(&propagation);
   if (integration.status.termination == result::Termination::completed) {
     integration.sensitivities = propagation.sensitivities(system.parameter_names);
   }

@@ -3,6 +3,7 @@
 
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/base/stopwatch.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/step_problem.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
@@ -90,6 +91,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   std::optional<fesd_integrator::StepProblem> step_problem;
   const auto make_problem = [&]() -> Expected<fesd_integrator::StepProblem*> {
     if (step_problem) return &*step_problem;
+    const SymbolicLock lock;  // the run has let go of it
     ipopt.emplace();
     auto made =
         fesd_integrator::StepProblem::make(*dcs, system.parameter_values, integration.tableau, fesd_options(wanted),

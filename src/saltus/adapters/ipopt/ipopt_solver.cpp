@@ -8,6 +8,7 @@
 
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 
 namespace saltus::adapters {
 namespace {
@@ -141,7 +142,10 @@ solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point
   implementation_->set_options(options, has_multipliers);
   program->set(nlp, point, options);
   const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
-  const auto status = has_structures ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
+  const auto status = [&] {
+    const SymbolicPause pause;  // Ipopt itself lets one thread at a time use MUMPS
+    return has_structures ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
+  }();
   has_structures = keeps_structures(status);
 
   const bool is_stopped = status == Ipopt::User_Requested_Stop;

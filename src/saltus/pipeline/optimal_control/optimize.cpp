@@ -11,6 +11,7 @@
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/base/at.hpp"
 #include "saltus/base/stopwatch.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
@@ -188,6 +189,7 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
 
 Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& options,
                                   const OptimizeObservers& observers) {
+  const SymbolicLock lock;  // problems are made, and dropped, while it runs
   const Stopwatch whole;
   auto stated = state_problem(ocp, options);
   if (!stated) return tl::unexpected(stated.error());

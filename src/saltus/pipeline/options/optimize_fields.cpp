@@ -251,7 +251,12 @@ Expected<OptimizeOptions> with_value(OptimizeOptions options, std::string_view k
 
 OptionRecord option_record(const OptimizeOptions& options) {
   OptionRecord record;
-  for (const auto& field : optimize_fields()) field.record(options, fmt::format("optimize.{}", field.key), record);
+  record.reserve(optimize_fields().size());
+  std::string key;
+  for (const auto& field : optimize_fields()) {
+    key.assign("optimize.").append(field.key);
+    field.record(options, key, record);
+  }
   return record;
 }
 

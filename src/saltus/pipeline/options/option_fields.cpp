@@ -353,7 +353,12 @@ Expected<SimulateOptions> with_value(SimulateOptions options, std::string_view k
 
 OptionRecord option_record(const SimulateOptions& options) {
   OptionRecord record;
-  for (const auto& field : simulate_fields()) field.record(options, fmt::format("simulate.{}", field.key), record);
+  record.reserve(simulate_fields().size());
+  std::string key;
+  for (const auto& field : simulate_fields()) {
+    key.assign("simulate.").append(field.key);
+    field.record(options, key, record);
+  }
   return record;
 }
 
