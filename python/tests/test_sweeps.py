@@ -126,6 +126,9 @@ def test_a_run_that_stops_early_is_a_row(tool, tmp_path):
         (["--over", "belt=1,2", "--over", "v=1,2,3", "--zip"], "--zip"),
         (["--over", "belt=1,2", "--keep", "everything"], "final, events or trajectory"),
         (["--over", "belt=1,2", "--jobs", "-1"], "--jobs -1: expected a number of threads, 1 to 4096"),
+        (["--over", "belt=1,2", "--set", "belt=3"], "--set belt=3: 'belt' is changed twice\n"),
+        (["--sample", "v=normal(0,0.1)", "--runs", "5", "--seed", "-1"], "--seed -1: expected a number from 0 on"),
+        (["--over", "belt=0:1:100000", "--over", "v=0:1:100000", "--yes"], "GB of memory at once"),
         (["--over", "belt=1,2", "--jobs", "0"], "--jobs 0: expected a number of threads, 1 to 4096"),
         (["--over", "belt=1,x"], "in run 2\n"),
     ],
@@ -229,11 +232,25 @@ def test_shares_say_what_the_page_needs(tool, tmp_path):
     assert data["command"] == "saltus simulate m.toml --until 1 --set 'b=2 + 1'"
     for file in files:
         share = (tmp_path / file).read_text()
-        heading, rest = re.match(r'"(run \[[^]]*\])(?:[^"]|"")*"(.*)', share, re.DOTALL).groups()
-        (tmp_path / file).write_text(f'"{heading}"{rest}')
+        heading, rest = re.match(r'"(run \[[^]]*), runs [^]]*\](?:[^"]|"")*"(.*)', share, re.DOTALL).groups()
+        (tmp_path / file).write_text(f'"{heading}]"{rest}')
     run_tool(tool, tmp_path, "--join", *files, "--report", "old.html")
     page = (tmp_path / "old.html").read_text()
     assert "<h1>Sweep</h1>" in page and page_data(page)["command"] == "" and "do not say their model" in page
+
+
+@pytest.mark.parametrize("keep", ["final", "events"])
+def test_shares_without_all_their_runs(tool, tmp_path, keep):
+    files = shares(tool, tmp_path, 2, "stick-slip", "--until", "4", "--over", "belt=0.05:0.3:6", "--keep", keep)
+    lines = (tmp_path / "s1.csv").read_text().splitlines(keepends=True)
+    ends = [i for i in range(1, len(lines)) if lines[i].startswith("3,")]
+    without_last, without_second = lines[:ends[0]], [line for line in lines if not line.startswith("2,")]
+    twice = lines[:2] + lines[1:]
+    cases = [(without_last, "ends with run 2, expected run 3"), (without_second, "run 3, expected run 2")]
+    for changed, words in cases + ([(twice, "run 1, expected run 2")] if keep == "final" else []):
+        (tmp_path / "s1.csv").write_text("".join(changed))
+        assert words in run_tool(tool, tmp_path, "--join", *files, "--out", "x.csv", code=2)
+    assert not (tmp_path / "x.csv").exists()
 
 
 def test_shares_that_do_not_fit(tool, tmp_path):

@@ -33,7 +33,7 @@ struct SweepArguments {
   std::string page;
   std::string task;
   std::vector<std::string> join;
-  std::optional<long> jobs;
+  std::optional<long> jobs, seed;
 };
 
 Expected<Keep> keep_named(const std::string& word) {
@@ -144,7 +144,14 @@ pipeline::SweepObservers sweep_observers(const SweepArguments& arguments, std::s
 
 ExitCode run_sweep(const SweepArguments& arguments) {
   if (arguments.run.model.empty()) return refuse(misuse("MODEL is missing", "see: saltus help sweep"));
-  const auto plan = SweepPlan::make(arguments.request);
+  auto request = arguments.request;
+  if (arguments.seed) {
+    if (*arguments.seed < 0) {
+      return refuse(misuse(fmt::format("--seed {}: expected a number from 0 on", *arguments.seed), "e.g. --seed 1"));
+    }
+    request.seed = static_cast<std::uint64_t>(*arguments.seed);
+  }
+  const auto plan = SweepPlan::make(request);
   if (!plan) return refuse(plan.error());
   const auto keep = keep_named(arguments.keep);
   if (!keep) return refuse(keep.error());
@@ -153,6 +160,11 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   const auto model = stated_model(arguments.run);
   if (!model) return refuse(model.error());
   if (auto writable = check_output(arguments, model->path); !writable) return refuse(writable.error());
+  for (const auto& setting : arguments.run.settings) {
+    const auto name = setting.substr(0, setting.find('='));
+    if (std::find(plan->names().begin(), plan->names().end(), name) == plan->names().end()) continue;
+    return refuse(misuse(fmt::format("--set {}: '{}' is changed twice", setting, name), "give its values once"));
+  }
   const auto first = input_of_run(*model, *plan, 0);
   if (!first) return refuse(first.error());
   for (const auto& warning : options_without_effect(first->file)) print_error(fmt::format("warning: {}", warning));
@@ -166,10 +178,10 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   const auto runs = pipeline::sweep({count, *keep, *jobs, begin}, state, observers);
   if (!runs) return refuse(io::located(runs.error(), model->file));
   auto table = sweep_table(*plan, *runs, *keep, begin);
-  const bool grid = !arguments.request.paired && arguments.request.samples.empty();
+  const bool grid = !request.paired && request.samples.empty();
   const SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid};
   if (!arguments.task.empty()) {
-    table.front().name = share_heading(*share, sweep_mark(*model, arguments.request, arguments.keep), page);
+    table.front().name = share_heading(*share, plan->runs(), sweep_mark(*model, request, arguments.keep), page);
   }
   if (auto written = write_files(arguments, table, page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
@@ -213,7 +225,7 @@ Command add_sweep(CLI::App& app) {
   command->add_flag("--zip", request.paired, "values one by one instead of a grid");
   several("--sample", request.samples, "random values: normal(m,s), uniform(a,b), lognormal(m,s)", "NAME=DISTRIBUTION");
   command->add_option("--runs", request.runs, "samples (of every point of the grid)")->type_name("N");
-  command->add_option("--seed", request.seed, "of the random numbers (1)")->type_name("N");
+  command->add_option("--seed", arguments->seed, "of the random numbers (1)")->type_name("N");
   command->add_flag("--yes", request.confirmed, fmt::format("also more than {} runs", unconfirmed_runs));
   command->add_option("--keep", arguments->keep, "a row for every run, for every event, or for every time (final)")
       ->type_name("final|events|trajectory");

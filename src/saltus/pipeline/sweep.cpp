@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <unistd.h>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,12 +24,16 @@ double bytes_of(const result::Trajectory& rows) {
   return static_cast<double>(rows.t.size()) * static_cast<double>(8 * numbers);
 }
 
+double bytes_of_machine() {
+  return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+}
+
 void leave_what_is_kept(SweepRun& run, Keep keep) {
   run.events = run.result.events.size();
   if (keep == Keep::trajectory) return;
   run.result.trajectory = {};
-  run.result.branches.clear();
-  run.result.options.clear();
+  run.result.branches = {};
+  run.result.options = {};
   run.result.elements.reset();
   if (keep == Keep::final) run.result.events = {};
 }
@@ -124,6 +130,18 @@ class Workshop {
 
 Expected<std::vector<SweepRun>> sweep(const SweepOptions& options, StateRun state, const SweepObservers& observers) {
   SALTUS_ASSERT(options.jobs >= 1);
+  constexpr double names_and_values = 1500.0;  // bytes, of a model with a few states
+  const double needed = static_cast<double>(options.runs) * (static_cast<double>(sizeof(SweepRun)) + names_and_values);
+  if (needed > bytes_of_machine()) {
+    return tl::unexpected(
+        Error{ErrorCode::invalid_option,
+              fmt::format("{} runs need about {:.0f} GB of memory at once, and the machine has {:.0f}", options.runs,
+                          needed / 1e9, bytes_of_machine() / 1e9),
+              fmt::format("run shares of them, one after the other: --task 1/{0:.0f} to {0:.0f}/{0:.0f}, then --join",
+                          std::ceil(4.0 * needed / bytes_of_machine())),
+              {},
+              {}});
+  }
   Workshop workshop(options, state, observers);
   std::vector<std::thread> helpers;
   for (std::size_t k = 1; k < std::min(options.jobs, options.runs); ++k) {

@@ -79,15 +79,44 @@ std::vector<std::string> changed_names(const std::vector<TableColumn>& table) {
   return names;
 }
 
+std::optional<double> number_of_field(const std::string& text) {
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// Whether the rows are those of the runs from `first` to `last`; one for each where only ends are kept, which have the
+/// column of their number of events last.
+Expected<void> check_runs(const ShareTable& table, std::size_t first, std::size_t last) {
+  const bool only_ends = table.lines[0].back() == "events";
+  double expected = static_cast<double>(first) - 1.0;
+  const auto damaged = [&](std::size_t line, const std::string& what) {
+    return tl::unexpected(no_share(table.file, fmt::format("line {}: {}", line, what), "run this share again"));
+  };
+  for (std::size_t i = 1; i < table.lines.size(); ++i) {
+    const auto& word = table.lines[i][0];
+    const double run = number_of_field(word).value_or(-1.0);
+    const bool next = run == expected + 1.0, same = !only_ends && i > 1 && run == expected;
+    if (!next && !same) return damaged(i + 1, fmt::format("run {}, expected run {}", word, expected + 1.0));
+    expected = run;
+  }
+  if (expected == static_cast<double>(last)) return {};
+  return damaged(table.lines.size(), fmt::format("the table ends with run {}, expected run {}", expected, last));
+}
+
 Expected<ShareTable> read_share(const std::string& file) {
   const auto text = io::read_file(file);
   if (!text) return tl::unexpected(text.error());
   ShareTable table{{}, "", file, fields_of(*text), {}};
+  const auto heading = table.lines.empty() || table.lines[0].empty() ? std::string() : table.lines[0][0];
   std::array<char, 65> mark{};
   int used = 0;
-  const auto heading = table.lines.empty() || table.lines[0].empty() ? std::string() : table.lines[0][0];
-  if (std::sscanf(heading.c_str(), "run [task %zu of %zu, sweep %64[0-9a-f]] %n", &table.share.number, &table.share.of,
-                  mark.data(), &used) != 3) {
+  std::size_t first = 0, last = 0;  // older shares do not tell of them
+  const bool tells = std::sscanf(heading.c_str(), "run [task %zu of %zu, sweep %64[0-9a-f], runs %zu to %zu] %n",
+                                 &table.share.number, &table.share.of, mark.data(), &first, &last, &used) == 5;
+  if (!tells && std::sscanf(heading.c_str(), "run [task %zu of %zu, sweep %64[0-9a-f]] %n", &table.share.number,
+                            &table.share.of, mark.data(), &used) != 3) {
     return tl::unexpected(no_share(file, "no share of a sweep", "join what `saltus sweep … --task I/N` wrote"));
   }
   table.mark = mark.data();
@@ -97,6 +126,9 @@ Expected<ShareTable> read_share(const std::string& file) {
     return tl::unexpected(no_share(
         file, fmt::format("line {} has {} values, expected {}", i + 1, table.lines[i].size(), table.lines[0].size()),
         "run this share again"));
+  }
+  if (tells) {
+    if (auto whole = check_runs(table, first, last); !whole) return tl::unexpected(whole.error());
   }
   return table;
 }
@@ -132,13 +164,6 @@ Expected<void> check_together(const std::vector<ShareTable>& shares) {
                               fmt::format("run --task {}/{}, and name its file, too", missing.front(), seen.size()),
                               {},
                               {}});
-}
-
-std::optional<double> number_of_field(const std::string& text) {
-  double value = 0.0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 /// Numbers where all are; columns that hold words hold words in every row.
@@ -189,11 +214,12 @@ std::string sweep_mark(const ModelInput& model, const SweepRequest& request, con
   return io::sha256(all).substr(0, 16);
 }
 
-std::string share_heading(const Share& share, const std::string& mark, const SweepPage& page) {
+std::string share_heading(const Share& share, std::size_t runs, const std::string& mark, const SweepPage& page) {
   const std::string kind(page.grid ? grid_word : pairs_word);
   auto fields = to_csv({TableColumn{page.title, {}}, TableColumn{page.command, {}}, TableColumn{kind, {}}});
   fields.pop_back();  // the end of the line
-  return fmt::format("run [task {} of {}, sweep {}] {}", share.number, share.of, mark, fields);
+  return fmt::format("run [task {} of {}, sweep {}, runs {} to {}] {}", share.number, share.of, mark,
+                     share.begin(runs) + 1, share.end(runs), fields);
 }
 
 Expected<JoinedShares> join_shares(const std::vector<std::string>& files) {

@@ -26,8 +26,10 @@ struct Share {
 /// Returns what tells the shares of one sweep from those of another: model, settings, plan and what is kept.
 [[nodiscard]] std::string sweep_mark(const ModelInput& model, const SweepRequest& request, const std::string& keep);
 
-/// Returns the heading of the first column of a share's table, which says whose it is, and what the page of all says.
-[[nodiscard]] std::string share_heading(const Share& share, const std::string& mark, const SweepPage& page);
+/// Returns the heading of the first column of a share's table, which says whose it is, which of all `runs` it has, and
+/// what the page of all says.
+[[nodiscard]] std::string share_heading(const Share& share, std::size_t runs, const std::string& mark,
+                                        const SweepPage& page);
 
 struct JoinedShares {
   std::vector<TableColumn> table;
@@ -35,8 +37,8 @@ struct JoinedShares {
 };
 
 /// Returns the table and page of the whole sweep from the files (.csv) of all its shares, in any order: what one run of
-/// it would have written. Fails for a file that is no share, shares of different sweeps, a missing one and one that is
-/// there twice.
+/// it would have written. Fails for a file that is no share, shares of different sweeps, a missing one, one that is
+/// there twice, and one whose runs are not those that its heading tells of.
 [[nodiscard]] Expected<JoinedShares> join_shares(const std::vector<std::string>& files);
 
 }  // namespace saltus::cli
