@@ -1,6 +1,7 @@
 """The JSON schema of model files knows the keys that the reader knows, and takes every model there is."""
 
 import json
+import operator
 import re
 import tomllib
 
@@ -82,7 +83,7 @@ class Schema(tool.ToolTest):
             self.assertEqual(self.problems(tomllib.loads(path.read_text(encoding="utf-8")), self.schema, path.stem), [])
 
     def problems(self, value, schema, place):
-        """What of JSON schema the file uses: properties, additionalProperties, items, anyOf, $ref, required, enum."""
+        """What of JSON schema the file uses: properties, additionalProperties, items, anyOf, $ref, required, enum, bounds."""
         schema = deref(schema, self.schema)
         if "anyOf" in schema:
             tried = [self.problems(value, option, place) for option in schema["anyOf"]]
@@ -90,10 +91,15 @@ class Schema(tool.ToolTest):
         types = {"object": dict, "array": list, "string": str, "boolean": bool, "number": (int, float)}
         wanted = schema.get("type", [])
         wanted = [wanted] if isinstance(wanted, str) else wanted
-        if wanted and not any(isinstance(value, types[name]) for name in wanted):
+        if wanted and not any(isinstance(value, types[name]) and (name == "boolean") >= isinstance(value, bool) for name in wanted):
             return [f"{place}: {value!r} is no {wanted}"]
         if "enum" in schema and value not in schema["enum"]:
             return [f"{place}: {value!r}"]
+        bounds = {"minimum": operator.ge, "exclusiveMinimum": operator.gt, "maximum": operator.le,
+                  "exclusiveMaximum": operator.lt, "multipleOf": lambda number, step: number % step == 0}
+        for key, holds in bounds.items():
+            if key in schema and not holds(value, schema[key]):
+                return [f"{place}: {value!r} against {key} {schema[key]}"]
         found = []
         if isinstance(value, dict) and ("properties" in schema or "additionalProperties" in schema):
             found += [f"{place}: no {key}" for key in schema.get("required", []) if key not in value]
@@ -115,6 +121,10 @@ class Schema(tool.ToolTest):
                       {"model": {"name": "m"}, "optimize": {"horizon": {"initail": 1}}},
                       {"model": {"name": "m"}, "outputs": {"x": {"unit": "m"}}}):
             self.assertNotEqual(self.problems(wrong, self.schema, ""), [], wrong)
+        for wrong in ({"method": "x"}, {"rtol": -1}, {"rtol": "small"}, {"until": [1]}, {"output": {"points": 1}},
+                      {"output": {"points": 2.5}}, {"output": "all"}, {"event": {"integrator": "rk45"}},
+                      {"fesd": {"stages": 0}}, {"max_steps": True}):
+            self.assertNotEqual(self.problems({"model": {"name": "m"}, "simulate": wrong}, self.schema, ""), [], wrong)
 
 
 if __name__ == "__main__":

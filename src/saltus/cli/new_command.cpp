@@ -158,7 +158,7 @@ ExitCode run_new(const NewArguments& arguments) {
   const auto name = file.stem().string();
   const bool plain = std::none_of(name.begin(), name.end(),
                                   [](unsigned char c) { return c < 0x20U || c == 0x7FU || c == '"' || c == '\\'; });
-  if (name.empty() || !plain) {
+  if (name.empty() || name.front() == '.' || !plain) {
     return refuse(refused_name(arguments.name, "this cannot name a model", "use letters, digits, - and _"));
   }
   std::error_code ignored;

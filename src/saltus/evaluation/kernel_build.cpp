@@ -98,15 +98,34 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
   compile_functions(system);
 }
 
+/// Guards of contacts are numbers of order 1, in the units of their modes; a gap is a length.
+SX CompiledModel::sizes_of_contact_guards(const model::System& system) const {
+  SX sizes = SX::zeros(phi.numel(), 1);
+  casadi_int first = first_jump_guard;
+  for (std::size_t k = 0; k < system.jumps.size(); ++k) {
+    const auto guards = system.jumps[k].guards.numel();
+    for (const auto& contact : system.contacts.contacts) {
+      if (contact.jump != static_cast<int>(k)) continue;
+      for (casadi_int g = 0; g < guards; ++g) {
+        sizes(first + g) = contact.has_gap && g == 0 ? x(contact.closed) : SX(1.0);
+      }
+    }
+    first += guards;
+  }
+  return sizes;
+}
+
 void CompiledModel::compile_functions(const model::System& system) {
   const std::vector<SX> arguments{t, x, p, alpha};
   compile_field(free, "saltus_field");
   functions.functions = ModelFunction("saltus_functions", arguments, {phi});
   functions.output_function = ModelFunction("saltus_outputs", arguments, {outputs});
   functions.input_function = ModelFunction("saltus_inputs", arguments, {input});
-  const SX slope = SX::jacobian(phi, x);
+  // Modes of contacts are exact: what has a rounding, and an error, are the states before them.
+  const SX moving = x(casadi::Slice(0, system.contacts.empty() ? x.numel() : system.contacts.first_hidden));
+  const SX slope = SX::jacobian(phi, moving);
   const SX rate = SX::jacobian(phi, t);
-  const SX magnitude = SX::mtimes(fabs(slope), fabs(x)) + fabs(rate * t);
+  const SX magnitude = SX::mtimes(fabs(slope), fabs(moving)) + fabs(rate * t) + sizes_of_contact_guards(system);
   functions.scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
   functions.affine_rows = AffineRowFunctions(phi, symbols(), affine);
   functions.gradients.resize(at(phi.numel()));

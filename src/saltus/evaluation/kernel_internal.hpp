@@ -133,6 +133,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
  private:
   casadi::SX lie_expression(CompiledMotion& motion, int j, int order);
   void compile_field(CompiledMotion& target, const std::string& name) const;
+  [[nodiscard]] casadi::SX sizes_of_contact_guards(const model::System& system) const;
   void compile_functions(const model::System& system);
   void find_structure(const model::System& system);
   [[nodiscard]] std::vector<std::vector<bool>> normal_dependencies(const casadi::SX& f) const;

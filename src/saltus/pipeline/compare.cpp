@@ -66,8 +66,14 @@ std::vector<double> times_to_compare(double from, double until) {
   return times;
 }
 
+/// Whether `smoothed` is another method than `event`.
+bool is_regularised(const model::System& system) {
+  return std::any_of(system.switching.begin(), system.switching.end(),
+                     [](const auto& function) { return function.role != model::SwitchingRole::discrete; });
+}
+
 /// The reference first.
-std::vector<PlannedRun> plan(SimulateOptions options) {
+std::vector<PlannedRun> plan(const model::System& system, SimulateOptions options) {
   options.event.trajectories = 1;
   options.kept = {};  // all states are compared
   std::vector<PlannedRun> runs{reference_run(options)};
@@ -82,6 +88,7 @@ std::vector<PlannedRun> plan(SimulateOptions options) {
     runs.push_back({std::move(name), std::move(variant), options, ""});
   };
   add(Method::smoothed, "smoothed", fmt::format("radau5, epsilon {:g}", options.smoothed.epsilon));
+  if (!is_regularised(system)) runs.back().refusal = "it smooths switching functions, and this model has none";
   for (const auto form : {Reformulation::step, Reformulation::stewart}) {
     options.fesd.reformulation = form;
     add(Method::fesd, "fesd", elements_text(options, "fesd"));
@@ -209,7 +216,7 @@ Agreement agreement(const result::Result& found, const result::Result& reference
 Expected<result::Result> compare(const model::System& system, const SimulateOptions& options,
                                  const Observers& observers) {
   if (const auto problem = find_problem(options)) return tl::unexpected(problem->error);
-  const auto planned = plan(options);
+  const auto planned = plan(system, options);
   Numbered watch(observers, static_cast<long>(planned.size()));
   auto reference = simulate(system, planned.front().options, watch.next());
   if (!reference) return reference;

@@ -44,7 +44,7 @@ double Contacts::force_terms(const ContactPoint& point, double t, const std::vec
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const auto& contact = contacts_[i];
     if (!contact.has_gap || x[at(contact.active)] == 0.0) continue;
-    const double force = magnitude[at(kernel_.jump_guard(contact.jump, 0))];
+    const double force = magnitude[at(kernel_.jump_guard(contact.jump, 0))] * x[at(contact.force_unit)];
     const auto row = static_cast<Eigen::Index>(i);
     if (std::isfinite(force)) largest = std::max(largest, force * point.influence(row, row));
   }
@@ -55,7 +55,7 @@ double Contacts::force_terms(const ContactPoint& point, double t, const std::vec
 double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
   auto open = x;
   for (const auto& contact : contacts_) {
-    std::fill(open.begin() + contact.active, open.begin() + contact.impulse, 0.0);
+    std::fill(open.begin() + contact.active, open.begin() + contact.force_unit, 0.0);
   }
   std::vector<double> rate(x.size());
   kernel_.field(t, open.data(), alpha.data(), rate.data());
@@ -314,7 +314,8 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
     const bool closed = found.modes[at(i)] != ContactMode::open;
     x[at(contact.closed)] = closed ? 1.0 : 0.0;
     x[at(contact.active)] = closed && basis.takes(i) ? 1.0 : 0.0;
-    std::fill(x.begin() + contact.stick, x.begin() + contact.impulse, 0.0);
+    std::fill(x.begin() + contact.stick, x.begin() + contact.force_unit, 0.0);
+    set_units(moment, point, i, x);
   }
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
@@ -334,6 +335,19 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
     for (int k = 0; k < contacts_[at(i)].tangents(); ++k) is_free = is_free || !basis.holds(point.tangent_row(i, k));
     enter_slip(moment, point, found, i, is_free, x);
   }
+}
+
+/// Of forces the one that the contact alone would need for the largest acceleration, of speeds the fastest one.
+void Contacts::set_units(const ContactMoment& moment, const ContactPoint& point, int i, std::vector<double>& x) const {
+  double response = point.influence(i, i);
+  for (int k = 0; k < point.tangents[at(i)]; ++k) {
+    const int row = point.tangent_row(i, k);
+    response = std::max(response, point.influence(row, row));
+  }
+  const auto& contact = contacts_[at(i)];
+  const double force = response > 0.0 ? point.terms / response : 0.0, speed = fastest(moment, point, x);
+  x[at(contact.force_unit)] = force > 0.0 && std::isfinite(force) ? force : 1.0;
+  x[at(contact.speed_unit)] = speed > 0.0 && std::isfinite(speed) ? speed : 1.0;
 }
 
 /// What others hold at rest is at the edge of its cone, and does not slip.

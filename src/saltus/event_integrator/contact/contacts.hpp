@@ -53,6 +53,10 @@ class Contacts {
   /// Gives the modes of another state.
   void copy_modes(const std::vector<double>& from, std::vector<double>& x) const;
 
+  /// Returns whether positions or velocities differ.
+  [[nodiscard]] bool are_moved(const std::vector<double>& x, const std::vector<double>& x_after) const;
+  /// Opens all contacts, as before a start. Returns what is wrong if bodies overlap.
+  [[nodiscard]] std::optional<std::string> begin_anew(const ContactMoment& moment, std::vector<double>& x);
   /// Sets the velocities behind the impacts at a point, if any, and the modes there. `ended` lists the contacts whose
   /// mode ends here; x is at the zero of what ended it. Returns what is wrong if nothing follows.
   [[nodiscard]] std::optional<std::string> resolve(const ContactMoment& moment, const std::vector<int>& ended,
@@ -120,6 +124,7 @@ class Contacts {
                                        const std::vector<ContactForces>& found, const std::vector<double>& x);
   void enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
              std::vector<double>& x);
+  void set_units(const ContactMoment& moment, const ContactPoint& point, int i, std::vector<double>& x) const;
   void enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
                   bool is_free, std::vector<double>& x);
   void correct_positions(const std::vector<int>& touching, std::vector<double>& x) const;

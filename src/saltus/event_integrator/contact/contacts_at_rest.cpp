@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "saltus/base/at.hpp"
 #include "saltus/base/rounding_unit.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
@@ -35,6 +37,27 @@ bool Contacts::comes_to_rest(const ContactMoment& moment, int contact, const Con
   return std::abs(values_.gap(contact)) <= atol + rtol * gap_terms(contact, x) &&
          (std::abs(point.normal_velocity(contact)) <= 64.0 * slowest(moment, point, x) ||
           rises_by_nothing(moment, contact, point, x));
+}
+
+bool Contacts::are_moved(const std::vector<double>& x, const std::vector<double>& x_after) const {
+  const auto differ = [&](int state) { return x[at(state)] != x_after[at(state)]; };
+  return !none() && (std::any_of(system_.positions.begin(), system_.positions.end(), differ) ||
+                     std::any_of(system_.velocities.begin(), system_.velocities.end(), differ));
+}
+
+std::optional<std::string> Contacts::begin_anew(const ContactMoment& moment, std::vector<double>& x) {
+  for (const auto& contact : contacts_) {
+    std::fill(x.begin() + contact.closed, x.begin() + contact.force_unit, 0.0);
+  }
+  forget_impulses(x);
+  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
+  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+    const double least = -std::max(64.0 * rounding_unit * gap_terms(i, x), none_at_start);
+    if (!contacts_[at(i)].has_gap || values_.gap(i) >= least) continue;
+    return fmt::format("a jump at t = {:.17g} makes the gap of {} {:.6g}: bodies must not overlap", moment.t,
+                       names({i}), values_.gap(i));
+  }
+  return std::nullopt;
 }
 
 double Contacts::tolerated(int function, const std::vector<double>& x) const {

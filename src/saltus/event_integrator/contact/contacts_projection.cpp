@@ -61,14 +61,15 @@ void Contacts::correct_velocities(std::vector<double>& x) const {
   for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
     x[at(system_.velocities[k])] -= change(static_cast<Eigen::Index>(k));
   }
-  // A velocity that sticks by itself is 0, not its rounding.
+  // A velocity that is held by itself is 0, not its rounding.
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const auto row = static_cast<Eigen::Index>(r);
-    if (rows[r] < static_cast<int>(contacts_.size()) || (normal.row(row).array() != 0.0).count() != 1) continue;
+    if ((normal.row(row).array() != 0.0).count() != 1) continue;
     Eigen::Index only = 0;
     static_cast<void>(normal.row(row).cwiseAbs().maxCoeff(&only));
     const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
-    if (std::abs(x[k]) <= 64.0 * rounding_unit * std::abs(before[k])) x[k] = 0.0;
+    const double own = normal(row, only) * before[k], moving = values_.velocity(rows[r]) - own;
+    if (std::abs(moving) <= 4.0 * rounding_unit * std::abs(own)) x[k] = 0.0;
   }
 }
 

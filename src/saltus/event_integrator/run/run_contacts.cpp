@@ -37,6 +37,18 @@ bool Run::begin_contacts() {
   return true;
 }
 
+/// Behind a jump of positions or velocities: modes afresh, as at a start.
+bool Run::begin_contacts_anew() {
+  if (auto problem = contacts_.begin_anew(contact_moment(), here_.x)) {
+    fail(Termination::outside_class, std::move(*problem));
+    return false;
+  }
+  const auto jumps = cascade_.executed().size();
+  if (!begin_contacts()) return false;
+  if (cascade_.executed().size() == jumps) cascade_.executed().back().x_after = here_.x;
+  return true;
+}
+
 /// All contacts whose modes end here, at once.
 bool Run::move_contacts() {
   const auto ended = contacts_.with_jumps([&](int jump) { return jumps_.holds(jump); });

@@ -166,6 +166,7 @@ class Run {
   [[nodiscard]] ContactMoment contact_moment() const;
   [[nodiscard]] bool only_slips_on() const;
   bool begin_contacts();
+  [[nodiscard]] bool begin_contacts_anew();
   bool move_contacts();
   bool contact_modes_hold();
   void settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before);

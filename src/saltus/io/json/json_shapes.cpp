@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "saltus/io/json/json_shapes_internal.hpp"
@@ -23,6 +24,18 @@ template <class Vector>
 void check_length(JsonReader& reader, const std::string& path, const Vector& vector, std::size_t expected) {
   if (vector.size() == expected) return;
   reader.fail(path, fmt::format("expected {} entries, found {}", expected, vector.size()));
+}
+
+/// Rows at both sides of an event have one time.
+void check_times(JsonReader& reader, const std::string& path, const std::vector<double>& times) {
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const bool ascends = std::isfinite(times[i]) && (i == 0 || times[i] >= times[i - 1]);
+    if (ascends) continue;
+    reader.fail(fmt::format("{}/{}", path, i),
+                i == 0 ? fmt::format("expected a time, found {}", times[i])
+                       : fmt::format("expected ascending times, found {} after {}", times[i], times[i - 1]));
+    return;
+  }
 }
 
 void check_surface(JsonReader& reader, const result::Surface& surface, const std::string& path,
@@ -145,6 +158,7 @@ void check_shapes(JsonReader& reader, const std::string& path, const result::Res
   const std::size_t times = trajectory.t.size();
   const std::size_t columns = result.switching_functions.size();
   const std::size_t functions = result::functions_in_rows(result).size();
+  check_times(reader, path + "/trajectory/t", trajectory.t);
   check_rows(reader, path + "/trajectory/x", trajectory.x, times, result::states_in_rows(result).size());
   check_rows(reader, path + "/trajectory/u", trajectory.u, times, result.controls.size());
   check_rows(reader, path + "/trajectory/alpha", trajectory.alpha, times, functions);

@@ -102,12 +102,24 @@ Expected<void> check_own_clock(const model::Description& description) {
                                            "leave it out: they have a clock of their own",
                                            description.clock->location));
   }
-  for (const auto& state : description.states) {
-    if (state.name != "clock") continue;
-    return tl::unexpected(freezing_mistake(fmt::format("a state with the name 'clock' beside {}", beside),
-                                           "rename it: that is the name of their physical time", state.location));
-  }
-  return {};
+  const auto taken = [&](const auto& entries, const char* kind) -> Expected<void> {
+    for (const auto& entry : entries) {
+      if (entry.name != "clock") continue;
+      return tl::unexpected(freezing_mistake(fmt::format("{} with the name 'clock' beside {}", kind, beside),
+                                             "rename it: that is the name of their physical time", entry.location));
+    }
+    return {};
+  };
+  return taken(description.states, "a state")
+      .and_then([&] { return taken(description.parameters, "a parameter"); })
+      .and_then([&] { return taken(description.controls, "a control"); })
+      .and_then([&] { return taken(description.definitions, "a definition"); })
+      .and_then([&] { return taken(description.switching, "a switching function"); })
+      .and_then([&] { return taken(description.outputs, "an output"); })
+      .and_then([&] { return taken(description.events, "an event"); })
+      .and_then([&] { return taken(description.jumps, "a jump"); })
+      .and_then([&] { return taken(description.contacts, "a contact"); })
+      .and_then([&] { return taken(description.hysteresis, "a hysteresis"); });
 }
 
 /// The clock of [time_freezing] is a state.

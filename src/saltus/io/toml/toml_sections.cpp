@@ -98,6 +98,15 @@ void read_record(TomlReader& reader, const TomlValue& value, ModelFile& model) {
   for (const auto& element : std::get<TomlArray>(value.value)) {
     auto name = reader.string(element, "the name of a definition in quotes");
     if (!std::holds_alternative<TomlString>(element.value)) continue;
+    const auto& outputs = model.description.outputs;
+    if (std::any_of(outputs.begin(), outputs.end(), [&](const auto& output) { return output.name == name; })) {
+      reader.fail({ErrorCode::parse_failure,
+                   fmt::format("'{}' is recorded twice", name),
+                   "write it once",
+                   element.location,
+                   {}});
+      continue;
+    }
     model.description.outputs.push_back({std::move(name), reader.expression(element), element.location});
   }
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -115,9 +116,17 @@ class ContactMotion {
     if (rows.size() < 2) return std::nullopt;
     const auto parallel = have_one_direction(rows[0], rows[1]);
     if (!parallel) return with_location(parallel.error(), contact.location);
-    if (!*parallel) return std::nullopt;
-    return refused("the tangents of '{}' have one direction at the start",
-                   "two tangents span the plane in which the contact slips; in one direction one is enough");
+    if (*parallel) {
+      return refused("the tangents of '{}' have one direction at the start",
+                     "two tangents span the plane in which the contact slips; in one direction one is enough");
+    }
+    SX unit = SX::densify(SX::vertcat({normal, rows[0], rows[1]}));
+    unit = unit / SX::repmat(sqrt(SX::sum2(unit * unit)), 1, unit.size2());
+    const auto volume = at_start(SX::det(SX::mtimes(unit, unit.T())));
+    if (!volume) return with_location(volume.error(), contact.location);
+    if (*volume > 1e-12) return std::nullopt;
+    return refused("the plane of the tangents of '{}' has the direction in which its gap opens at the start",
+                   "tangents lie along the surface: of a floor z = 0 they are { x = 1 } and { y = 1 }");
   }
 
   /// Its rate and its derivatives are those of positions and t.
@@ -141,9 +150,10 @@ class ContactMotion {
       const bool sets_velocity = std::any_of(jump.set.begin(), jump.set.end(), [&](const auto& assignment) {
         return std::find(velocities.begin(), velocities.end(), assignment.state) != velocities.end();
       });
+      if (!sets_velocity) continue;
       const bool is_there = (jump.guard && is_gap(SX(*jump.guard), contact)) ||
                             (jump.condition && compares_gap(*jump.condition, contact));
-      if (!sets_velocity || !is_there) continue;
+      if (!is_there) continue;
       return Error{ErrorCode::invalid_model,
                    fmt::format("a jump sets velocities where the gap of the contact '{}' closes", contact.name),
                    "leave one of them out: the contact turns the velocity itself, by its `restitution` and `friction`",
@@ -153,12 +163,27 @@ class ContactMotion {
     return std::nullopt;
   }
 
-  [[nodiscard]] static bool is_gap(const SX& expression, const ContactStatement& contact) {
-    constexpr casadi_int deep = 100;
-    return SX::is_equal(expression, contact.gap, deep) || SX::is_equal(expression, -contact.gap, deep);
+  /// Whether two expressions are the same but for a factor: their quotient is one number wherever one looks.
+  [[nodiscard]] bool is_gap(const SX& expression, const ContactStatement& contact) const {
+    const auto symbols = SX::symvar(SX::vertcat({expression, contact.gap}));
+    const casadi::Function both("both", {SX::vertcat(symbols)}, {expression, contact.gap});
+    double quotient = std::numeric_limits<double>::quiet_NaN();
+    for (int place = 1; place <= 4; ++place) {
+      std::vector<double> values;
+      for (std::size_t k = 0; k < symbols.size(); ++k) {
+        values.push_back(
+            0.3 +
+            0.7 * std::fmod(0.618034 * static_cast<double>(place) * (static_cast<double>(k + 1)) + 0.1 * place, 1.0));
+      }
+      const auto found = both(std::vector<casadi::DM>{values});
+      const double here = static_cast<double>(found[0]) / static_cast<double>(found[1]);
+      if (!std::isfinite(here) || (place > 1 && std::abs(here - quotient) > 1e-9 * std::abs(quotient))) return false;
+      quotient = here;
+    }
+    return quotient != 0.0;
   }
 
-  [[nodiscard]] static bool compares_gap(const Condition& condition, const ContactStatement& contact) {
+  [[nodiscard]] bool compares_gap(const Condition& condition, const ContactStatement& contact) const {
     switch (condition.kind()) {
       case Condition::Kind::comparison:
         return is_gap(condition.comparison().difference, contact);

@@ -55,6 +55,9 @@ class ContactBuild {
       const int largest = declare_state(contact.name + ".largest_speed");
       for (const int bound : {contact.speeds, largest}) statement_.states[at(bound)].initial = 1.0;
     }
+    contact.force_unit = declare_state(contact.name + ".force_unit");
+    contact.speed_unit = declare_state(contact.name + ".speed_unit");
+    for (const int unit : {contact.force_unit, contact.speed_unit}) statement_.states[at(unit)].initial = 1.0;
     contact.impulse = declare_state(contact.name + ".impulse");
     declare_along(contact, ".impulse_t");
   }
@@ -134,14 +137,16 @@ class ContactBuild {
   static std::size_t at_(casadi_int i) { return static_cast<std::size_t>(i); }
 
   /// What is positive as long as the mode lasts: the gap, or the normal force; with friction also what is left of the
-  /// friction cone on both sides, or the speed of slipping.
+  /// friction cone on both sides, or the speed of slipping. Forces and speeds are relative to the units of the mode:
+  /// they stand beside the 1 of other modes, whatever the user's units are.
   [[nodiscard]] std::vector<SX> guards(std::size_t k) const {
     const auto i = static_cast<casadi_int>(k);
     const auto& contact = system_.contacts[k];
     const SX closed = state(contact.closed), active = state(contact.active);
     std::vector<SX> result;
     if (contact.has_gap) {
-      result.push_back((1.0 - closed) * system_.gap(i) + closed * (active * system_.normal_force(i) + 1.0 - active));
+      result.push_back((1.0 - closed) * system_.gap(i) +
+                       closed * (active * system_.normal_force(i) / state(contact.force_unit) + (1.0 - active)));
     }
     if (!contact.has_friction) return result;
     if (contact.in_plane) {
@@ -149,10 +154,11 @@ class ContactBuild {
       return result;
     }
     const SX stick = state(contact.stick), slip = state(contact.slip);
-    const SX limit = system_.friction(i) * system_.normal_force(i), friction = system_.tangential_force(i);
-    result.push_back(stick * (limit - friction) + slip * state(contact.share) * system_.velocity(m_ + i) + 1.0 - stick -
-                     slip);
-    result.push_back(stick * (limit + friction) + 1.0 - stick);
+    const SX unit = state(contact.force_unit), speed = system_.velocity(m_ + i) / state(contact.speed_unit);
+    const SX limit = system_.friction(i) * system_.normal_force(i) / unit,
+             friction = system_.tangential_force(i) / unit;
+    result.push_back(stick * (limit - friction) + slip * state(contact.share) * speed + (1.0 - stick - slip));
+    result.push_back(stick * (limit + friction) + (1.0 - stick));
     return result;
   }
 
@@ -162,10 +168,10 @@ class ContactBuild {
     const SX first = state(contact.stick), second = state(contact.stick + 1), slip = state(contact.slip);
     const SX sticks = first + second - first * second, limit = system_.friction(i) * system_.normal_force(i);
     const SX along = system_.tangential_force(i), across = system_.tangential_force(m_ + i);
-    guards.push_back(sticks * (limit - norm(along, across)) + 1.0 - sticks);
+    guards.push_back(sticks * (limit - norm(along, across)) / state(contact.force_unit) + (1.0 - sticks));
     // Quotients: speeds may be smaller than the rounding of 1.
-    guards.push_back(slip * (speed_squared(i) / state(contact.speeds) - 1.0) + 1.0 - slip);
-    guards.push_back(slip * (1.0 - speed_squared(i) / state(contact.speeds + 1)) + 1.0 - slip);
+    guards.push_back(slip * (speed_squared(i) / state(contact.speeds) - 1.0) + (1.0 - slip));
+    guards.push_back(slip * (1.0 - speed_squared(i) / state(contact.speeds + 1)) + (1.0 - slip));
   }
 
   /// The engine finds the new mode, and the velocities behind an impact; the values here only say what changes.

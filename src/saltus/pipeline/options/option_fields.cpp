@@ -88,6 +88,9 @@ Expected<void> set_output_word(SimulateOptions& options, std::string_view, const
                      value));
   }
   options.output = *word == "auto" ? OutputGrid(Automatic{}) : OutputGrid(EveryStep{});
+  // A word stands for the whole table: what a table before it left out is there again.
+  options.event_rows = true;
+  options.kept = {};
   return {};
 }
 

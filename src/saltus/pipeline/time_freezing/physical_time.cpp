@@ -229,11 +229,17 @@ class PhysicalTime {
     return true;
   }
 
+  /// Whether a slip goes on in the other direction.
+  [[nodiscard]] bool turns(const FrozenContact& contact, ContactMode mode, const Event& event) const {
+    return mode == ContactMode::slip && contact.tangents == 1 &&
+           mode_of(contact.tangent, *event.mode_before) * mode_of(contact.tangent, *event.mode_after) < 0;
+  }
+
   /// Without an impulse: what opens, touches, sticks or slips.
   [[nodiscard]] bool take_contacts(Event& event) const {
     const auto &before = event.contact_modes_before, &after = event.contact_modes_after;
     for (std::size_t i = 0; i < before.size(); ++i) {
-      if (before[i] == after[i]) continue;
+      if (before[i] == after[i] && !turns(freezing_.contacts[i], before[i], event)) continue;
       if (event.surfaces.empty()) {
         event.kind = after[i] == ContactMode::open    ? EventKind::lift_off
                      : before[i] == ContactMode::open ? EventKind::contact
