@@ -15,7 +15,8 @@ struct ContactPoint {
   Eigen::MatrixXd influence;                  ///< r x r: d velocity / d impulse, (N, T)' M^-1 (N, T)
   Eigen::VectorXd velocity;                   ///< r
   Eigen::VectorXd acceleration;               ///< r, without contact forces
-  double terms = 0.0;                         ///< the largest sum of the sizes of the terms of an acceleration
+  double free_terms = 0.0;                    ///< the largest sum of the sizes of the terms of `acceleration`
+  double terms = 0.0;                         ///< likewise, or of what contact forces cancel of it
   std::vector<double> friction, restitution;  ///< m; friction 0: frictionless
   std::vector<int> tangents;                  ///< m; 0: frictionless
   std::vector<bool> has_gap;                  ///< m; false: always closed, with the normal force 1

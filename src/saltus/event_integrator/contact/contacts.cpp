@@ -72,7 +72,8 @@ ContactPoint Contacts::point_at(double t, const std::vector<double>& alpha, cons
   point.influence = values_.rows * values_.responses;
   point.velocity = values_.velocity;
   point.acceleration = values_.acceleration;
-  point.terms = std::max(acceleration_terms(t, alpha, x), force_terms(point, t, alpha, x));
+  point.free_terms = acceleration_terms(t, alpha, x);
+  point.terms = std::max(point.free_terms, force_terms(point, t, alpha, x));
   point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<Eigen::Index>(i)) : 0.0);
@@ -345,7 +346,7 @@ void Contacts::set_units(const ContactMoment& moment, const ContactPoint& point,
     response = std::max(response, point.influence(row, row));
   }
   const auto& contact = contacts_[at(i)];
-  const double force = response > 0.0 ? point.terms / response : 0.0, speed = fastest(moment, point, x);
+  const double force = response > 0.0 ? point.free_terms / response : 0.0, speed = fastest(moment, point, x);
   x[at(contact.force_unit)] = force > 0.0 && std::isfinite(force) ? force : 1.0;
   x[at(contact.speed_unit)] = speed > 0.0 && std::isfinite(speed) ? speed : 1.0;
 }

@@ -104,6 +104,7 @@ class Contacts {
                                      const std::vector<double>& x) const;
   void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
   [[nodiscard]] double gap_terms(int contact, const std::vector<double>& x) const;
+  [[nodiscard]] double pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const;
   [[nodiscard]] bool rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
                                       const std::vector<double>& x) const;
   [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,

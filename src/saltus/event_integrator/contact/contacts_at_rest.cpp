@@ -19,13 +19,26 @@ double Contacts::gap_terms(int contact, const std::vector<double>& x) const {
   return terms;
 }
 
+/// What closes a gap again: an acceleration of its own, or one by the forces of those that rest beside it.
+double Contacts::pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const {
+  HeldRows rows(point.velocity.size());
+  for (int i = 0; i < point.contacts(); ++i) {
+    if (i != contact && point.has_gap[at(i)] && point.velocity(i) == 0.0 && touches(i, x, {})) rows.hold(i);
+  }
+  double acceleration = point.acceleration(contact);
+  Eigen::VectorXd forces;
+  if (!rows.held.empty() && rows.solve(point.influence, point.acceleration, forces))
+    acceleration = std::min(acceleration, acceleration + point.influence.row(contact).dot(forces));
+  return std::max(0.0, -acceleration);
+}
+
 /// Whether a contact opens and falls back before its gap, or the time, would be more than rounding. Without an end to
 /// them such bounces would go on for ever: no speed is small enough to end at once.
 bool Contacts::rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
                                 const std::vector<double>& x) const {
   if (!contacts_[at(contact)].has_gap) return false;
   constexpr double roundings = 64.0 * rounding_unit;
-  const double speed = std::abs(point.normal_velocity(contact)), pull = std::max(0.0, -point.acceleration(contact));
+  const double speed = std::abs(point.normal_velocity(contact)), pull = pull_on(contact, point, x);
   return speed * speed <= 2.0 * pull * roundings * gap_terms(contact, x) ||
          speed <= pull * roundings * std::abs(moment.t);
 }
