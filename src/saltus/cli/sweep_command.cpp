@@ -142,15 +142,33 @@ pipeline::SweepObservers sweep_observers(const SweepArguments& arguments, std::s
   return observers;
 }
 
+Expected<SweepRequest> request_of(const SweepArguments& arguments) {
+  auto request = arguments.request;
+  if (!arguments.seed) return request;
+  if (*arguments.seed < 0) {
+    return tl::unexpected(
+        misuse(fmt::format("--seed {}: expected a number from 0 on", *arguments.seed), "e.g. --seed 1"));
+  }
+  request.seed = static_cast<std::uint64_t>(*arguments.seed);
+  return request;
+}
+
+/// Whether what the sweep changes is not set, too.
+Expected<void> check_settings(const std::vector<std::string>& settings, const SweepPlan& plan) {
+  for (const auto& setting : settings) {
+    const auto name = setting.substr(0, setting.find('='));
+    if (std::find(plan.names().begin(), plan.names().end(), name) == plan.names().end()) continue;
+    return tl::unexpected(
+        misuse(fmt::format("--set {}: '{}' is changed twice", setting, name), "give its values once"));
+  }
+  return {};
+}
+
 ExitCode run_sweep(const SweepArguments& arguments) {
   if (arguments.run.model.empty()) return refuse(misuse("MODEL is missing", "see: saltus help sweep"));
-  auto request = arguments.request;
-  if (arguments.seed) {
-    if (*arguments.seed < 0) {
-      return refuse(misuse(fmt::format("--seed {}: expected a number from 0 on", *arguments.seed), "e.g. --seed 1"));
-    }
-    request.seed = static_cast<std::uint64_t>(*arguments.seed);
-  }
+  const auto stated = request_of(arguments);
+  if (!stated) return refuse(stated.error());
+  const auto& request = *stated;
   const auto plan = SweepPlan::make(request);
   if (!plan) return refuse(plan.error());
   const auto keep = keep_named(arguments.keep);
@@ -160,11 +178,7 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   const auto model = stated_model(arguments.run);
   if (!model) return refuse(model.error());
   if (auto writable = check_output(arguments, model->path); !writable) return refuse(writable.error());
-  for (const auto& setting : arguments.run.settings) {
-    const auto name = setting.substr(0, setting.find('='));
-    if (std::find(plan->names().begin(), plan->names().end(), name) == plan->names().end()) continue;
-    return refuse(misuse(fmt::format("--set {}: '{}' is changed twice", setting, name), "give its values once"));
-  }
+  if (auto once = check_settings(arguments.run.settings, *plan); !once) return refuse(once.error());
   const auto first = input_of_run(*model, *plan, 0);
   if (!first) return refuse(first.error());
   for (const auto& warning : options_without_effect(first->file)) print_error(fmt::format("warning: {}", warning));

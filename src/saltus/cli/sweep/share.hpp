@@ -26,7 +26,7 @@ struct Share {
 /// Returns what tells the shares of one sweep from those of another: model, settings, plan and what is kept.
 [[nodiscard]] std::string sweep_mark(const ModelInput& model, const SweepRequest& request, const std::string& keep);
 
-/// Returns the heading of the first column of a share's table, which says whose it is, which of all `runs` it has, and
+/// Returns the heading of the first column of a share's table. It says whose it is, which of all `runs` it has, and
 /// what the page of all says.
 [[nodiscard]] std::string share_heading(const Share& share, std::size_t runs, const std::string& mark,
                                         const SweepPage& page);
@@ -37,8 +37,9 @@ struct JoinedShares {
 };
 
 /// Returns the table and page of the whole sweep from the files (.csv) of all its shares, in any order: what one run of
-/// it would have written. Fails for a file that is no share, shares of different sweeps, a missing one, one that is
-/// there twice, and one whose runs are not those that its heading tells of.
+/// it would have written. Fails for these:
+/// - a file that is no share, or whose runs are not those of its heading;
+/// - shares of different sweeps, a missing one, and one that is there twice.
 [[nodiscard]] Expected<JoinedShares> join_shares(const std::vector<std::string>& files);
 
 }  // namespace saltus::cli

@@ -185,6 +185,14 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
   return verify(physical_ocp(ocp), *physical, wanted, observers.is_interrupted);
 }
 
+void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
+  const int stabilisation = ocp.system.freezing ? ocp.system.freezing->stabilisation : -1;
+  for (std::size_t i = 0; i < read.parameters.size(); ++i) {
+    if (static_cast<int>(i) == stabilisation) continue;  // not one of the model
+    result.model.parameters.emplace_back(ocp.system.parameter_names[i], read.parameters[i]);
+  }
+}
+
 }  // namespace
 
 Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& options,
@@ -215,11 +223,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
 
   const auto read = problem.read(solution->w);
   take_solution(ocp, read, found);
-  const int stabilisation = ocp.system.freezing ? ocp.system.freezing->stabilisation : -1;
-  for (std::size_t i = 0; i < read.parameters.size(); ++i) {
-    if (static_cast<int>(i) == stabilisation) continue;  // not one of the model
-    result.model.parameters.emplace_back(ocp.system.parameter_names[i], read.parameters[i]);
-  }
+  take_parameters(ocp, read, result);
   result.status.time_reached = found.grid.back();
   auto run = optimized_run(ocp, read, reformulation_options(options.element), stated->tableau);
   if (!run) return tl::unexpected(run.error());
