@@ -27,6 +27,14 @@ class Source(Page):
         self.assertEqual(self.value("saltus.toCsv(saltus.result).split('\\r\\n')[0]"), header)
 
 
+    def test_words_beside_equations_are_whole_on_narrow_screens(self):
+        self.tool("simulate", "chua", "--quiet", "--report", "page.html")
+        self.browser.open((self.folder / "page.html").as_uri(), 390, 844, "light")
+        word = "[...document.querySelectorAll('.equations td.quiet')].find((cell) => cell.textContent === 'output')"
+        self.assertEqual(self.value(f"(() => {{ const range = document.createRange(); range.selectNodeContents({word});"
+                                    " return range.getClientRects().length; })()"), 1)
+
+
 class Overlays(Page):
     def test_two_results_over_each_other_with_their_differences(self):
         self.tool("simulate", "stick-slip", "--quiet", "--out", "a.json")
