@@ -124,6 +124,24 @@ class Sweep(Page):
         self.value("[...document.querySelectorAll('section')].at(-1).querySelectorAll('.run')[2].dispatchEvent(new Event('click'))")
         self.assertIn("run 3: belt = 5; completed, 0 events", self.value("document.getElementById('chosen').textContent"))
 
+    def test_lines_ascend_and_random_samples_are_points(self):
+        line = "document.querySelector('svg path')?.getAttribute('d').split(/[ML ]/).filter((word) => word).map(Number)"
+        self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.3,0.1,0.2", "--report", "sweep.html")
+        self.open("sweep.html")
+        across = self.value(line)[::2]
+        self.assertEqual(across, sorted(across))
+        self.tool("sweep", "stick-slip", "--until", "5", "--sample", "belt=uniform(0.1,0.3)", "--runs", "9", "--report", "sweep.html")
+        self.open("sweep.html")
+        self.assertIsNone(self.value(line))
+        self.assertEqual(self.value("document.querySelector('svg').querySelectorAll('.run').length"), 9)
+
+    def test_words_are_inside_of_the_picture(self):
+        self.tool("sweep", "stick-slip", "--until", "5", "--over", "simulate.max_steps=3,1000", "--report", "sweep.html", exit_code=3)
+        self.open("sweep.html")
+        left = ("Math.min(...[...document.querySelectorAll('svg text')].map((text) => text.getBoundingClientRect().left"
+                " - text.closest('svg').getBoundingClientRect().left))")
+        self.assertGreaterEqual(self.value(left), 0)
+
     def test_letters_keep_their_size_on_narrow_screens(self):
         self.map_of(390)
         size = "(() => { const svg = document.querySelector('svg'); return 12 * svg.clientWidth / svg.viewBox.baseVal.width; })()"
