@@ -135,6 +135,15 @@ class Sweep(Page):
         self.assertIsNone(self.value(line))
         self.assertEqual(self.value("document.querySelector('svg').querySelectorAll('.run').length"), 9)
 
+    def test_of_trajectories_the_ends_are_drawn(self):
+        for keep in "trajectory", "final":
+            self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.1,0.2", "--keep", keep, "--report", keep + ".html")
+            self.open(keep + ".html")
+            drawn = self.value("document.getElementById('pictures').innerHTML")
+            if keep == "trajectory":
+                of_trajectories = drawn
+        self.assertEqual(drawn, of_trajectories)
+
     def test_words_are_inside_of_the_picture(self):
         self.tool("sweep", "stick-slip", "--until", "5", "--over", "simulate.max_steps=3,1000", "--report", "sweep.html", exit_code=3)
         self.open("sweep.html")
@@ -323,4 +332,4 @@ class Thousands(Page):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], "-v"])
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[4:]])

@@ -16,12 +16,12 @@ const make = (tag, attributes = {}, text = "") => {
 const shown = (value) => (value === null ? "nan" : typeof value === "number" ? String(Number(value.toPrecision(6))) : value);
 const palette = ["#1f5fa8", "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#66a61e", "#a6761d"];
 
-// A run is the first of its rows; events and trajectories have several.
-const firstRow = new Map();
+// Events and trajectories have several rows for a run: the last one of a trajectory is its end.
+const rowOf = new Map();
 columns.run.forEach((run, row) => {
-  if (!firstRow.has(run)) firstRow.set(run, row);
+  if (!columns.kind || !rowOf.has(run)) rowOf.set(run, row);
 });
-const runRows = [...firstRow.values()];
+const runRows = [...rowOf.values()];
 const eventsOf = (row) => columns.events?.[row] ?? null;
 // Those of kept events; a run without one has a row that names none.
 const eventRows = columns.kind ? columns.run.map((_, row) => row).filter((row) => columns.kind[row]) : [];
@@ -154,7 +154,7 @@ function selector(label, options, value, onChange) {
   return box;
 }
 
-const values = numeric.filter((name) => !["run", "event", ...swept, ...(columns.kind ? ["events"] : [])].includes(name));
+const values = numeric.filter((name) => !["run", "event", "events", ...swept].includes(name));
 const kindOf = (row) => columns.name[row] || (columns.surfaces[row] ? `${columns.kind[row]} ${columns.surfaces[row]}` : columns.kind[row]);
 // What the model calls an event comes first: at a switching surface its own value is a threshold.
 const kinds = [...new Set([...eventRows.filter((row) => columns.name[row]), ...eventRows].map(kindOf))];
