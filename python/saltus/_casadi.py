@@ -39,7 +39,9 @@ _OPERATIONS: dict[str, typing.Callable[..., typing.Any]] = {
         "sign", "floor")},
     "OP_LT": operator.lt, "OP_LE": operator.le, "OP_EQ": operator.eq, "OP_NE": operator.ne,
 }  # fmt: skip
-_LOGICAL: dict[str, typing.Callable[..., Expression]] = {"OP_NOT": operator.invert, "OP_AND": operator.and_, "OP_OR": operator.or_}
+_LOGICAL: dict[str, typing.Callable[..., Expression]] = {
+    "OP_NOT": operator.invert, "OP_AND": operator.and_, "OP_OR": operator.or_,
+}  # fmt: skip
 _CHOICE = "OP_IF_ELSE_ZERO"
 
 

@@ -40,5 +40,7 @@ def load() -> None:
     for pattern in _LIBRARIES:
         files = sorted(folder.glob(pattern))
         if not files:
-            raise ImportError(f"{folder} is not the package casadi: it has no {pattern}; is a file of yours called casadi?")
+            raise ImportError(
+                f"{folder} is not the package casadi: it has no {pattern}; is a file of yours called casadi?"
+            )
         ctypes.CDLL(str(files[0]))

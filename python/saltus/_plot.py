@@ -51,7 +51,8 @@ def plot(
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
     names = [names] if isinstance(names, (str, Expression)) else names
-    wanted = [str(name) for name in names] if names is not None else [*r._run.states_in_rows, *r.controls, *r.output_names]
+    all_names = [*r._run.states_in_rows, *r.controls, *r.output_names]
+    wanted = [str(name) for name in names] if names is not None else all_names
     columns = {name: r[name] for name in wanted}
     if axes is None:
         _, axes = pyplot.subplots(

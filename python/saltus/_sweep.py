@@ -118,7 +118,7 @@ def _text(value: typing.Any) -> str:
 def share_of(
     model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]
 ) -> tuple[Found, list[str]]:
-    """One share of a sweep, in whatever process, and warnings. Its results are made here: what they are made of stays."""
+    """One share of a sweep, in whatever process, and warnings. Results are made here: what they are made of stays."""
     warned: list[str] = []
     found = model._core.sweep(*arguments, jobs, share, None, warned)
     return (found[0], list(Results(found, model, arguments, all_runs=False)), found[2]), warned

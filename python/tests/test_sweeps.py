@@ -189,7 +189,9 @@ def test_swept_options_are_those_of_the_method_that_is_given(slip):
     assert s.names == ["simulate.timestepping.stages"] and s["q"][0] != s["q"][1]
 
 
-@pytest.mark.parametrize("how", [{"over": {"belt": [0.1]}}, {"belt": [0.1]}, {"sample": {"belt": "uniform(0, 1)"}, "runs": 2}])
+@pytest.mark.parametrize(
+    "how", [{"over": {"belt": [0.1]}}, {"belt": [0.1]}, {"sample": {"belt": "uniform(0, 1)"}, "runs": 2}]
+)
 def test_what_is_swept_cannot_be_set(slip, how):
     with pytest.raises(saltus.ModelError, match="'belt' is changed twice"):
         slip.sweep(**how, until=1, set={"belt": 0.3})

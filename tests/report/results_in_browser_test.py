@@ -130,14 +130,16 @@ class Sweep(Page):
         self.open("sweep.html")
         across = self.value(line)[::2]
         self.assertEqual(across, sorted(across))
-        self.tool("sweep", "stick-slip", "--until", "5", "--sample", "belt=uniform(0.1,0.3)", "--runs", "9", "--report", "sweep.html")
+        self.tool("sweep", "stick-slip", "--until", "5", "--sample", "belt=uniform(0.1,0.3)", "--runs", "9", "--report",
+                  "sweep.html")
         self.open("sweep.html")
         self.assertIsNone(self.value(line))
         self.assertEqual(self.value("document.querySelector('svg').querySelectorAll('.run').length"), 9)
 
     def test_of_trajectories_the_ends_are_drawn(self):
         for keep in "trajectory", "final":
-            self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.1,0.2", "--keep", keep, "--report", keep + ".html")
+            self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.1,0.2", "--keep", keep, "--report",
+                      keep + ".html")
             self.open(keep + ".html")
             drawn = self.value("document.getElementById('pictures').innerHTML")
             if keep == "trajectory":
@@ -145,7 +147,8 @@ class Sweep(Page):
         self.assertEqual(drawn, of_trajectories)
 
     def test_words_are_inside_of_the_picture(self):
-        self.tool("sweep", "stick-slip", "--until", "5", "--over", "simulate.max_steps=3,1000", "--report", "sweep.html", exit_code=3)
+        self.tool("sweep", "stick-slip", "--until", "5", "--over", "simulate.max_steps=3,1000", "--report", "sweep.html",
+                  exit_code=3)
         self.open("sweep.html")
         left = ("Math.min(...[...document.querySelectorAll('svg text')].map((text) => text.getBoundingClientRect().left"
                 " - text.closest('svg').getBoundingClientRect().left))")

@@ -182,7 +182,8 @@ function draw() {
   if (!rows || !swept.length) return;
   const grid = swept.length === 2 && data.grid;
   // Random samples are no line.
-  const over = (name, of, joined = true) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined && data.grid && swept.length === 1 && isNumber(state.x)));
+  const joined = data.grid && swept.length === 1 && isNumber(state.x);
+  const over = (name, of) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined));
   if (kinds.length) {
     const chosen = eventRows.filter((row) => kindOf(row) === state.kind && columns.t[row] > state.behind);
     const behind = state.behind > -Infinity ? ` behind t = ${shown(state.behind)}` : "";
