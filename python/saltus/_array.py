@@ -67,4 +67,6 @@ def array(entries: typing.Any) -> Array:
     >>> saltus.array([x, v]) <= saltus.array([1, x])
     Array([x<=1, v<=x], dtype=object)
     """
+    if type(entries).__module__.startswith("casadi"):
+        entries = [entries[i] for i in range(entries.numel())]
     return np.array(entries, dtype=object).view(Array)

@@ -94,6 +94,8 @@ class Builder(Structure):
         >>> saltus.Builder("m").states("x", [1, 0, 0])
         Array([x1, x2, x3], dtype=object)
         """
+        if np.ndim(initial) != 1:
+            raise refuse(f"{initial!r} is no list of initial values", f'm.states("{name}", [0] * 3)')
         return _array.array([self.state(f"{name}{i + 1}", value) for i, value in enumerate(initial)])
 
     def control(
@@ -165,7 +167,7 @@ class Builder(Structure):
         def value(argument: Operand) -> typing.Any:
             if isinstance(argument, np.ndarray) and argument.ndim > 0:
                 return _array.own(np.frompyfunc(value, 1, 1)(argument))
-            return Expression(f"{name}({self._own(argument).text})", owner=self)
+            return Expression(f"{name}({self._own(number(argument)).text})", owner=self)
 
         return value
 
@@ -192,7 +194,9 @@ class Builder(Structure):
             raise refuse(f"the state '{name}' has two rates", "add them: m.rate(x, a + b)")
         self._parts["dynamics"][name] = self._own(number(value))
 
-    def output(self, name: str, value: Operand = None, *, unit: str | None = None, label: str | None = None) -> None:
+    def output(
+        self, name: str | Expression, value: Operand = None, *, unit: str | None = None, label: str | None = None
+    ) -> None:
         """A quantity that results have beside the states; without a value one that is defined, under its name.
 
         >>> m = saltus.Builder("fall")
@@ -204,6 +208,8 @@ class Builder(Structure):
         >>> bool(abs(r["energy"][-1] - r["energy"][0]) < 1e-9)
         True
         """
+        if isinstance(name, Expression):
+            name = self._name_in("definitions", name)
         value = Expression(name, owner=self) if value is None else value
         self._declare("outputs", name, self._value("value", value, {"unit": unit, "label": label}))
 
@@ -218,9 +224,10 @@ class Builder(Structure):
         >>> round(m.simulate(until=3).final["x"], 6)
         9.0
         """
-        self._inputs[self._name_in("controls", control)] = (
-            self._own_all(value) if isinstance(value, typing.Mapping) else self._own(value)
-        )
+        name = self._name_in("controls", control)
+        if name in self._inputs:
+            raise refuse(f"the control '{name}' has two inputs", "add them: m.input(u, a + b)")
+        self._inputs[name] = self._own_all(value) if isinstance(value, typing.Mapping) else self._own(value)
 
     def event(
         self, when: Expression, *, name: str | None = None, direction: str | None = None, stop: bool = False

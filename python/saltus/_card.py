@@ -22,7 +22,7 @@ MOST_EQUATIONS = 40
 
 def card(r: Result) -> str:
     """At most some tens of kilobytes of HTML."""
-    shown = [*r.states, *r.controls][:MOST_ROWS]
+    shown = [*r._run.states_in_rows, *r.controls][:MOST_ROWS]
     colour = "#1b7f4b" if r.status.done else "#b3261e"
     message = f"<div style='color:{colour}'>{html.escape(r.status.message)}</div>" if r.status.message else ""
     return (

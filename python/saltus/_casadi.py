@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import functools
+import operator
 import typing
 
-from ._expression import SUM, Expression, expression, refuse
+from ._expression import Expression, call, expression, number, refuse
+from ._functions import if_
 
 
 def of_casadi(value: typing.Any) -> Expression:
@@ -18,54 +21,66 @@ def of_casadi(value: typing.Any) -> Expression:
         return expression(float(value))
     import casadi
 
-    text, is_condition = _text(_operations(casadi), value)
-    return Expression(text, SUM if not is_condition else 0, is_condition)
+    return _of_instructions(casadi, value)
 
 
-#: Operations of CasADi by their names, in the language of models.
-_NUMBERS = {
-    "OP_ADD": "({}+{})", "OP_SUB": "({}-{})", "OP_MUL": "({}*{})", "OP_DIV": "({}/{})", "OP_NEG": "(-{})",
-    "OP_INV": "(1/{})", "OP_SQ": "({})^2", "OP_TWICE": "(2*{})", "OP_POW": "({})^({})", "OP_CONSTPOW": "({})^({})",
-    "OP_EXP": "exp({})", "OP_LOG": "log({})", "OP_SQRT": "sqrt({})", "OP_SIN": "sin({})", "OP_COS": "cos({})",
-    "OP_TAN": "tan({})", "OP_ASIN": "asin({})", "OP_ACOS": "acos({})", "OP_ATAN": "atan({})", "OP_SINH": "sinh({})",
-    "OP_COSH": "cosh({})", "OP_TANH": "tanh({})", "OP_ATAN2": "atan2({},{})", "OP_HYPOT": "hypot({},{})",
-    "OP_FABS": "abs({})", "OP_SIGN": "sign({})", "OP_FMIN": "min({},{})", "OP_FMAX": "max({},{})",
-    "OP_FLOOR": "floor({})", "OP_CEIL": "(-floor(-({})))",
+def _function(name: str) -> typing.Callable[..., typing.Any]:
+    return functools.partial(call, name)
+
+
+#: What operations of CasADi, by their names, are here.
+_OPERATIONS: dict[str, typing.Callable[..., typing.Any]] = {
+    "OP_ADD": operator.add, "OP_SUB": operator.sub, "OP_MUL": operator.mul, "OP_DIV": operator.truediv,
+    "OP_NEG": operator.neg, "OP_INV": lambda a: 1 / a, "OP_SQ": lambda a: a**2, "OP_TWICE": lambda a: 2 * a,
+    "OP_POW": operator.pow, "OP_CONSTPOW": operator.pow, "OP_FABS": _function("abs"), "OP_FMIN": _function("min"),
+    "OP_FMAX": _function("max"), "OP_CEIL": lambda a: -call("floor", -a),
+    **{f"OP_{name.upper()}": _function(name) for name in (
+        "exp", "log", "sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "atan2", "hypot",
+        "sign", "floor")},
+    "OP_LT": operator.lt, "OP_LE": operator.le, "OP_EQ": operator.eq, "OP_NE": operator.ne,
 }  # fmt: skip
-_COMPARISONS = {"OP_LT": "({}<{})", "OP_LE": "({}<={})", "OP_EQ": "({}=={})", "OP_NE": "({}!={})"}
-_LOGICAL = {"OP_NOT": "(not {})", "OP_AND": "({} and {})", "OP_OR": "({} or {})"}
+_LOGICAL: dict[str, typing.Callable[..., Expression]] = {
+    "OP_NOT": operator.invert, "OP_AND": operator.and_, "OP_OR": operator.or_,
+}  # fmt: skip
 _CHOICE = "OP_IF_ELSE_ZERO"
 
-Operations = dict[int, str]
+
+@functools.cache
+def _names(casadi: typing.Any) -> dict[int, str]:
+    return {getattr(casadi, name): name for name in [*_OPERATIONS, *_LOGICAL, _CHOICE]}
 
 
-def _operations(casadi: typing.Any) -> Operations:
-    return {getattr(casadi, name): name for name in [*_NUMBERS, *_COMPARISONS, *_LOGICAL, _CHOICE]}
+def _of_instructions(casadi: typing.Any, value: typing.Any) -> Expression:
+    """What the operations make, one after the other: sums of many terms are no nest of as many calls."""
+    symbols = casadi.symvar(value)
+    program = casadi.Function("f", symbols, [value])
+    made: dict[int, Expression] = {}
+    for k in range(program.n_instructions()):
+        kind, inputs, outputs = program.instruction_id(k), program.instruction_input(k), program.instruction_output(k)
+        if kind == casadi.OP_OUTPUT:
+            return made.get(inputs[0], expression(0))
+        if kind == casadi.OP_CONST:
+            constant = program.instruction_constant(k)
+            whole = abs(constant) < 1e15 and constant == int(constant)
+            made[outputs[0]] = expression(int(constant) if whole else constant)
+        elif kind == casadi.OP_INPUT:
+            made[outputs[0]] = Expression(str(symbols[inputs[0]].name()))
+        else:
+            made[outputs[0]] = _operation(value, _names(casadi).get(kind), [made[i] for i in inputs])
+    return expression(0)  # an SX that has no entry but structural zeros
 
 
-def _text(operations: Operations, value: typing.Any) -> tuple[str, bool]:
-    """The expression, and whether it is a condition."""
-    if value.is_symbolic():
-        return str(value.name()), False
-    if value.is_constant():
-        return expression(float(value)).text, False
-    name = operations.get(value.op())
+def _operation(value: typing.Any, name: str | None, operands: list[Expression]) -> Expression:
     if name is None:
-        raise refuse(f"{value} has an operation that models do not", "write it with the functions of saltus")
-    operands = [_text(operations, value.dep(k)) for k in range(value.n_dep())]
+        raise refuse(f"{str(value)[:60]} has an operation that models do not", "write it with the functions of saltus")
     if name == _CHOICE:
-        return f"if({_condition(*operands[0])},{_number(*operands[1])},0)", False
+        return if_(operands[0], operands[1], 0)
     if name in _LOGICAL:
-        return _LOGICAL[name].format(*(_condition(*operand) for operand in operands)), True
-    form = _NUMBERS.get(name) or _COMPARISONS[name]
-    return form.format(*(_number(*operand) for operand in operands)), name in _COMPARISONS
+        return _LOGICAL[name](*operands)
+    made: Expression = _OPERATIONS[name](*(_number(operand) for operand in operands))
+    return made
 
 
-def _number(text: str, is_condition: bool) -> str:
-    return f"if({text},1,0)" if is_condition else text
-
-
-def _condition(text: str, is_condition: bool) -> str:
-    if not is_condition:
-        raise refuse(f"{text} is no condition", "compare it: x > 0")
-    return text
+def _number(made: Expression) -> Expression:
+    """A condition that is computed with is 1 or 0."""
+    return if_(made, 1, 0) if made.is_condition else number(made)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 import typing
+import warnings
 
 from ._spelling import at_option, in_python, is_option, keywords
 
@@ -81,3 +83,12 @@ class ModelWarning(UserWarning):
     >>> warned[0].category.__name__
     'ModelWarning'
     """
+
+
+def warn(messages: typing.Iterable[str]) -> None:
+    """Warns where the package was called, however deep that is."""
+    depth, frame = 1, sys._getframe()
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("saltus"):
+        depth, frame = depth + 1, frame.f_back
+    for message in messages:
+        warnings.warn(in_python(message), ModelWarning, stacklevel=depth)

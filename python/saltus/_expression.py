@@ -167,8 +167,12 @@ class Expression:
 
     __int__ = __index__ = __float__
 
+    __trunc__ = __float__
+
     def __round__(self, digits: int = 0) -> typing.NoReturn:
         raise refuse(f"{self.text} has no value before the simulation", "write saltus.floor(x + 0.5), of times only")
+
+    __floor__ = __ceil__ = __round__
 
     def __iter__(self) -> typing.Iterator[Expression]:
         raise refuse(f"{self.text} is one number", "arrays of expressions: saltus.array([x, v])")
@@ -230,7 +234,16 @@ def _inside(operand: Expression, level: int) -> str:
     return operand.text if operand.level >= level else f"({operand.text})"
 
 
+#: No expression has more characters: parts that occur twice in each other double at every step.
+LONGEST = 5_000_000
+
+
 def make(text: str, level: int, is_condition: bool, *operands: Expression) -> Expression:
+    if len(text) > LONGEST:
+        raise refuse(
+            f"an expression of more than {LONGEST} characters, {text[:40]}…",
+            'name what occurs in it again and again: part = m.define("part", …)',
+        )
     return Expression(text, level, is_condition, owner_of(*operands))
 
 
@@ -275,13 +288,17 @@ def _comparison(sign: str, left: Operand, right: Operand) -> Expression:
     return make(_inside(a, SUM) + sign + _inside(b, SUM), COMPARISON, True, a, b)
 
 
+def condition(value: Operand, message: str, remedy: str) -> Expression:
+    """A condition, of CasADi too; else what is refused."""
+    made = expression(value) if type(value).__module__.startswith("casadi") else value
+    if isinstance(made, Expression) and made.is_condition:
+        return made
+    raise refuse(f"{message}, found {value!r}", remedy)
+
+
 def _condition(value: Operand, sign: str) -> Expression:
-    if isinstance(value, Expression) and value.is_condition:
-        return value
-    raise refuse(
-        f"{sign} joins conditions, found {value!r}",
-        "Python's & and | bind tighter than comparisons: write (x > 0) & (y > 0)",
-    )
+    remedy = "Python's & and | bind tighter than comparisons: write (x > 0) & (y > 0)"
+    return condition(value, f"{sign} joins conditions", remedy)
 
 
 @entry_by_entry

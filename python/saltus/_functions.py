@@ -7,12 +7,15 @@ import typing
 
 from . import _array
 from ._expression import PRIMARY, Expression, Operand, call, entry_by_entry, make, number, refuse
+from ._expression import condition as as_condition
 
 
 def _function(name: str, count: int, text: str, argument: str = "x") -> typing.Callable[..., typing.Any]:
     def function(*arguments: Operand) -> typing.Any:
         if name in ("max", "min") and len(arguments) > 2:
             return functools.reduce(function, arguments)
+        if name in ("max", "min") and len(arguments) == 1:
+            raise refuse(f"{name} has 2 arguments or more, found 1", f"of a list: saltus.{name}(*values)")
         if len(arguments) != count:
             raise refuse(f"{name} has {count} argument{'s' * (count > 1)}, found {len(arguments)}", text)
         return call(name, *arguments)
@@ -62,9 +65,8 @@ def if_(condition: Operand, a: Operand, b: Operand) -> Expression:
     >>> saltus.if_(x > 1, -x, 2)
     if(x>1,-x,2)
     """
-    if not isinstance(condition, Expression) or not condition.is_condition:
-        raise refuse(f"if_ needs a condition, found {condition!r}", "compare: saltus.if_(x > 0, a, b)")
-    made = [condition, number(a), number(b)]
+    holds = as_condition(condition, "if_ needs a condition", "compare: saltus.if_(x > 0, a, b)")
+    made = [holds, number(a), number(b)]
     return make(f"if({','.join(part.text for part in made)})", PRIMARY, False, *made)
 
 

@@ -38,5 +38,9 @@ def load() -> None:
     """Loads what the extension links. The name of a library decides: casadi, imported later, finds the same one."""
     folder = _folder()
     for pattern in _LIBRARIES:
-        for file in sorted(folder.glob(pattern))[:1]:
-            ctypes.CDLL(str(file))
+        files = sorted(folder.glob(pattern))
+        if not files:
+            raise ImportError(
+                f"{folder} is not the package casadi: it has no {pattern}; is a file of yours called casadi?"
+            )
+        ctypes.CDLL(str(files[0]))

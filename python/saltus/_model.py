@@ -6,11 +6,10 @@ import os
 import pathlib
 import sys
 import typing
-import warnings
 
 from . import _core
 from ._card import model_card
-from ._errors import ModelWarning
+from ._errors import warn
 from ._expression import refuse
 from ._progress import progress_line, progress_of_runs
 from ._result import Result, own_results
@@ -24,6 +23,7 @@ from ._settings import (
     check_together,
     count_of,
     is_several,
+    names_in,
     names_no_keys,
     is_option,
     once,
@@ -33,7 +33,6 @@ from ._settings import (
     simulate_options,
     sweep_name,
 )
-from ._spelling import in_python
 from ._sweep import Sweep, SweepArguments, sweep_by, with_results
 
 Settings = typing.Mapping[str, Value]
@@ -202,7 +201,7 @@ class Model:
             run = self._core.optimize(
                 [*settings_of(set), *typed], chosen, file, _print_line if progress else None, warned
             )
-        _warn(warned)
+        warn(warned)
         return Result(run)
 
     def sweep(
@@ -241,6 +240,8 @@ class Model:
         check_sweep(over, sample, runs, seed, jobs)
         options = {"until": until, **options}
         swept = self._swept(over or {}, set or {}, options)
+        for name in sample or {}:
+            once(name, names_in(set or {}))
         if not swept and not sample:
             raise refuse("nothing is changed from run to run", "e.g. m.sweep(mu=np.linspace(0.1, 0.5, 50), until=10)")
         typed, chosen = simulate_options(options, self._core.method)
@@ -270,16 +271,19 @@ class Model:
                     kept = with_results(stopped.result, self, arguments)  # type: ignore[attr-defined]
                     stopped.result = Sweep(kept, shape, len(sample or {}))  # type: ignore[attr-defined]
                 raise
-        _warn(warned)
+        warn(warned)
         return Sweep(with_results(found, self, arguments), shape, len(sample or {}))
 
     def _swept(self, over: Settings, set: Settings, options: dict[str, Value]) -> dict[str, Value]:
         """All that is swept, by the names of settings; keywords that have several values leave the options."""
-        method = self._core.method
-        named = {getattr(name, "text", name): values for name, values in over.items()}
-        swept = {sweep_name(name, method): values for name, values in named.items()}
+        chosen = options.get("method")
+        method = chosen if isinstance(chosen, str) else self._core.method
+        swept: dict[str, Value] = {}
+        taken = names_in(set)
+        for key, values in over.items():
+            swept[once(sweep_name(getattr(key, "text", key), method), [*swept, *taken])] = values
         for name in [name for name, value in options.items() if is_several(value) and name != "times"]:
-            swept[once(sweep_name(name, method), [*swept, *set])] = options.pop(name)
+            swept[once(sweep_name(name, method), [*swept, *taken])] = options.pop(name)
         self._refuse_parameters(options)
         return swept
 
@@ -337,7 +341,7 @@ class Model:
         with own_results():
             settings = [*settings_of(set), *typed]
             run: _core.Run = getattr(self._core, command)(settings, chosen, tell, warned, *more)
-        _warn(warned)
+        warn(warned)
         return run, settings, chosen
 
     def _refuse_parameters(self, options: Settings) -> None:
@@ -382,12 +386,3 @@ class _started_at:
 
 def _print_line(line: str) -> None:
     print(line, file=sys.stderr)
-
-
-def _warn(messages: list[str]) -> None:
-    """Warns where the package was called, however deep that is."""
-    depth, frame = 1, sys._getframe()
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("saltus"):
-        depth, frame = depth + 1, frame.f_back
-    for message in messages:
-        warnings.warn(in_python(message), ModelWarning, stacklevel=depth)

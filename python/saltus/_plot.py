@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import typing
 
+import numpy as np
+
 from ._data import with_rows
 from ._expression import Expression
 from ._shape import broken_at_jumps, slides, sliding_spans
 
 if typing.TYPE_CHECKING:
+    from ._events import Event
     from ._result import Result
 
 SLIDING = "#d95f02"
@@ -48,7 +51,8 @@ def plot(
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
     names = [names] if isinstance(names, (str, Expression)) else names
-    wanted = [str(name) for name in names] if names is not None else [*r.states, *r.controls, *r.output_names]
+    all_names = [*r._run.states_in_rows, *r.controls, *r.output_names]
+    wanted = [str(name) for name in names] if names is not None else all_names
     columns = {name: r[name] for name in wanted}
     if axes is None:
         _, axes = pyplot.subplots(
@@ -62,7 +66,7 @@ def plot(
         for begin, end in sliding_spans(r):
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
         _line(axis, broken_at_jumps(r, r.t, column), label)
-        _mark_events(axis, r, column)
+        _mark_events(axis, r, "t", name)
         axis.set_ylabel(caption_of(r, name))
         axis.margins(x=0)
     axes[0].set_title(r.model)
@@ -92,15 +96,22 @@ def caption_of(r: Result, name: str) -> str:
     return (caption.get("label") or name) + (f" [{unit}]" if unit else "")
 
 
-def _mark_events(axis: typing.Any, r: Result, column: typing.Any) -> None:
+def _mark_events(axis: typing.Any, r: Result, x: str, y: str) -> None:
     for kind, (mark, colour) in MARKS.items():
-        rows = [_row_before(r, event.t) for event in r.events if event.kind == kind]
-        if rows:
-            axis.plot(r.t[rows], column[rows], mark, color=colour, markersize=5, linestyle="none", label=kind)
+        events = [event for event in r.events if event.kind == kind]
+        if events:
+            places = [[_at(r, name, event) for event in events] for name in (x, y)]
+            axis.plot(*places, mark, color=colour, markersize=5, linestyle="none", label=kind)
 
 
-def _row_before(r: Result, t: float) -> int:
-    return int(r.t.searchsorted(t, side="left"))
+def _at(r: Result, name: str, event: Event) -> float:
+    """A column before an event; of a result without rows at its events from the event itself."""
+    row = int(r.t.searchsorted(event.t, side="left"))
+    if row < len(r.t) and r.t[row] == event.t:
+        return float(r[name][row])
+    if name in r.states:
+        return float(event.x[r.states.index(name)])
+    return float(np.interp(event.t, r.t, r[name]))
 
 
 def phase(
@@ -117,10 +128,7 @@ def phase(
     here, there = r[x].astype(float), r[y].astype(float)
     here[~held] = float("nan")
     axis.plot(*broken_at_jumps(r, here, there), color=SLIDING, linewidth=2.6, solid_capstyle="butt")
-    for kind, (mark, colour) in MARKS.items():
-        rows = [_row_before(r, event.t) for event in r.events if event.kind == kind]
-        if rows:
-            axis.plot(r[x][rows], r[y][rows], mark, color=colour, markersize=5, linestyle="none", label=kind)
+    _mark_events(axis, r, x, y)
     axis.plot(r[x][0], r[y][0], "o", color="black", markersize=4)
     axis.set_xlabel(caption_of(r, x))
     axis.set_ylabel(caption_of(r, y))

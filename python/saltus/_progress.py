@@ -37,11 +37,20 @@ def progress_of_runs(name: str, wanted: bool) -> typing.Iterator[typing.Callable
         yield None
         return
 
+    runs = 0.0
+
     def tell(done: float, total: float) -> None:
+        nonlocal runs
+        runs = total
         print(f"\r{name}: {done:.0f} of {total:.0f} runs", end="", file=sys.stderr, flush=True)
 
-    yield tell
-    print(file=sys.stderr)
+    try:
+        yield tell
+        # Not every run is told.
+        if runs > 0:
+            tell(runs, runs)
+    finally:
+        print(file=sys.stderr)
 
 
 def _plain(name: str) -> typing.Iterator[Tell]:

@@ -70,6 +70,11 @@ def settings_of(values: typing.Mapping[str, Value] | None) -> list[str]:
     return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(values or {})]
 
 
+def names_in(values: typing.Mapping[str, Value]) -> list[str]:
+    """The names that `set` changes, dotted."""
+    return [name for name, _ in _flat(values)]
+
+
 def _one_value(name: str, value: Value) -> Value:
     """What a setting can be: of a name of the model one number or expression."""
     if value is None:

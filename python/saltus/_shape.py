@@ -18,8 +18,9 @@ def broken_at_jumps(r: Result, *columns: Array) -> list[Array]:
     """The columns with a NaN between the two rows of every jump, so that no line joins them: of jumps of the state, and
     where a column itself is not continuous, as an output that switches."""
     jumps = sorted({event.t for event in r.events if event.kind in JUMPS})
-    # Behind the first row of a time: the other rows of it lie on the other side.
-    places = set((np.searchsorted(r.t, jumps, side="left") + 1).tolist())
+    first, behind = np.searchsorted(r.t, jumps, side="left"), np.searchsorted(r.t, jumps, side="right")
+    # Behind the first of the rows of a time, as the others lie on the other side; one alone, or none, lies behind it.
+    places = set(np.where(behind - first > 1, first + 1, first).tolist()) - {0, len(r.t)}
     twice = np.flatnonzero(np.diff(r.t) == 0)
     for column in columns:
         finite = column[np.isfinite(column)]

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import typing
 
+import numpy as np
+
 from ._expression import Expression, Operand, expression, number, owner_of, refuse
 
 Rates = typing.Mapping[typing.Any, Operand]
@@ -71,19 +73,18 @@ class Statement:
 
     # Names and owners ----------------------------------------------------------------------------------------------
 
-    def _take(self, name: str) -> None:
+    def _take(self, name: str, taken: typing.Container[str] | None = None) -> None:
         if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
             raise refuse(f"{name!r} is no name", "letters, digits and _, with a letter first: \"x1\"")
         if name in RESERVED:
             raise refuse(f"'{name}' is a word of the language", f"choose another name, e.g. {name}_")
-        if name in self._taken:
+        if name in (self._taken if taken is None else taken):
             raise refuse(f"the name '{name}' is taken", "every name of a model is declared once")
         self._taken.add(name)
 
     def _declare(self, part: str, name: str, value: typing.Any) -> Expression:
-        if part != "outputs":
-            self._take(name)
-        self._taken.add(name)
+        # An output may have the name of the definition that it records.
+        self._take(name, self._parts["outputs"] if part == "outputs" else None)
         self._parts[part][name] = value
         return Expression(name, owner=self)
 
@@ -124,6 +125,8 @@ class Statement:
         return self._name_in("states", state)
 
     def _rates(self, rates: Rates) -> dict[str, Expression]:
+        if not isinstance(rates, typing.Mapping):
+            raise refuse(f"expected a dict by states, found {rates!r}", "e.g. {x: -1}")
         return {self._state(state): self._own(number(value)) for state, value in rates.items()}
 
     def _rates_or_none(self, rates: Rates | None) -> dict[str, Expression] | None:
@@ -142,14 +145,19 @@ def _lines(entries: typing.Mapping[str, typing.Any]) -> str:
     return "".join(f"{name} = {_toml(value)}\n" for name, value in entries.items())
 
 
+def _key(name: typing.Any) -> str:
+    """A key of a table; in quotes where it is no word, as the text of a switching function."""
+    return str(name) if str(name).isidentifier() and str(name).isascii() else json.dumps(str(name), ensure_ascii=False)
+
+
 def _toml(value: typing.Any) -> str:
     if isinstance(value, Expression):
         return json.dumps(value.text, ensure_ascii=False)
     if isinstance(value, typing.Mapping):
-        return "{ " + ", ".join(f"{name} = {_toml(entry)}" for name, entry in value.items()) + " }"
+        return "{ " + ", ".join(f"{_key(name)} = {_toml(entry)}" for name, entry in value.items()) + " }"
     if isinstance(value, (list, tuple)):
         return "[" + ", ".join(_toml(entry) for entry in value) + "]"
-    if isinstance(value, bool):
+    if isinstance(value, (bool, np.bool_)):
         return "true" if value else "false"
     if isinstance(value, (int, float)):
         return repr(value)

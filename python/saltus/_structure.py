@@ -5,6 +5,8 @@ from __future__ import annotations
 import collections.abc
 import typing
 
+import numpy as np
+
 from ._expression import Expression, Operand, refuse
 from ._statement import Entries, Rates, Statement, given
 
@@ -18,7 +20,7 @@ class Structure(Statement):
         set: Rates = {},
         *,
         direction: str | None = None,
-        at: typing.Sequence[Operand] | None = None,
+        at: typing.Sequence[Operand] | Operand | None = None,
         every: Operand = None,
         name: str | None = None,
         at_start: bool = False,
@@ -47,7 +49,7 @@ class Structure(Statement):
         entry = {
             "when": self._own_or_none(when),
             "direction": direction,
-            "at": None if at is None else [self._own(time) for time in at],
+            "at": None if at is None else [self._own(time) for time in (at if np.ndim(at) else [at])],
             "every": self._own_or_none(every),
             "set": self._rates(set),
             "name": name,

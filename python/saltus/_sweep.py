@@ -10,6 +10,7 @@ import typing
 import numpy as np
 
 from . import _core, _sweep_plot
+from ._errors import warn
 from ._expression import Expression
 from ._outcome import Kept, unknown
 from ._result import Again, Origin, Result, needed
@@ -114,10 +115,13 @@ def _text(value: typing.Any) -> str:
     return text_of(int(value) if whole else value)
 
 
-def share_of(model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]) -> Found:
-    """One share of a sweep, in whatever process. Its results are made here: what they are made of stays."""
-    found = model._core.sweep(*arguments, jobs, share, None, [])
-    return found[0], list(Results(found, model, arguments, all_runs=False)), found[2]
+def share_of(
+    model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]
+) -> tuple[Found, list[str]]:
+    """One share of a sweep, in whatever process, and warnings. Results are made here: what they are made of stays."""
+    warned: list[str] = []
+    found = model._core.sweep(*arguments, jobs, share, None, warned)
+    return (found[0], list(Results(found, model, arguments, all_runs=False)), found[2]), warned
 
 
 def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments, jobs: int) -> Found:
@@ -130,11 +134,13 @@ def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments,
     number = 4 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
     futures = [executor.submit(share_of, model, arguments, jobs, (i + 1, number)) for i in range(number)]
     try:
-        found = [future.result() for future in futures]
+        shares = [future.result() for future in futures]
     except BaseException:
         for future in futures:
             future.cancel()
         raise
+    warn(shares[0][1])
+    found = [share for share, _ in shares]
     columns = max((part[0] for part in found), key=len)
     parts = [part for part in found if part[1]]
     joined = {name: np.concatenate([np.asarray(part[0][name]) for part in parts]) for name in columns}

@@ -314,6 +314,37 @@ def test_arrays_and_numbers_of_casadi():
         saltus.if_(x, 1, 2)
 
 
+def test_vectors_and_long_sums_of_casadi():
+    """Rates by a vertcat; a sum of hundreds of terms is one of the language, without parentheses."""
+    casadi = pytest.importorskip("casadi")
+    m = saltus.Builder("m")
+    both = [m.state("x", 0), m.state("v", 1)]
+    x, v = casadi.SX.sym("x"), casadi.SX.sym("v")
+    m.rate(both, casadi.vertcat(v, -x + sum(k * 1e-9 * v for k in range(1, 900))))
+    assert m.to_toml().count("(") == 0
+    assert m.simulate(until=0.1).status.done
+    for _ in range(60):
+        v = casadi.sin(v) * v
+    refused(lambda: m.output("y", v), "characters", "m.define")
+
+
+def test_keys_and_truths_are_those_of_toml():
+    """Texts of switching functions are keys in quotes, truths of numpy are truths."""
+    m = saltus.Builder("m")
+    x = m.state("x", 1)
+    m.rate(x, -1 - 0.1 * saltus.sign(x - 0.5))
+    speed = m.define("speed", -1 - 0 * x)
+    m.output(speed)
+    m.event(x - 0.5, stop=np.bool_(True))
+    m.jump(x + 5, {x: 0}, direction="down")
+    m.jump(at=0.25, set={x: x - 0.1})
+    m.simulation(event={"scaling": {"x-0.5": 2.0}}, output={"events": np.False_, "points": 3})
+    assert '"x-0.5" = 2.0' in m.to_toml()
+    with pytest.warns(saltus.ModelWarning, match="scaling.x-0.5 has no effect"):
+        r = m.simulate(until=5)
+    assert r.final.t == pytest.approx(0.4 / 1.1)
+
+
 def test_files_options_and_words(tmp_path):
     (tmp_path / "u.csv").write_text("t,u\n0,1\n1,3\n")
     (tmp_path / "f.csv").write_text("0,0\n1,2\n")

@@ -203,10 +203,26 @@ def test_what_a_builder_is_given(m):
         (lambda: m.jump(q > 1), "changes nothing"),
         (lambda: m.jump(set={q: 0}), "not clear"),
         (lambda: m.jump(q > 1, {q: 0}, every=2), "not clear"),
+        (lambda: m.mode(q > 1, [1]), "expected a dict by states"),
+        (lambda: m.states("z", 3), "no list of initial values"),
+        (lambda: m.output("a b", q), "is no name"),
+        (lambda: m.output(q), "none of the definitions"),
+        (lambda: m.table("f", [0, 1], [0, 1])(q > 0), "q>0 is a condition"),
+        (lambda: math.floor(q), "saltus.floor"),
+        (lambda: saltus.max([q, q]), "saltus.max(*values)"),
     ]:
         assert told in said_by(call)
     m.rate(q, 1)
     assert "m.simulate(until=10)" in said_by(m.simulate)
+
+
+def test_what_is_said_twice(m):
+    """What is said once more does not silently take the place of the first."""
+    q, u = saltus.Expression("q", owner=m), m.control("u")
+    m.output("y", q)
+    assert "'y' is taken" in said_by(lambda: m.output("y", -q))
+    m.input(u, 1)
+    assert "two inputs" in said_by(lambda: m.input(u, 2))
 
 
 def test_conditions_of_casadi(m):
@@ -217,3 +233,6 @@ def test_conditions_of_casadi(m):
     assert r.status.done and r.events[0].t == pytest.approx(0.5, abs=1e-12)
     assert "2 entries" in said_by(lambda: m.output("z", casadi.SX.sym("z", 2)))
     assert "functions of saltus" in said_by(lambda: m.output("z", casadi.erf(q)))
+    own = saltus.Expression("q", owner=m)
+    assert repr(saltus.if_(q > 0, own, 1)) == "if(0<q,q,1)"
+    assert repr((own < 2) & (q > 0)) == "q<2 and 0<q"

@@ -68,6 +68,26 @@ def test_the_sides_of_a_jump_are_not_joined(ball):
     assert np.isnan(y).sum() == len({e.t for e in ball.events if e.kind in ("jump", "accumulation")})
 
 
+def test_a_jump_between_two_rows_is_not_joined():
+    """Of a result without rows at events the gap lies where the jump is, and so do the marks of events."""
+    m = saltus.catalogue("bouncing-ball")
+    r = m.simulate(until=3, output={"every": 0.1, "events": False})
+    (axis,) = r.plot(["v"])
+    x, y = (np.asarray(data, dtype=float) for data in axis.lines[0].get_data())
+    (gap,) = np.flatnonzero(np.isnan(y))
+    assert x[gap - 1] < r.events[0].t < x[gap + 1]
+    (mark,) = [line for line in axis.lines if line.get_label() == "jump"]
+    assert [data.tolist() for data in map(np.asarray, mark.get_data())] == [[r.events[0].t], [r.events[0].x[1]]]
+    assert len(m.simulate(until=3, output={"times": [0, 0.1], "events": False}).plot()) == 2
+
+
+def test_some_states_only():
+    """Of a run that has rows of some states only these are drawn."""
+    r = saltus.catalogue("bouncing-ball").simulate(until=3, output={"states": ["v"]})
+    assert [axis.get_ylabel() for axis in r.plot()] == ["v"]
+    assert "<svg" in r._repr_html_() and ">v</text>" in r._repr_html_()
+
+
 def relay():
     m = saltus.Builder("relay")
     x, v = m.state("x", 1, unit="m", label="way"), m.state("v", 0, unit="m/s")

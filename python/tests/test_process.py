@@ -41,6 +41,13 @@ def test_casadi_is_there_once_whoever_comes_first(order):
     assert out[4:7] == ["libcasadi.so 1", "libipopt.so 1", "libhighs.so 1"]
 
 
+def test_a_file_called_casadi_is_not_the_package(tmp_path):
+    """What lies beside a notebook under this name comes first; that is said, not that a library is missing."""
+    (tmp_path / "casadi.py").write_text("")
+    done = subprocess.run([sys.executable, "-c", "import saltus"], cwd=tmp_path, capture_output=True, text=True)
+    assert "is a file of yours called casadi" in done.stderr.splitlines()[-1]
+
+
 def test_another_casadi_is_refused_in_one_sentence():
     out = run_python("""
         import importlib.machinery, importlib.util, pathlib, tempfile

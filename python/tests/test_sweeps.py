@@ -180,6 +180,26 @@ class Inline:
         return future
 
 
+def test_an_executor_warns_as_threads_do(slip):
+    for executor in (None, Inline()):
+        with pytest.warns(saltus.ModelWarning, match="epsilon") as told:
+            slip.sweep(belt=[0.1, 0.2], until=1, epsilon=0.1, executor=executor)
+        assert len(told) == 1 and told[0].filename == __file__
+
+
+def test_swept_options_are_those_of_the_method_that_is_given(slip):
+    s = slip.sweep(stages=[1, 3], method="timestepping", steps=10, until=1)
+    assert s.names == ["simulate.timestepping.stages"] and s["q"][0] != s["q"][1]
+
+
+@pytest.mark.parametrize(
+    "how", [{"over": {"belt": [0.1]}}, {"belt": [0.1]}, {"sample": {"belt": "uniform(0, 1)"}, "runs": 2}]
+)
+def test_what_is_swept_cannot_be_set(slip, how):
+    with pytest.raises(saltus.ModelError, match="'belt' is changed twice"):
+        slip.sweep(**how, until=1, set={"belt": 0.3})
+
+
 def test_an_executor_gives_the_same_table(slip):
     how = {"belt": np.linspace(0.1, 0.3, 13), "until": 5, "keep": "events"}
     alone, shared = slip.sweep(**how), slip.sweep(**how, executor=Inline())

@@ -38,8 +38,9 @@ class Page(unittest.TestCase):
         self._folder.cleanup()
         self.assertEqual(self.browser.complaints, [])
 
-    def tool(self, *arguments):
-        subprocess.run([TOOL, *arguments], cwd=self.folder, check=True, capture_output=True, timeout=120)
+    def tool(self, *arguments, exit_code=0):
+        done = subprocess.run([TOOL, *arguments], cwd=self.folder, capture_output=True, timeout=120)
+        self.assertEqual(done.returncode, exit_code, done.stderr)
 
     def show(self, model):
         self.tool("simulate", model, "--quiet", "--report", "page.html")

@@ -27,6 +27,14 @@ class Source(Page):
         self.assertEqual(self.value("saltus.toCsv(saltus.result).split('\\r\\n')[0]"), header)
 
 
+    def test_words_beside_equations_are_whole_on_narrow_screens(self):
+        self.tool("simulate", "chua", "--quiet", "--report", "page.html")
+        self.browser.open((self.folder / "page.html").as_uri(), 390, 844, "light")
+        word = "[...document.querySelectorAll('.equations td.quiet')].find((cell) => cell.textContent === 'output')"
+        self.assertEqual(self.value(f"(() => {{ const range = document.createRange(); range.selectNodeContents({word});"
+                                    " return range.getClientRects().length; })()"), 1)
+
+
 class Overlays(Page):
     def test_two_results_over_each_other_with_their_differences(self):
         self.tool("simulate", "stick-slip", "--quiet", "--out", "a.json")
@@ -115,6 +123,36 @@ class Sweep(Page):
         self.assertNotIn("undefined", self.value(kinds))
         self.value("[...document.querySelectorAll('section')].at(-1).querySelectorAll('.run')[2].dispatchEvent(new Event('click'))")
         self.assertIn("run 3: belt = 5; completed, 0 events", self.value("document.getElementById('chosen').textContent"))
+
+    def test_lines_ascend_and_random_samples_are_points(self):
+        line = "document.querySelector('svg path')?.getAttribute('d').split(/[ML ]/).filter((word) => word).map(Number)"
+        self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.3,0.1,0.2", "--report", "sweep.html")
+        self.open("sweep.html")
+        across = self.value(line)[::2]
+        self.assertEqual(across, sorted(across))
+        self.tool("sweep", "stick-slip", "--until", "5", "--sample", "belt=uniform(0.1,0.3)", "--runs", "9", "--report",
+                  "sweep.html")
+        self.open("sweep.html")
+        self.assertIsNone(self.value(line))
+        self.assertEqual(self.value("document.querySelector('svg').querySelectorAll('.run').length"), 9)
+
+    def test_of_trajectories_the_ends_are_drawn(self):
+        for keep in "trajectory", "final":
+            self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.1,0.2", "--keep", keep, "--report",
+                      keep + ".html")
+            self.open(keep + ".html")
+            drawn = self.value("document.getElementById('pictures').innerHTML")
+            if keep == "trajectory":
+                of_trajectories = drawn
+        self.assertEqual(drawn, of_trajectories)
+
+    def test_words_are_inside_of_the_picture(self):
+        self.tool("sweep", "stick-slip", "--until", "5", "--over", "simulate.max_steps=3,1000", "--report", "sweep.html",
+                  exit_code=3)
+        self.open("sweep.html")
+        left = ("Math.min(...[...document.querySelectorAll('svg text')].map((text) => text.getBoundingClientRect().left"
+                " - text.closest('svg').getBoundingClientRect().left))")
+        self.assertGreaterEqual(self.value(left), 0)
 
     def test_letters_keep_their_size_on_narrow_screens(self):
         self.map_of(390)
@@ -297,4 +335,4 @@ class Thousands(Page):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], "-v"])
+    unittest.main(argv=[sys.argv[0], "-v", *sys.argv[4:]])

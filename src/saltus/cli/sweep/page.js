@@ -16,12 +16,12 @@ const make = (tag, attributes = {}, text = "") => {
 const shown = (value) => (value === null ? "nan" : typeof value === "number" ? String(Number(value.toPrecision(6))) : value);
 const palette = ["#1f5fa8", "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#66a61e", "#a6761d"];
 
-// A run is the first of its rows; events and trajectories have several.
-const firstRow = new Map();
+// Events and trajectories have several rows for a run: the last one of a trajectory is its end.
+const rowOf = new Map();
 columns.run.forEach((run, row) => {
-  if (!firstRow.has(run)) firstRow.set(run, row);
+  if (!columns.kind || !rowOf.has(run)) rowOf.set(run, row);
 });
-const runRows = [...firstRow.values()];
+const runRows = [...rowOf.values()];
 const eventsOf = (row) => columns.events?.[row] ?? null;
 // Those of kept events; a run without one has a row that names none.
 const eventRows = columns.kind ? columns.run.map((_, row) => row).filter((row) => columns.kind[row]) : [];
@@ -79,6 +79,8 @@ function cellsOf(values) {
 
 const size = { width: 720, height: 320, left: 70, right: 20, top: 12, bottom: 46 };
 function frame(title, xName, yName, xAxis, yAxis) {
+  // Words need more room than numbers.
+  size.left = Math.max(70, ...yAxis.ticks.map(([, label]) => 14 + 7.5 * String(label).length));
   const picture = make("svg", { viewBox: `0 0 ${size.width} ${size.height}`, role: "img", "aria-label": title });
   const x = (value) => size.left + ((xAxis.at(value) - xAxis.low) / (xAxis.high - xAxis.low)) * (size.width - size.left - size.right);
   const y = (value) => size.height - size.bottom - ((yAxis.at(value) - yAxis.low) / (yAxis.high - yAxis.low)) * (size.height - size.top - size.bottom);
@@ -105,7 +107,8 @@ function points(title, xName, yName, chosen, yOf, joined, colourOf = () => palet
   const plain = chosen.filter((row) => yOf(row) !== null);
   const drawn = frame(title, xName, yName, axisOf(runRows.map((row) => columns[xName][row])), axisOf(plain.map(yOf)));
   if (joined) {
-    const path = plain.map((row, k) => `${k ? "L" : "M"}${drawn.x(columns[xName][row])} ${drawn.y(yOf(row))}`).join("");
+    const along = [...plain].sort((a, b) => columns[xName][a] - columns[xName][b]);
+    const path = along.map((row, k) => `${k ? "L" : "M"}${drawn.x(columns[xName][row])} ${drawn.y(yOf(row))}`).join("");
     drawn.picture.append(make("path", { d: path, fill: "none", stroke: palette[0] }));
   }
   for (const row of plain) mark(drawn.picture, row, drawn.x(columns[xName][row]), drawn.y(yOf(row)), colourOf(row), joined ? 3 : 2, `${shown(columns[xName][row])}: ${shown(yOf(row))}`);
@@ -151,7 +154,7 @@ function selector(label, options, value, onChange) {
   return box;
 }
 
-const values = numeric.filter((name) => !["run", "event", ...swept, ...(columns.kind ? ["events"] : [])].includes(name));
+const values = numeric.filter((name) => !["run", "event", "events", ...swept].includes(name));
 const kindOf = (row) => columns.name[row] || (columns.surfaces[row] ? `${columns.kind[row]} ${columns.surfaces[row]}` : columns.kind[row]);
 // What the model calls an event comes first: at a switching surface its own value is a threshold.
 const kinds = [...new Set([...eventRows.filter((row) => columns.name[row]), ...eventRows].map(kindOf))];
@@ -178,7 +181,9 @@ function draw() {
   pictures.replaceChildren();
   if (!rows || !swept.length) return;
   const grid = swept.length === 2 && data.grid;
-  const over = (name, of, joined = true) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined && swept.length === 1 && isNumber(state.x)));
+  // Random samples are no line.
+  const joined = data.grid && swept.length === 1 && isNumber(state.x);
+  const over = (name, of) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined));
   if (kinds.length) {
     const chosen = eventRows.filter((row) => kindOf(row) === state.kind && columns.t[row] > state.behind);
     const behind = state.behind > -Infinity ? ` behind t = ${shown(state.behind)}` : "";
