@@ -68,6 +68,64 @@ atol = 1e-16
             self.assertEqual([event["kind"] for event in events], ["stick"])
             self.assertAlmostEqual(events[0]["t"], 1 / 3, delta=1e-9)
 
+    def test_bounces_end_in_one_accumulation(self):
+        """A ball that lies, and one that bounces on it: the limit is at t1 (1 + e) / (1 - e)."""
+        stacked = """[model]
+name = "stacked"
+[states]
+a = 0
+b = 1.0
+va = 0
+vb = 0
+[mechanics]
+positions = ["a", "b"]
+velocities = ["va", "vb"]
+potential = "9.81*(a + b)"
+[[contacts]]
+name = "ground"
+gap = "a"
+[[contacts]]
+name = "balls"
+gap = "b - a - 0.4"
+restitution = E
+[simulate]
+until = 9
+"""
+        for e in (0.3, 0.5, 0.8, 0.9):
+            result = self.result(stacked.replace("E", str(e)))
+            kinds = [event["kind"] for event in result["events"]]
+            self.assertEqual(kinds, (len(kinds) - 1) * ["impact"] + ["accumulation"])
+            limit = math.sqrt(1.2 / 9.81) * (1 + e) / (1 - e)
+            self.assertAlmostEqual(result["events"][-1]["t"], limit, delta=1e-8)
+            self.assertEqual(result["final"]["contact_modes"], ["closed", "closed"])
+            self.assertEqual(result["final"]["x"][2:], [0.0, 0.0])
+
+    def test_what_is_squeezed_jams(self):
+        """Between a wall that comes and one that stands the bounces accumulate where both meet."""
+        squeezed = """[model]
+name = "squeezed"
+[states]
+x = 0.5
+v = 0
+[mechanics]
+positions = ["x"]
+velocities = ["v"]
+[[contacts]]
+name = "left"
+gap = "x - 0.3*t"
+restitution = 0.5
+[[contacts]]
+name = "right"
+gap = "1 - x"
+restitution = 0.5
+[simulate]
+until = 5
+"""
+        result = self.result(squeezed, code=3)
+        self.assertEqual(result["status"]["termination"], "outside_class")
+        self.assertAlmostEqual(result["status"]["time_reached"], 10 / 3, delta=1e-8)
+        self.assertIn("bodies jam", result["status"]["message"])
+
     def test_jumps_of_bodies_at_rest(self):
         """What a jump sets is what follows: the modes are found afresh, as at a start."""
         rest = """[model]

@@ -175,7 +175,17 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
     if (point.along(point.velocity, i).norm() > none) continue;
     for (int k = 0; k < point.tangents[at(i)]; ++k) point.velocity(point.tangent_row(i, k)) = 0.0;
   }
-  return find_modes(moment, touching, std::vector<std::vector<ContactMode>>(contacts_.size()), point, x);
+  if (auto problem = find_modes(moment, touching, std::vector<std::vector<ContactMode>>(contacts_.size()), point, x))
+    return problem;
+  // Gaps that close in one limit may have rates that are not 0 together.
+  const ContactPoint behind = point_at(moment.t, moment.alpha, x);
+  const double at_rest = std::max(none, 1e-6 * fastest(moment, behind, x));
+  const auto moves = [&](int i) {
+    return mode_of(i, x) != ContactMode::open && std::abs(behind.normal_velocity(i)) > at_rest;
+  };
+  if (std::none_of(touching.begin(), touching.end(), moves)) return std::nullopt;
+  return fmt::format("the gaps of {} close at t = {:.17g} and cannot stay closed together: bodies jam", names(touching),
+                     moment.t);
 }
 
 /// The impulses, and the velocities behind them; false where there are none.

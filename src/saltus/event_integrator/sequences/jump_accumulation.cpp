@@ -1,6 +1,15 @@
 #include "saltus/event_integrator/sequences/jump_accumulation.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace saltus::event_integrator {
+namespace {
+
+/// Between two zeros a time T apart a guard gets about as far as its rate times T/4: here 200 roundings.
+constexpr double unresolved = 800.0 * 8.0 * rounding_unit;
+
+}  // namespace
 
 JumpAccumulation::JumpAccumulation(const SwitchingContext& switching_context, const Position& here)
     : system_(switching_context.system),
@@ -26,12 +35,30 @@ void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps, cons
       last_guard_[at(jump)] = HeldGuard{{jump, function}, inward};
       const double rate = cascade.rate(function);
       last_rate_[at(jump)] = rate;
-      // Between two zeros a time T apart a guard gets about as far as its rate times T/4: here 200 roundings.
-      shortest_cycle_[at(jump)] = rate > 0.0 ? 800.0 * 8.0 * rounding_unit * magnitude_[at(function)] / rate : 0.0;
+      shortest_cycle_[at(jump)] = rate > 0.0 ? unresolved * magnitude_[at(function)] / rate : 0.0;
     }
   }
+  note_bounces(cascade);
   series_.add(here_.t, executed_, here_.x);
   if (!cascade.resting().empty()) series_.clear_cycles();
+}
+
+/// Impacts leave gaps at 0 with rates that may be 0: what counts is how fast they closed.
+void JumpAccumulation::note_bounces(const JumpCascade& cascade) {
+  for (const auto& executed : cascade.executed().items()) {
+    const auto contact = std::find_if(system_.contacts.contacts.begin(), system_.contacts.contacts.end(),
+                                      [&](const auto& one) { return one.jump == executed.jump; });
+    if (contact == system_.contacts.contacts.end() || !contact->has_gap || executed.x[at(contact->closed)] != 0.0)
+      continue;
+    const int gap = kernel_.jump_guard(executed.jump, 0);
+    std::vector<double> slope(executed.x.size()), row(executed.x.size());
+    double rate = 0.0;
+    kernel_.field(here_.t, executed.x.data(), here_.state.alpha.data(), slope.data());
+    kernel_.gradient(gap, here_.t, executed.x.data(), here_.state.alpha.data(), row.data(), &rate);
+    for (std::size_t i = 0; i < row.size(); ++i) rate += row[i] * slope[i];
+    kernel_.scales(here_.t, executed.x.data(), here_.state.alpha.data(), magnitude_.data(), slope_.data());
+    shortest_cycle_[at(executed.jump)] = rate != 0.0 ? unresolved * magnitude_[at(gap)] / std::abs(rate) : 0.0;
+  }
 }
 
 void JumpAccumulation::end(const SeriesLimit& limit) {

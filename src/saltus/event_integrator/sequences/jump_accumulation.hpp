@@ -28,6 +28,8 @@ class JumpAccumulation {
   [[nodiscard]] double last_rate(int jump) const { return last_rate_[at(jump)]; }
 
  private:
+  void note_bounces(const JumpCascade& cascade);
+
   const model::System& system_;
   const evaluation::ModelKernel& kernel_;
   const Position& here_;

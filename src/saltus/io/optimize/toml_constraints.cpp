@@ -119,12 +119,14 @@ class ConstraintReader {
     for (const auto& [spelling, remedy] : wrong_signs) {
       if (!rest.starts_with(spelling)) continue;
       fail(fmt::format("'{}' is no relation of a constraint; there are <=, >= and ==", spelling), remedy, begin);
+      has_wrong_sign_ = true;
       break;
     }
     return 1;
   }
 
   void check_relations() {
+    if (has_wrong_sign_) return;
     const auto& found = constraint_.relations;
     if (found.empty()) {
       const bool inside = text_.find_first_of("<>=") != std::string_view::npos;
@@ -193,6 +195,7 @@ class ConstraintReader {
   std::string_view text_;
   ConstraintPlace place_;
   std::vector<Cut> cuts_;
+  bool has_wrong_sign_ = false;
   model::ConstraintDescription constraint_;
 };
 
