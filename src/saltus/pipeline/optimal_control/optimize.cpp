@@ -233,6 +233,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   }
   result.drawing = drawing_of(ocp.system, read.parameters, result.trajectory);
   result.events = std::move(run->events);
+  if (auto told = add_impulses(ocp, run->path.parameters, result); !told) return tl::unexpected(told.error());
   result.final = std::move(run->final);
   result.elements = std::move(run->elements);
   if (ocp.system.freezing) result.switching_functions = run->switching_functions;

@@ -46,6 +46,33 @@ void TouchingBodies::project(double t, const std::vector<ContactMode>& modes, st
   if (!held.empty()) correct(held, values_.velocity(held), contacts_.velocities, x);
 }
 
+std::vector<std::vector<double>> TouchingBodies::impulses(double t, const std::vector<double>& x,
+                                                          const std::vector<double>& x_after) {
+  constexpr double closed = 1e-6;  // gaps of an optimised trajectory
+  evaluate(t, x);
+  const auto m = static_cast<int>(contacts_.contacts.size());
+  std::vector<int> rows;
+  for (int i = 0; i < m; ++i) {
+    const auto& contact = contacts_.contacts[at(i)];
+    if (!contact.has_gap || values_.gap(i) > closed) continue;
+    rows.push_back(i);
+    for (int k = 0; contact.has_friction && k < contact.tangents(); ++k) rows.push_back(m * (1 + k) + i);
+  }
+  Eigen::VectorXd change(index(contacts_.velocities.size())), all = Eigen::VectorXd::Zero(values_.velocity.size());
+  for (std::size_t k = 0; k < contacts_.velocities.size(); ++k) {
+    const std::size_t v = at(contacts_.velocities[k]);
+    change(index(k)) = x_after[v] - x[v];
+  }
+  if (!rows.empty())
+    all(rows) = values_.responses(Eigen::all, rows).completeOrthogonalDecomposition().solve(change).eval();
+  std::vector<std::vector<double>> found;
+  for (int i = 0; i < m; ++i) {
+    found.push_back({all(i)});
+    for (int k = 0; k < contacts_.contacts[at(i)].tangents(); ++k) found.back().push_back(all(m * (1 + k) + i));
+  }
+  return found;
+}
+
 void TouchingBodies::evaluate(double t, const std::vector<double>& x) {
   kernel_.contacts(t, x.data(), alpha_.data(), values_);
 }

@@ -20,6 +20,10 @@ class TouchingBodies {
   /// Returns modes by gaps and rates alone: closed or open. Without contacts there are none.
   [[nodiscard]] std::vector<result::ContactMode> modes_at(double t, const std::vector<double>& x);
   void project(double t, const std::vector<result::ContactMode>& modes, std::vector<double>& x);
+  /// Returns the impulses that turn the velocities of x into those of x_after, by contact, as an event tells them: of
+  /// the contacts that are closed at x the least ones.
+  [[nodiscard]] std::vector<std::vector<double>> impulses(double t, const std::vector<double>& x,
+                                                          const std::vector<double>& x_after);
 
  private:
   void evaluate(double t, const std::vector<double>& x);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -16,11 +17,46 @@ model::Ocp physical_ocp(const model::Ocp& ocp) {
   return judged;
 }
 
+namespace {
+
+/// Behind the parameters of the physical system is that of a stabilisation which is followed down.
+model::System with_parameters(model::System system, const std::vector<double>& parameters) {
+  system.parameter_values.assign(parameters.begin(), parameters.begin() + index(system.parameter_names.size()));
+  return system;
+}
+
+}  // namespace
+
+Expected<void> add_impulses(const model::Ocp& ocp, const std::vector<double>& parameters, result::Result& run) {
+  const auto is_impact = [](const auto& event) { return event.kind == result::EventKind::impact; };
+  if (!ocp.physical || std::none_of(run.events.begin(), run.events.end(), is_impact)) return {};
+  const model::System system = with_parameters(*ocp.physical, parameters);
+  const auto kernel = evaluation::ModelKernel::compile(system);
+  if (!kernel) return tl::unexpected(kernel.error());
+  TouchingBodies bodies(system, *kernel);
+  result::Events events;
+  for (result::Event event : run.events) {
+    if (is_impact(event)) {
+      auto x = event.x, x_after = event.x_after;
+      x.resize(system.state_names.size(), 0.0);
+      x_after.resize(x.size(), 0.0);
+      event.impulse = bodies.impulses(event.t, x, x_after);
+      double largest = 0.0;
+      for (const auto& one : *event.impulse) largest = std::max(largest, std::abs(one.front()));
+      event.surfaces.clear();
+      for (std::size_t i = 0; i < event.impulse->size(); ++i) {
+        if (std::abs((*event.impulse)[i].front()) > 1e-6 * largest)
+          event.surfaces.push_back(system.contacts.contacts[i].name);
+      }
+    }
+    events.push_back(std::move(event));
+  }
+  run.events = std::move(events);
+  return {};
+}
+
 Expected<OptimizedPath> physical_path(const model::Ocp& ocp, const OptimizedPath& path, const result::Result& run) {
-  model::System system = *ocp.physical;
-  // Behind those of the physical system is the parameter of a stabilisation that is followed down.
-  system.parameter_values.assign(path.parameters.begin(),
-                                 path.parameters.begin() + index(system.parameter_names.size()));
+  const model::System system = with_parameters(*ocp.physical, path.parameters);
   const std::size_t shown = at(ocp.system.freezing->first_hidden), n = system.state_names.size();
   OptimizedPath physical = path;
   physical.parameters = system.parameter_values;

@@ -15,4 +15,9 @@ namespace saltus::pipeline {
 [[nodiscard]] Expected<OptimizedPath> physical_path(const model::Ocp& ocp, const OptimizedPath& path,
                                                     const result::Result& run);
 
+/// Gives the impacts of an optimised trajectory their impulses, and the contacts that have one: a frozen system of an
+/// optimisation does not sum them up.
+[[nodiscard]] Expected<void> add_impulses(const model::Ocp& ocp, const std::vector<double>& parameters,
+                                          result::Result& run);
+
 }  // namespace saltus::pipeline
