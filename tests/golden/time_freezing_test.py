@@ -249,6 +249,42 @@ class TimeFreezing(tool.ToolTest):
         # A pendulum upside down, not a ball that falls through the hump.
         self.assertLess(result["verification"]["open_loop"]["amplification"], 1e3)
 
+    def test_turns_of_a_slip_and_impulses_are_told(self):
+        """A block on a spring with friction turns twice before it sticks, and a ball's impact has its impulse in its row."""
+        spring = """[model]
+name = "spring"
+[states]
+x = 2
+z = 0
+vx = 0
+vz = 0
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+potential = "10*z + 2.5*x^2"
+[[contacts]]
+name = "floor_"
+gap = "z"
+tangent = { x = 1 }
+friction = 0.2
+[simulate]
+until = 4
+"""
+        self.run_tool("simulate", self.write("s.toml", spring), "--out", "e.json", code=0)
+        self.run_tool("simulate", "s.toml", "--method", "fesd", "--out", "f.json", code=0)
+        events, frozen = (json.loads((self.folder / f).read_text())["events"] for f in ("e.json", "f.json"))
+        self.assertEqual([event["kind"] for event in events], [event["kind"] for event in frozen])
+        self.assertEqual([event["kind"] for event in events][-1], "stick")
+        self.assertIn("slip", [event["kind"] for event in events])
+        for a, b in zip(events, frozen, strict=True):
+            self.assertAlmostEqual(a["t"], b["t"], delta=1e-4)
+        self.run_tool("simulate", self.write("b.toml", BALL), "--method", "fesd", "--out", "b.json", code=0)
+        ball = json.loads((self.folder / "b.json").read_text())
+        impact = next(event for event in ball["events"] if event["kind"] == "impact")
+        column = ball["outputs"].index("impulse(ground)")
+        told = [row[column] for row in ball["trajectory"]["outputs"] if row[column] != 0.0]
+        self.assertEqual(told, [impact["impulse"][0][0]])
+
     def test_bodies_are_only_so_deep_in_each_other(self):
         """Gaps that nothing corrects drift: the ball cannot stay on the hump, and sinks as far as it may."""
         depths = []

@@ -48,7 +48,10 @@ class PhysicalTime {
     for (std::size_t r = 0; r < raw.t.size();) {
       std::size_t last = r;
       while (last + 1 < raw.t.size() && same_time(raw.x[r][clock_], raw.x[last + 1][clock_])) ++last;
-      const double t = raw.x[r][clock_];
+      // Where an impact begins the run its error may take the clock back.
+      double t = raw.x[r][clock_];
+      if (!run_.trajectory.t.empty()) t = std::max(t, run_.trajectory.t.back());
+      impulse_.clear();
       std::vector<Event> here;
       for (; next < events.size() && (events.x(next)[clock_] <= t || same_time(events.x(next)[clock_], t)); ++next) {
         here.push_back(events[next]);
@@ -57,7 +60,7 @@ class PhysicalTime {
       if (!here.empty()) take_events(here, t);
       const bool is_event = run_.events.size() > before;
       if (is_event && last > r) add_row(raw, r, t);
-      add_row(raw, last, t);
+      add_row(raw, last, t, impulse_);
       r = last + 1;
     }
     auto& rows = run_.trajectory;
@@ -85,14 +88,21 @@ class PhysicalTime {
     return result;
   }
 
-  void add_row(const result::Trajectory& raw, std::size_t r, double t) {
+  /// The row behind an impact has its impulses.
+  void add_row(const result::Trajectory& raw, std::size_t r, double t,
+               const std::vector<std::vector<double>>& impulse = {}) {
     auto& rows = run_.trajectory;
     rows.t.push_back(t);
     rows.x.push_back(shown_states(system_, raw.x[r]));
     rows.u.push_back(raw.u[r]);
     rows.alpha.push_back(kept(std::vector<double>(raw.alpha[r])));
     rows.mode.push_back(kept(Mode(raw.mode[r])));
-    rows.outputs.push_back(outputs(raw.outputs[r]));
+    auto values = outputs(raw.outputs[r]);
+    for (std::size_t i = 0; i < impulse.size(); ++i) {
+      const auto& contact = freezing_.contacts[i];
+      values[at(contact.gap_output) + 2 + at(contact.tangents)] = impulse[i].front();
+    }
+    rows.outputs.push_back(std::move(values));
     if (!freezing_.contacts.empty()) rows.contact_modes.push_back(contact_modes(raw.mode[r]));
     if (!shows_regions_) return;
     if (!raw.regions.empty()) rows.regions.push_back(raw.regions[r]);
@@ -196,7 +206,7 @@ class PhysicalTime {
     return true;
   }
 
-  [[nodiscard]] bool take_impact(Event& event) const {
+  [[nodiscard]] bool take_impact(Event& event) {
     std::vector<std::vector<double>> impulse;
     for (const auto& contact : freezing_.contacts) {
       if (contact.impulse < 0) return take_jump_of_velocities(event);
@@ -209,6 +219,7 @@ class PhysicalTime {
     }
     if (event.surfaces.empty()) return false;
     event.kind = EventKind::impact;
+    impulse_ = impulse;
     event.impulse = std::move(impulse);
     return true;
   }
@@ -274,6 +285,7 @@ class PhysicalTime {
   const model::TimeFreezing& freezing_;
   result::Result& run_;
   std::size_t clock_ = 0;
+  std::vector<std::vector<double>> impulse_;  ///< of the impact at this time, by contact; empty: none
   double standing_ = 0.0;
   bool shows_regions_ = true;      ///< they are the user's
   std::vector<std::size_t> kept_;  ///< columns
