@@ -98,6 +98,9 @@ void OutputRows::write_lines(double t_end, const ode::DenseStep& dense) {
   ranges.widen(0, std::span(tolerance).first(first_selection));
   for (std::size_t k = first_selection; k < tolerance.size(); ++k) ranges.widen(column(k), tolerance[k]);
   for (std::size_t k = 0; k < tolerance.size(); ++k) tolerance[k] = ranges.tolerance(column(k));
+  // Stiff steps may have bends that nobody would see, nor wait for.
+  constexpr double invisible = 1e-7;
+  if (t_end - here_.t <= invisible * (options_.until - options_.from)) return;
   // Series take steps over whole periods.
   const int parts = dense.is_series() ? 8 : 2;
   const auto curve = [&](double theta, double* columns) { columns_at(theta, dense, columns); };
