@@ -1,6 +1,6 @@
 """Hops of the monoped one behind the other: a start for a longer way whose sides are right.
 
-python3 benchmarks/monoped/hops.py RESULT.json RESULT.json … --out START.json [--points S] [--fill]
+python3 benchmarks/monoped/hops.py RESULT.json RESULT.json … --out START.json [--points S] [--fill] [--intervals N]
 
 Every result is one of `saltus optimize` that begins and ends at rest, leg straight, with equally long intervals and the
 same number of elements. A hop may be there several times: the robot moves the same wherever it stands.
@@ -10,6 +10,7 @@ is sampled (as --start does where numbers of stages differ) loses elements in wh
 
 import argparse
 import json
+import math
 import pathlib
 
 STATES = 9  # of the frozen system: positions, velocities, clock
@@ -174,6 +175,67 @@ def with_points(start, points):
     return {**start, "options": options, "start_values": {**values, "primal": primal}}
 
 
+def pieces_of(start):
+    """All elements one behind the other: duration in frozen time, states at the start, blocks by stage, torques."""
+    values, controls, count = start["start_values"]["primal"], len(start["u"][0]), len(start["h"][0])
+    left, step = [*start["trajectory"]["x"][0][:CLOCK], 0.0], start["horizon"] / len(start["u"])
+    block = len(values) // len(start["u"])
+    for k in range(len(start["u"])):
+        one = values[k * block : (k + 1) * block]
+        elements = Elements(one, controls, count, stages(start))
+        for length, rows in zip(elements.lengths, elements.blocks):
+            if length > EMPTY:
+                yield length * one[controls] * step, left, rows, one[:controls]
+            left = rows[0][-1]
+
+
+def part(piece, first, last, points):
+    """Of a piece, between two parts of its duration."""
+    duration, left, rows, torques = piece
+    whole = [(1.0, left, rows)]
+    times = [first + (last - first) * node for node in RADAU[points]]
+    blocks = [[sampled(whole, group, time, points) for time in times] for group in range(len(GROUPS))]
+    return duration * (last - first), sampled(whole, 0, first, points) if first > 0 else left, blocks, torques
+
+
+def cut_at(piece, time, points):
+    """The part of its duration at which the clock of a piece shows a time."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if sampled([(1.0, piece[1], piece[2])], 0, middle, points)[CLOCK] < time else (low, middle)
+    return low
+
+
+def with_intervals(start, intervals):
+    """A result with other intervals: torques are those that act longest in each."""
+    points, count, step = stages(start), len(start["h"][0]), start["horizon"] / intervals
+    rest, primal, torques = list(pieces_of(start)), [], []
+    for k in range(intervals):
+        own, end = [], (k + 1) * step
+        while rest and rest[0][2][0][-1][CLOCK] <= end + 1e-9:
+            own.append(rest.pop(0))
+        if rest and k < intervals - 1:
+            cut = cut_at(rest[0], end, points)
+            if cut > 1e-4:
+                own.append(part(rest[0], 0.0, cut, points))
+                rest[0] = part(rest[0], cut, 1.0, points)
+        while len(own) > count:
+            own.remove(min(own, key=lambda piece: piece[0]))
+        parts = [1] * len(own)
+        while sum(parts) < count:
+            parts[max(range(len(own)), key=lambda n: own[n][0] / parts[n])] += 1
+        elements = [part(piece, i / n, (i + 1) / n, points) for piece, n in zip(own, parts) for i in range(n)]
+        total = math.fsum(piece[0] for piece in elements)
+        torques.append(max(own, key=lambda piece: piece[0])[3])
+        primal += [*torques[-1], total / step, *[piece[0] / total for piece in elements]]
+        primal += [value for piece in elements for group in piece[2] for row in group for value in row]
+    options = {**start["options"], "optimize.control_intervals": intervals}
+    return {**start, "options": options, "u": torques, "h": [[step / count] * count] * intervals,
+            "grid": [k * step for k in range(intervals + 1)], "speed_of_time": [1.0] * intervals,
+            "start_values": {**start["start_values"], "primal": primal}}
+
+
 def joined(hops):
     """A result to start from."""
     start = json.loads(json.dumps(hops[0]))
@@ -198,6 +260,7 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--points", type=int, help="stages")
     parser.add_argument("--fill", action="store_true", help="elements of length zero")
+    parser.add_argument("--intervals", type=int)
     arguments = parser.parse_args()
     hops = [json.loads(pathlib.Path(name).read_text(encoding="utf-8")) for name in arguments.hops]
     start = joined(hops)
@@ -205,6 +268,8 @@ def main():
         start = with_points(start, arguments.points)
     if arguments.fill:
         start = filled(start)
+    if arguments.intervals:
+        start = with_intervals(start, arguments.intervals)
     pathlib.Path(arguments.out).write_text(json.dumps(start), encoding="utf-8")
 
 
