@@ -134,6 +134,7 @@ TEST(Descent, WhatAClosureHoldsIsNoChoice) {
   const Solution solution = descended(problem, {G}, Eigen::Vector2d(0.0, 1.0));
   EXPECT_NEAR(solution.w.norm(), 0.0, 1e-9);
   EXPECT_EQ(count(solution, HomotopyPhase::branch), 1);
+  EXPECT_EQ(count(solution, HomotopyPhase::lpcc), 0);
   EXPECT_EQ(solution.certificate.b_stationary, true);
 }
 
