@@ -1,11 +1,12 @@
-"""The monoped over 3 m in 30 intervals, or another multiple of 5: a short way is solved, and five of it are the start.
+"""The monoped over 3 m in 30 intervals: a short way is solved, and five of it are the start.
 
-python3 benchmarks/monoped/chain.py SALTUS [--by slide|hop] [--form step|stewart] [--intervals 30] [--keep FOLDER]
+python3 benchmarks/monoped/chain.py SALTUS [--by slide|hop] [--form step|stewart] [--finer 40 50 …] [--keep FOLDER]
     [--stages KEY=VALUE,… …]
 
 slide: 0.25 m in 6 intervals (0.6 s) with two stages, then three, then the goal moved on to 0.4 m.
 hop: 0.25 m with three stages at once, with a cost of a foot that moves near the ground, from a guess that lifts it.
 The stages of the long problem are those of run.py.
+--finer: other intervals begin at that result, cut where theirs end, each with the settings of FINER.
 """
 
 import argparse
@@ -33,13 +34,14 @@ WAYS = {
     "hop": [{"optimize.stages": 3, "clear": 5}],
 }
 STAGES = {"slide": ["points=3,first=branch,sigma=0.001"],
-          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5", "goal=3", "clear=0"]}
+          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5", "goal=3"]}
+FINER = "points=3,first=branch,sigma=0.001,clear=5,optimize.step_bounds=0.97"
 
 
 def way(arguments, folder):
     """The result of the short way."""
     kind, before = arguments.by, None
-    common = {"optimize.native": "on", "optimize.control_intervals": arguments.intervals // 5,
+    common = {"optimize.native": "on", "optimize.control_intervals": 6,
               "optimize.reformulation": arguments.form}
     model = folder / "way.toml"
     text = (HERE / "by_foot.toml").read_text(encoding="utf-8")
@@ -54,12 +56,18 @@ def way(arguments, folder):
     return before
 
 
+def run(arguments, folder, intervals, start, *stages):
+    subprocess.run([sys.executable, HERE / "run.py", arguments.saltus, "--positions", "foot", "--intervals", str(intervals),
+                    "--start", start, "--keep", folder, "--seconds", arguments.seconds, "--stages", *stages], check=True)
+    return folder / f"{intervals}-{len(stages) - 1}.json"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("saltus")
     parser.add_argument("--by", choices=list(WAYS), default="slide")
     parser.add_argument("--form", choices=["step", "stewart"], default="step")
-    parser.add_argument("--intervals", type=int, default=30)
+    parser.add_argument("--finer", type=int, nargs="+", default=[])
     parser.add_argument("--seconds", default="400", help="of every problem")
     parser.add_argument("--keep", help="folder for models and results")
     parser.add_argument("--stages", nargs="+")
@@ -70,11 +78,11 @@ def main():
         short, start = way(arguments, folder), folder / "start.json"
         subprocess.run([sys.executable, HERE / "hops.py", *[short] * 5, "--out", start], check=True)
         first, *others = arguments.stages or STAGES[arguments.by]
-        subprocess.run([sys.executable, HERE / "run.py", arguments.saltus, "--positions", "foot",
-                        "--intervals", str(arguments.intervals), "--start", start, "--keep", folder,
-                        "--seconds", arguments.seconds, "--stages", f"form={arguments.form},{first}", *others],
-                       check=True)
-
+        long = run(arguments, folder, 30, start, f"form={arguments.form},{first}", *others)
+        for intervals in arguments.finer:
+            subprocess.run([sys.executable, HERE / "hops.py", long, "--out", start, "--intervals", str(intervals)],
+                           check=True)
+            run(arguments, folder, intervals, start, FINER)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,20 @@
 """Hops of the monoped one behind the other: a start for a longer way whose sides are right.
 
-python3 benchmarks/monoped/hops.py RESULT.json RESULT.json … --out START.json [--points S] [--fill]
+python3 benchmarks/monoped/hops.py RESULT.json RESULT.json … --out START.json [--points S] [--intervals N]
+    [--stewart]
 
 Every result is one of `saltus optimize` that begins and ends at rest, leg straight, with equally long intervals and the
 same number of elements. A hop may be there several times: the robot moves the same wherever it stands.
 --points: the elements get that many stages, on the polynomials of theirs. Sides stay what they are, while a result that
 is sampled (as --start does where numbers of stages differ) loses elements in which time stands still.
+--intervals: the same motion, its elements cut where the N intervals end; none is left with length zero.
+--stewart: selections and multipliers as in Stewart's form; behind the other changes, which know the step form only.
 """
 
 import argparse
+import itertools
 import json
+import math
 import pathlib
 
 STATES = 9  # of the frozen system: positions, velocities, clock
@@ -93,34 +98,6 @@ class Elements:
                 at += stages * group
             self.blocks.append(block)
 
-    def values(self):
-        flat = [value for block in self.blocks for rows in block for row in rows for value in row]
-        return [*self.head, *self.lengths, *flat]
-
-    def run_of(self, empty):
-        """The empty element and its neighbours on one side, those behind it first, that are equally long."""
-        count = len(self.lengths)
-        side = list(range(empty + 1, count)) or list(range(empty - 1, -1, -1))
-        length = self.lengths[side[0]]
-        while side and abs(self.lengths[side[-1]] - length) > 1e-9:
-            side.pop()
-        return sorted([empty, *side])
-
-    def fill(self, left):
-        """left: the states at the start of the interval."""
-        for empty in [n for n, length in enumerate(self.lengths) if length < EMPTY]:
-            run = self.run_of(empty)
-            begin = self.blocks[run[0] - 1][0][-1] if run[0] > 0 else left
-            old, total = [], sum(self.lengths[n] for n in run)
-            for n in run:
-                if n != empty:
-                    old.append((self.lengths[n], begin, self.blocks[n]))
-                    begin = self.blocks[n][0][-1]
-            for i, n in enumerate(run):
-                times = [total * (i + node) / len(run) for node in RADAU[self.stages]]
-                self.blocks[n] = [[sampled(old, group, time, self.stages) for time in times] for group in range(len(GROUPS))]
-                self.lengths[n] = total / len(run)
-
 
 def sampled(elements, group, time, stages):
     """Variables at a time since the start of the first element; an element: length, states at its start, block."""
@@ -132,19 +109,6 @@ def sampled(elements, group, time, stages):
             return [max(value, 0.0) for value in interpolated(RADAU[stages], block[group], local)]
         time -= length
     raise AssertionError
-
-
-def filled(start):
-    """A result without elements of length zero."""
-    values, controls, count = start["start_values"], len(start["u"][0]), len(start["h"][0])
-    old, primal, left = values["primal"], [], [*start["trajectory"]["x"][0][:CLOCK], 0.0]
-    block = len(old) // len(start["u"])
-    for first in range(0, len(old), block):
-        elements = Elements(old[first : first + block], controls, count, stages(start))
-        elements.fill(left)
-        primal += elements.values()
-        left = elements.blocks[-1][0][-1]
-    return {**start, "start_values": {**values, "primal": primal}}
 
 
 def with_points(start, points):
@@ -174,6 +138,91 @@ def with_points(start, points):
     return {**start, "options": options, "start_values": {**values, "primal": primal}}
 
 
+def pieces_of(start):
+    """All elements one behind the other: duration in frozen time, states at the start, blocks by stage, torques."""
+    values, controls, count = start["start_values"]["primal"], len(start["u"][0]), len(start["h"][0])
+    left, step = [*start["trajectory"]["x"][0][:CLOCK], 0.0], start["horizon"] / len(start["u"])
+    block = len(values) // len(start["u"])
+    for k in range(len(start["u"])):
+        one = values[k * block : (k + 1) * block]
+        elements = Elements(one, controls, count, stages(start))
+        for length, rows in zip(elements.lengths, elements.blocks):
+            if length > EMPTY:
+                yield length * one[controls] * step, left, rows, one[:controls]
+            left = rows[0][-1]
+
+
+def part(piece, first, last, points):
+    """Of a piece, between two parts of its duration."""
+    duration, left, rows, torques = piece
+    whole = [(1.0, left, rows)]
+    times = [first + (last - first) * node for node in RADAU[points]]
+    blocks = [[sampled(whole, group, time, points) for time in times] for group in range(len(GROUPS))]
+    return duration * (last - first), sampled(whole, 0, first, points) if first > 0 else left, blocks, torques
+
+
+def cut_at(piece, time, points):
+    """The part of its duration at which the clock of a piece shows a time."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if sampled([(1.0, piece[1], piece[2])], 0, middle, points)[CLOCK] < time else (low, middle)
+    return low
+
+
+def with_intervals(start, intervals):
+    """A result with other intervals: torques are those that act longest in each."""
+    points, count, step = stages(start), len(start["h"][0]), start["horizon"] / intervals
+    rest, primal, torques = list(pieces_of(start)), [], []
+    for k in range(intervals):
+        own, end = [], (k + 1) * step
+        while rest and rest[0][2][0][-1][CLOCK] <= end + 1e-9:
+            own.append(rest.pop(0))
+        if rest and k < intervals - 1:
+            cut = cut_at(rest[0], end, points)
+            if cut > 1e-4:
+                own.append(part(rest[0], 0.0, cut, points))
+                rest[0] = part(rest[0], cut, 1.0, points)
+        while len(own) > count:
+            own.remove(min(own, key=lambda piece: piece[0]))
+        parts = [1] * len(own)
+        while sum(parts) < count:
+            parts[max(range(len(own)), key=lambda n: own[n][0] / parts[n])] += 1
+        elements = [part(piece, i / n, (i + 1) / n, points) for piece, n in zip(own, parts) for i in range(n)]
+        total = math.fsum(piece[0] for piece in elements)
+        torques.append(max(own, key=lambda piece: piece[0])[3])
+        primal += [*torques[-1], total / step, *[piece[0] / total for piece in elements]]
+        primal += [value for piece in elements for group in piece[2] for row in group for value in row]
+    options = {**start["options"], "optimize.control_intervals": intervals}
+    return {**start, "options": options, "u": torques, "h": [[step / count] * count] * intervals,
+            "grid": [k * step for k in range(intervals + 1)], "speed_of_time": [1.0] * intervals,
+            "start_values": {**start["start_values"], "primal": primal}}
+
+
+def of_regions(selections, multipliers):
+    """Stewart's theta, lambda and mu of a stage from selections and the signed values (two multipliers each) of gap, rate, slip."""
+    psi = [multipliers[2 * j + 1] - multipliers[2 * j] for j in range(len(selections))]
+    theta, distance = [], []
+    for signs in itertools.product((1, -1), repeat=len(psi)):
+        theta.append(math.prod(alpha if sign > 0 else 1 - alpha for alpha, sign in zip(selections, signs)))
+        distance.append(sum(abs(value) - sign * value for value, sign in zip(psi, signs)))
+    return theta, distance, [-sum(abs(value) for value in psi)]
+
+
+def with_regions(start):
+    """A result in Stewart's form."""
+    values, controls, count = start["start_values"]["primal"], len(start["u"][0]), len(start["h"][0])
+    block, primal = len(values) // len(start["u"]), []
+    for first in range(0, len(values), block):
+        one = values[first : first + block]
+        primal += one[: controls + 1 + count]
+        for states, selections, _, multipliers in Elements(one, controls, count, stages(start)).blocks:
+            regions = zip(*[of_regions(*stage) for stage in zip(selections, multipliers)])
+            primal += [value for group in (states, *regions) for row in group for value in row]
+    options = {**start["options"], "optimize.reformulation": "stewart"}
+    return {**start, "options": options, "start_values": {**start["start_values"], "primal": primal}}
+
+
 def joined(hops):
     """A result to start from."""
     start = json.loads(json.dumps(hops[0]))
@@ -197,14 +246,17 @@ def main():
     parser.add_argument("hops", nargs="+")
     parser.add_argument("--out", required=True)
     parser.add_argument("--points", type=int, help="stages")
-    parser.add_argument("--fill", action="store_true", help="elements of length zero")
+    parser.add_argument("--intervals", type=int)
+    parser.add_argument("--stewart", action="store_true")
     arguments = parser.parse_args()
     hops = [json.loads(pathlib.Path(name).read_text(encoding="utf-8")) for name in arguments.hops]
     start = joined(hops)
     if arguments.points:
         start = with_points(start, arguments.points)
-    if arguments.fill:
-        start = filled(start)
+    if arguments.intervals:
+        start = with_intervals(start, arguments.intervals)
+    if arguments.stewart:
+        start = with_regions(start)
     pathlib.Path(arguments.out).write_text(json.dumps(start), encoding="utf-8")
 
 

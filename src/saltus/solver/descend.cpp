@@ -76,7 +76,10 @@ class Descent {
     of.stationarity = certificate::stationarity(run_.problem, branch().w, multipliers, &branch().problem->reduction());
     of.biactive = static_cast<int>(std::count(states_.biactive.begin(), states_.biactive.end(), true));
     of.stationarity_type = certificate::stationarity_type(multipliers, states_.biactive, tolerance());
-    if (of.stationarity_type == StationarityType::S && of.stationarity <= tolerance()) of.b_stationary = true;
+    // Without a choice there is no other branch at this point.
+    const bool has_choice = std::find(states_.is_open.begin(), states_.is_open.end(), true) != states_.is_open.end();
+    const bool is_decided = of.stationarity_type == StationarityType::S || !has_choice;
+    if (is_decided && of.stationarity <= tolerance()) of.b_stationary = true;
   }
 
   /// Takes the branch with the group on its other side if that is better.

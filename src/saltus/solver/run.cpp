@@ -11,8 +11,6 @@ using result::Termination;
 
 namespace {
 
-/// Of one problem; one that needs more is better off with another sigma.
-constexpr int problem_iteration_limit = 500;
 /// Of the solver's scaled error; what is missing to rounding, refine.hpp adds.
 constexpr double problem_tolerance = 1e-10;
 
@@ -37,11 +35,10 @@ bool Run::is_over() {
   return stopped.has_value();
 }
 
-NlpOptions Run::nlp_options() const {
+NlpOptions Run::nlp_options(int iteration_limit) const {
   NlpOptions result;
   result.tolerance = problem_tolerance;
-  result.iteration_limit =
-      std::max(0, std::min(problem_iteration_limit, options.iteration_limit - solution.iterations));
+  result.iteration_limit = std::max(0, std::min(iteration_limit, options.iteration_limit - solution.iterations));
   if (options.time_limit) result.time_limit = std::max(0.0, *options.time_limit - seconds());
   result.is_interrupted = options.is_interrupted;
   return result;
@@ -65,8 +62,7 @@ void Run::record(result::HomotopyStep step, const NlpReport* report, double star
 crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, int iteration_limit,
                                     std::string message, std::optional<double> cutoff) {
   const double started = seconds();
-  NlpOptions limited = nlp_options();
-  limited.iteration_limit = std::min(limited.iteration_limit, iteration_limit);
+  NlpOptions limited = nlp_options(iteration_limit);
   limited.objective_cutoff = cutoff;
   crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, limited);
   result::HomotopyStep step;

@@ -27,8 +27,8 @@ class Run {
   [[nodiscard]] double seconds() const { return stopwatch_.seconds(); }
   /// Returns whether a limit has been reached or the user wants an end; `stopped` says which.
   [[nodiscard]] bool is_over();
-  /// Returns the limits of the next problem.
-  [[nodiscard]] NlpOptions nlp_options() const;
+  /// Returns the limits of the next problem. A relaxed one that needs more iterations is better off with another sigma.
+  [[nodiscard]] NlpOptions nlp_options(int iteration_limit = 500) const;
   void record(result::HomotopyStep step, const NlpReport* report, double started);
   /// Solves a branch problem, counts and records it. It may be given up where its objective is above `cutoff`.
   [[nodiscard]] crossover::Branch solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
@@ -41,9 +41,9 @@ class Run {
   const SolveOptions& options;
   std::vector<std::vector<int>> groups;
   Solution solution;
-  RelaxedState relaxed;                     ///< the last relaxed problem that left a point
-  std::optional<crossover::Branch> branch;  ///< the best one accepted
-  std::optional<crossover::Branch> refused; ///< feasible, but its objective was too far above the relaxed one
+  RelaxedState relaxed;                      ///< the last relaxed problem that left a point
+  std::optional<crossover::Branch> branch;   ///< the best one accepted
+  std::optional<crossover::Branch> refused;  ///< feasible, but its objective was too far above the relaxed one
   std::optional<result::Termination> stopped;
   std::string failure;         ///< why the last relaxed problem failed
   bool is_diverging = false;   ///< it failed since its iterates grow without bounds

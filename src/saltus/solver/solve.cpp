@@ -15,9 +15,8 @@ namespace {
 using homotopy::Steering;
 using result::Termination;
 
-/// Of the branch problem of a start, in one round; and how many more rounds.
-constexpr int start_iterations = 500;
-constexpr int start_rounds = 5;
+/// Of the branch problem of a start, which may be far from its solution. In one go: the solver keeps its barrier.
+constexpr int start_iterations = 3000;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
@@ -83,18 +82,21 @@ PathEnd follow_with_restarts(Run& run, const Start& start) {
   return follow_relaxed(run, attempt);
 }
 
-/// The branch of the start's sides, if it has a solution. A start may be far from it: as long as only iterations are
-/// missing it goes on from where it has come to.
+double infeasibility_of(mpcc::Problem& problem, const Eigen::VectorXd& w) {
+  return std::max(certificate::scaled_infeasibility(problem, w), certificate::complementarity(problem, w));
+}
+
+/// The branch of the start's sides, if it has a solution. Where a limit ends it, its point is kept if it is more nearly
+/// feasible than the start.
 bool solve_first_branch(Run& run, const Eigen::VectorXd& w) {
   Eigen::VectorXd c(run.problem.rows());
   run.problem.functions(w, c);
   const auto sides = crossover::smaller_sides(run.problem, run.groups, c);
   auto branch = run.solve_branch(sides, w, start_iterations, "sides of the start");
-  for (int i = 0; i < start_rounds && branch.report.termination == Termination::iteration_limit && !run.is_over();
-       ++i) {
-    branch = run.solve_branch(sides, branch.w, start_iterations, "sides of the start");
-  }
-  if (!branch.is_feasible(run.options.tolerance) || !std::isfinite(branch.objective)) return false;
+  const bool is_better = run.is_over() && std::max(branch.primal_infeasibility, branch.complementarity_residual) <
+                                              infeasibility_of(run.problem, w);
+  if (!is_better && !branch.is_feasible(run.options.tolerance)) return false;
+  if (!std::isfinite(branch.objective)) return false;
   run.branch = std::move(branch);
   return true;
 }

@@ -120,13 +120,32 @@ TEST(Descent, GroupsFlipTogetherAndClosuresHold) {
   }
 }
 
+TEST(Descent, WhatAClosureHoldsIsNoChoice) {
+  auto statement = needs_a_flip();
+  small::imply_signs(statement);
+  mpcc::PolynomialProblem inner(statement);
+  small::imply_signs(inner);
+  mpcc::CountingProblem problem(inner);
+  problem.set_closure([](const auto&) {
+    mpcc::BranchClosure closure;
+    closure.at_lower = {0};
+    return closure;
+  });
+  const Solution solution = descended(problem, {G}, Eigen::Vector2d(0.0, 1.0));
+  EXPECT_NEAR(solution.w.norm(), 0.0, 1e-9);
+  EXPECT_EQ(count(solution, HomotopyPhase::branch), 1);
+  EXPECT_EQ(count(solution, HomotopyPhase::lpcc), 0);
+  EXPECT_EQ(solution.certificate.b_stationary, true);
+}
+
 MpccMultipliers of_pairs(const Eigen::VectorXd& nu_G, const Eigen::VectorXd& nu_H) {
   return {.rows = {}, .lower = {}, .upper = {}, .G = nu_G, .H = nu_H};
 }
 
 TEST(StationarityType, ByTheSignsOnBiactivePairs) {
   const auto type = [](double G0, double H0, double G1, double H1) {
-    return certificate::stationarity_type(of_pairs(Eigen::Vector2d(G0, G1), Eigen::Vector2d(H0, H1)), {true, true}, 1e-8);
+    return certificate::stationarity_type(of_pairs(Eigen::Vector2d(G0, G1), Eigen::Vector2d(H0, H1)), {true, true},
+                                          1e-8);
   };
   EXPECT_EQ(type(1.0, 2.0, 0.0, 3.0), StationarityType::S);
   EXPECT_EQ(type(1.0, 2.0, -1e-9, 3.0), StationarityType::S);  // rounding

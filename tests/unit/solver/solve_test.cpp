@@ -1,5 +1,6 @@
 #include "saltus/solver/solve.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -218,6 +219,60 @@ TEST(Solve, StopsWhereItIsToldTo) {
   const Solution limited = solved(problem, start, options);
   EXPECT_EQ(limited.termination, Termination::iteration_limit) << log_of(limited);
   EXPECT_LE(limited.iterations, 10);
+}
+
+/// Needs that many iterations for every problem; with fewer it leaves a point that is not quite feasible.
+class SlowSolver final : public NlpSolver {
+ public:
+  explicit SlowSolver(int needed) : needed_(needed) {}
+  [[nodiscard]] NlpReport solve(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options) override {
+    NlpOptions enough = options;
+    enough.iteration_limit = 500;
+    NlpReport report = ipopt_.solve(nlp, point, enough);
+    report.iterations = std::min(needed_, options.iteration_limit);
+    if (options.iteration_limit >= needed_) return report;
+    report.termination = Termination::iteration_limit;
+    point.w.array() += 1e-7;
+    point.y.array() += 10.0;  // so that no last digits are found
+    return report;
+  }
+  [[nodiscard]] const char* name() const override { return "slow"; }
+
+ private:
+  adapters::IpoptSolver ipopt_;
+  int needed_;
+};
+
+/// min (w0 - 1)^2 + w1^3 + w1^2 with w0 (w0 + 1) = w2 = 2, from its branch.
+Solution solved_slowly(int needed, int limit) {
+  auto statement = small::minimum_on_one_axis();
+  statement.variables = 3;
+  statement.w_bounds = {Eigen::Vector3d::Constant(-infinity), Eigen::Vector3d::Constant(infinity)};
+  small::add_row(statement, {{{1.0, {2}}, {1.0, {1}}, {-1.0, {0, 0, 1}}}}, 0.0, 0.0);
+  small::add_row(statement, {{{1.0, {0, 0, 2}}}}, 4.0, 4.0);
+  mpcc::PolynomialProblem problem(statement);
+  SlowSolver slow(needed);
+  adapters::HighsLpcc highs;
+  SolveOptions options;
+  options.first = FirstProblem::branch;
+  options.iteration_limit = limit;
+  auto solution = solve(problem, slow, highs, options, Start{.w = Eigen::Vector3d(3.0, 0.0, 1.0), .multipliers = {}});
+  EXPECT_TRUE(solution.has_value());
+  return solution ? *solution : Solution{};
+}
+
+TEST(Solve, ABranchOfTheStartIsSolvedInOneGo) {
+  const Solution solution = solved_slowly(1200, 3000);
+  EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
+  EXPECT_EQ(solution.homotopy.size(), 1u) << log_of(solution);
+}
+
+TEST(Solve, ABranchOfTheStartIsKeptWhereALimitEndsIt) {
+  const Solution solution = solved_slowly(1200, 900);
+  EXPECT_EQ(solution.termination, Termination::iteration_limit) << log_of(solution);
+  EXPECT_TRUE(solution.crossed_over);
+  EXPECT_NEAR(solution.w[0], 1.0, 1e-6);
+  EXPECT_GT(solution.certificate.primal_infeasibility, 1e-8);
 }
 
 TEST(Solve, EveryProblemIsReported) {

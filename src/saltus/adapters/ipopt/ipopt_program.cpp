@@ -56,7 +56,7 @@ void IpoptProgram::set(mpcc::Problem& problem, solver::NlpPoint& point, const so
   acceptable_ = options.acceptable_tolerance;
   feasible_ = std::min(options.tolerance, feasible);
   cutoff_ = options.objective_cutoff.value_or(last_objective_);
-  is_cut_off_ = false;
+  is_cut_off_ = is_near_ = false;
   find_rows();
 }
 
@@ -70,9 +70,9 @@ void IpoptProgram::watch(double objective, double primal_infeasibility, double d
   last_objective_ = objective;
   is_cut_off_ = std::max(primal_infeasibility, mu) <= nearly_feasible &&
                 objective > cutoff_ + nearly_optimal * std::max(1.0, std::abs(cutoff_));
-  const bool is_near = primal_infeasibility <= feasible_ && mu <= small_barrier;
-  equal_ = is_near && is_equal ? equal_ + 1 : 0;
-  if (!is_near || !(dual_infeasibility < best_error_)) return;
+  is_near_ = primal_infeasibility <= feasible_ && mu <= small_barrier;
+  equal_ = is_near_ && is_equal ? equal_ + 1 : 0;
+  if (!is_near_ || !(dual_infeasibility < best_error_)) return;
   const auto n = static_cast<Ipopt::Index>(point_->w.size());
   const auto m = static_cast<Ipopt::Index>(rows_.size());
   best_.w.resize(n);
@@ -195,17 +195,20 @@ bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Ipopt::I
   return !stands_still() && !is_exhausted() && !is_cut_off() && !(is_interrupted_ && is_interrupted_());
 }
 
-void IpoptProgram::finalize_solution(Ipopt::SolverReturn /*status*/, Ipopt::Index n, const double* w,
-                                     const double* z_lower, const double* z_upper, Ipopt::Index m, const double* /*g*/,
-                                     const double* y, double objective, const Ipopt::IpoptData* /*data*/,
+void IpoptProgram::finalize_solution(Ipopt::SolverReturn status, Ipopt::Index n, const double* w, const double* z_lower,
+                                     const double* z_upper, Ipopt::Index m, const double* /*g*/, const double* y,
+                                     double objective, const Ipopt::IpoptData* /*data*/,
                                      Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
   y_.setZero();
   y_(rows_) = Input(y, m);
   *point_ = {.w = Input(w, n), .y = y_, .z_lower = Input(z_lower, n), .z_upper = Input(z_upper, n)};
   objective_ = objective;
-  if (!is_exhausted()) return;
+  const bool is_limited = status == Ipopt::MAXITER_EXCEEDED || status == Ipopt::WALLTIME_EXCEEDED;
+  const bool was_nearer = is_limited && !is_near_ && std::isfinite(best_error_);
+  if (!is_exhausted() && !was_nearer) return;
   y_(rows_) = best_.y;
   *point_ = {.w = best_.w, .y = y_, .z_lower = best_.z_lower, .z_upper = best_.z_upper};
+  objective_ = problem_->objective(best_.w);
 }
 
 }  // namespace saltus::adapters

@@ -66,7 +66,8 @@ class IpoptProgram final : public Ipopt::TNLP {
   double acceptable_ = 0.0, feasible_ = 0.0;
   double cutoff_ = 0.0;
   bool is_cut_off_ = false;
-  solver::NlpPoint best_;  ///< feasible, with the least dual infeasibility
+  bool is_near_ = false;   ///< the last iterate is feasible, with a small barrier
+  solver::NlpPoint best_;  ///< of such iterates the one with the least dual infeasibility; also where a limit ends it
   double best_error_ = 0.0;
 };
 

@@ -9,6 +9,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/mpcc/residuals.hpp"
 #include "saltus/solver/crossover/sides.hpp"
+#include "saltus/solver/sparse.hpp"
 
 namespace saltus::solver::certificate {
 namespace {
@@ -32,6 +33,23 @@ void for_violations(ConstVectorView values, const mpcc::Bounds& bounds, OnViolat
   }
 }
 
+/// Says of each row of (G, H) whether a closure holds all variables of that side, which is implied.
+std::vector<bool> held_sides(mpcc::Problem& problem, ConstVectorView w, const std::vector<mpcc::ActiveSide>& sides) {
+  const mpcc::BranchClosure closure = problem.close_branch(sides);
+  std::vector<bool> is_held(at(problem.variables()), false);
+  for (const int i : closure.at_lower) is_held[at(i)] = true;
+  for (const int i : closure.at_upper) is_held[at(i)] = true;
+  const RowMatrix jacobian = jacobian_matrix(problem, w);
+  std::vector<bool> held(problem.signs().size(), false);
+  for (std::size_t side = 0; side < held.size(); ++side) {
+    held[side] = problem.signs()[side] == mpcc::Sign::implied;
+    for (RowMatrix::InnerIterator entry(jacobian, problem.constraints() + index(side)); entry; ++entry) {
+      if (entry.value() != 0.0 && !is_held[at(entry.col())]) held[side] = false;
+    }
+  }
+  return held;
+}
+
 }  // namespace
 
 PairStates pair_states(mpcc::Problem& problem, ConstVectorView w, const std::vector<mpcc::ActiveSide>& sides,
@@ -41,8 +59,11 @@ PairStates pair_states(mpcc::Problem& problem, ConstVectorView w, const std::vec
     states.biactive.push_back(side == mpcc::ActiveSide::biactive);
   }
   states.is_open.assign(states.biactive.size(), false);
+  const std::vector<bool> held = held_sides(problem, w, sides);
+  const auto is_held = [&](int pair) { return held[at(pair)] || held[at(problem.pairs() + pair)]; };
   for (const auto& group : crossover::groups_of(problem)) {
-    const bool is_open = std::all_of(group.begin(), group.end(), [&](int pair) { return states.biactive[at(pair)]; });
+    const bool is_open = std::all_of(group.begin(), group.end(), [&](int pair) { return states.biactive[at(pair)]; }) &&
+                         !std::all_of(group.begin(), group.end(), is_held);
     for (const int pair : group) states.is_open[at(pair)] = is_open;
   }
   return states;
@@ -114,7 +135,8 @@ std::string worst_rows(mpcc::Problem& problem, ConstVectorView w, double toleran
     const std::string G = problem.row_name(n_g + pair);
     violations.push_back({residual, fmt::format("{} _|_ {}", G, problem.row_name(n_g + pairs + pair))});
   }
-  std::stable_sort(violations.begin(), violations.end(), [](const auto& a, const auto& b) { return a.amount > b.amount; });
+  std::stable_sort(violations.begin(), violations.end(),
+                   [](const auto& a, const auto& b) { return a.amount > b.amount; });
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(violations.size(), 3); ++i) {
     text += fmt::format("{}{} (by {:.3g})", i > 0 ? ", " : "", violations[i].name, violations[i].amount);

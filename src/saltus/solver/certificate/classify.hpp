@@ -7,7 +7,7 @@
 namespace saltus::solver::certificate {
 
 /// Finds which pairs are biactive at w (both sides <= 10 tolerance), and which of them have a choice: all pairs of
-/// their group are biactive.
+/// their group are biactive, and the closure of the branch does not hold their zero side.
 /// @param sides  the zero side of each pair, G or H
 [[nodiscard]] PairStates pair_states(mpcc::Problem& problem, ConstVectorView w,
                                      const std::vector<mpcc::ActiveSide>& sides, double tolerance);

@@ -131,6 +131,31 @@ TEST(Ipopt, OtherProblemsBeforeLeaveNoTrace) {
   }
 }
 
+TEST(Ipopt, KeepsAFeasibleIterateWhereTheLimitEndsIt) {
+  // From beside its maximum w0 = 0 the point slides down w1 = 10 w0^2 in growing steps, each of which leaves the
+  // parabola.
+  PolynomialStatement statement;
+  statement.variables = 3;
+  statement.f = {{{-1e-2, {2}}, {1e-2, {4}}, {1.0, {0, 0, 1}}}};
+  statement.g = {{{{1.0, {0, 1}}, {-10.0, {2}}}}};
+  statement.g_bounds = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
+  statement.w_bounds = {Eigen::Vector3d(-infinity, -infinity, 0.0), Eigen::Vector3d::Constant(infinity)};
+  PolynomialProblem problem(statement);
+  adapters::IpoptSolver solver;
+  bool was_feasible = false;
+  int left = 0;
+  for (int limit = 1; limit < 60; ++limit) {
+    NlpPoint point{.w = Eigen::Vector3d(1e-6, 1e-11, 1e-3), .y = {}, .z_lower = {}, .z_upper = {}};
+    const NlpReport report = solver.solve(problem, point, {.iteration_limit = limit});
+    if (report.termination != Termination::iteration_limit) break;
+    const bool is_feasible = std::abs(point.w[1] - 10.0 * point.w[0] * point.w[0]) <= 1e-9;
+    if (was_feasible && !is_feasible) ++left;
+    was_feasible = is_feasible && point.w[2] < 1e-7;
+  }
+  EXPECT_TRUE(was_feasible);
+  EXPECT_EQ(left, 0);
+}
+
 TEST(Ipopt, StopsBetweenIterations) {
   auto problem = hock_schittkowski_15();
   adapters::IpoptSolver solver;
