@@ -56,11 +56,13 @@ bool StraightLines::is_near_line(Sample from, Sample inside, Sample to, double s
 
 /// Appends samples between two, and the second one.
 void StraightLines::divide(Curve curve, Sample from, Sample to, int depth) {
-  // Not in the middle, where a curve with an inflection there is on its chord.
-  constexpr double unsymmetric = 0.4;
-  const double part = depth == 0 ? unsymmetric : 0.5;
-  const Sample middle = sample(curve, from.theta + part * (to.theta - from.theta));
-  if (depth < most_halvings && !is_near_line(from, middle, to, share_of_samples)) {
+  const Sample middle = sample(curve, 0.5 * (from.theta + to.theta));
+  bool is_line = is_near_line(from, middle, to, share_of_samples);
+  if (is_line && depth == 0) {  // or it has an inflection on its chord
+    constexpr double unsymmetric = 0.3;
+    is_line = is_near_line(from, sample(curve, from.theta + unsymmetric * (to.theta - from.theta)), to, 0.5);
+  }
+  if (depth < most_halvings && !is_line) {
     divide(curve, from, middle, depth + 1);
     divide(curve, middle, to, depth + 1);
     return;
