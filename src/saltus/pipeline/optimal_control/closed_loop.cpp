@@ -33,6 +33,22 @@ model::System with_parameters_as_controls(const model::Ocp& ocp, const Optimized
 /// Rows of equal distance in each interval.
 constexpr std::size_t rows_of_interval = 20;
 
+/// The state of the plan that a state at node k is compared with: where the plan jumps there, the nearer one. A body
+/// that lands a little later than planned is off by nothing, and not by the velocity that the collision takes.
+const std::vector<double>& planned_state(const OptimizedPath& path, std::size_t k, const std::vector<double>& x) {
+  const auto& behind = path.nodes[k];
+  if (k == 0 || path.ends.empty()) return behind;
+  const auto distance = [&](const std::vector<double>& planned) {
+    double square = 0.0;
+    for (std::size_t i = 0; i < path.state_max.size(); ++i) {
+      const double range = path.state_max[i] - path.state_min[i];
+      if (range > 0.0) square += std::pow((x[i] - planned[i]) / range, 2);
+    }
+    return square;
+  };
+  return distance(path.ends[k - 1]) < distance(behind) ? path.ends[k - 1] : behind;
+}
+
 }  // namespace
 
 Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
@@ -47,8 +63,9 @@ Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, cons
   Resimulation::Segment whole;
   std::vector<double> x = path.nodes.front();
   for (std::size_t k = 0; k < path.controls.size(); ++k) {
+    const auto& planned = planned_state(path, k, x);
     Eigen::VectorXd off(gains[k].cols());
-    for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = x[at(i)] - path.nodes[k][at(i)];
+    for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = x[at(i)] - planned[at(i)];
     const Eigen::VectorXd change = gains[k] * off;
     for (std::size_t i = 0; i < path.controls[k].size(); ++i) {
       const double u = path.controls[k][i] + change[index(i)];
