@@ -240,6 +240,16 @@ def test_shares_are_the_whole(tool, tmp_path, keep):
     assert (tmp_path / "whole.html").read_text() == (tmp_path / "joined.html").read_text()
 
 
+def test_axes_of_the_page_say_labels_and_units(tool, tmp_path):
+    (tmp_path / "m.toml").write_text(
+        '[model]\nname = "m"\n[parameters]\nF = { initial = 1, unit = "N", label = "force" }\n'
+        '[states]\nx = { initial = 1, unit = "m" }\n[dynamics]\nx = "F - x"\n')
+    run_tool(tool, tmp_path, "m.toml", "--until", "1", "--over", "F=1,2", "--over", "x=1,2", "--report", "m.html")
+    data = page_data((tmp_path / "m.html").read_text())
+    assert dict(zip(data["columns"], data["axes"], strict=True)) == {
+        "run": "run", "F": "force [N]", "x(0)": "x(0) [m]", "status": "status", "t": "t", "x": "x [m]", "events": "events"}
+
+
 def test_shares_say_what_the_page_needs(tool, tmp_path):
     """Names with commas and quotes, pairs instead of a grid; older shares say nothing of it."""
     text = '[model]\nname = "a, \\"b\\""\n[parameters]\na = 1\nb = 1\n[states]\nx = "a"\n[dynamics]\nx = "-b*x"\n'

@@ -193,7 +193,8 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   if (!runs) return refuse(io::located(runs.error(), model->file));
   auto table = sweep_table(*plan, *runs, *keep, begin);
   const bool grid = !request.paired && request.samples.empty();
-  const SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid};
+  const SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid,
+                       model->file.captions};
   if (!arguments.task.empty()) {
     table.front().name = share_heading(*share, plan->runs(), sweep_mark(*model, request, arguments.keep), page);
   }

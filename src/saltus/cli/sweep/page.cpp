@@ -54,17 +54,26 @@ std::vector<Value> rows_in(const std::vector<Value>& values, const std::vector<s
   return result;
 }
 
+/// What an axis says of a column: label and unit of the name that it begins with, "x(after)" or "v(0)".
+std::string axis_of(const std::string& column, const result::Captions& captions) {
+  const auto end = std::min(column.find('('), column.size());
+  const auto [unit, label] = caption_of(captions, column.substr(0, end));
+  const auto name = label.empty() ? column : label + column.substr(end);
+  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+}
+
 std::string data_of(const std::vector<TableColumn>& table, const DrawnRows& drawn, const SweepPage& page) {
   using report::script_json;
   result::OptionRecord columns;
-  std::vector<std::string> swept;
+  std::vector<std::string> swept, axes;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (k > 0 && k <= page.names.size()) swept.push_back(table[k].name);
+    axes.push_back(axis_of(table[k].name, page.captions));
     std::visit([&](const auto& values) { columns.emplace_back(table[k].name, rows_in(values, drawn.rows)); },
                table[k].values);
   }
-  const auto said =
-      script_json({{"swept", swept}, {"names", page.names}, {"command", page.command}, {"grid", page.grid}});
+  const auto said = script_json(
+      {{"swept", swept}, {"names", page.names}, {"command", page.command}, {"grid", page.grid}, {"axes", axes}});
   return fmt::format(R"({{"columns":{},{})", script_json(columns), std::string_view(said).substr(1));
 }
 

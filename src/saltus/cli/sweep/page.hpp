@@ -6,6 +6,7 @@
 
 #include "saltus/cli/sweep/sweep_plan.hpp"
 #include "saltus/cli/sweep/sweep_table.hpp"
+#include "saltus/result/caption.hpp"
 
 namespace saltus::cli {
 
@@ -18,6 +19,7 @@ struct SweepPage {
   std::string command;             ///< that runs one of them, without its values; empty: not known
   std::vector<std::string> names;  ///< what was changed, as --set takes it
   bool grid = true;                ///< of two names every pair is there once
+  result::Captions captions{};     ///< of the model; none where shares are joined
 };
 
 /// Draws values over one parameter as lines, over two as a map, number of events, status, values at events (bifurcation

@@ -3,6 +3,8 @@
 const data = JSON.parse(document.getElementById("sweep").textContent);
 const columns = data.columns;
 const swept = data.swept;
+// Label and unit of a column; what is no column says itself.
+const axisOfColumn = (name) => data.axes[Object.keys(columns).indexOf(name)] || name;
 const isNumber = (name) => columns[name].every((value) => value === null || typeof value === "number");
 const numeric = Object.keys(columns).filter(isNumber);
 const rows = columns.run.length;
@@ -90,10 +92,10 @@ function frame(title, xName, yName, xAxis, yAxis) {
     : bottom - ((value - axis.low) / (axis.high - axis.low)) * (bottom - size.top));
   for (const [value, label] of xAxis.ticks) picture.append(make("text", { x: place(xAxis, value), y: bottom + 16, "text-anchor": "middle" }, label));
   for (const [value, label] of yAxis.ticks) picture.append(make("text", { x: size.left - 6, y: place(yAxis, value) + 4, "text-anchor": "end" }, label));
-  const name = make("text", { x: (size.left + size.width - size.right) / 2, y: size.height - 10, "text-anchor": "middle" }, xName);
+  const name = make("text", { x: (size.left + size.width - size.right) / 2, y: size.height - 10, "text-anchor": "middle" }, axisOfColumn(xName));
   picture.append(name);
   // Words say themselves what they are.
-  if (!yAxis.words) picture.append(make("text", { x: 14, y: size.height / 2, transform: `rotate(-90 14 ${size.height / 2})`, "text-anchor": "middle" }, yName));
+  if (!yAxis.words) picture.append(make("text", { x: 14, y: size.height / 2, transform: `rotate(-90 14 ${size.height / 2})`, "text-anchor": "middle" }, axisOfColumn(yName)));
   return { picture, name, x, y };
 }
 function mark(picture, row, x, y, colour, radius, label) {
