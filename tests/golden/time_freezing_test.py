@@ -249,6 +249,45 @@ class TimeFreezing(tool.ToolTest):
         # A pendulum upside down, not a ball that falls through the hump.
         self.assertLess(result["verification"]["open_loop"]["amplification"], 1e3)
 
+    def test_an_impact_at_the_end_of_an_interval_is_told(self):
+        """A falling body that brakes by friction: with 8 intervals its impact stays at a node, with 7 it does not."""
+        braked = """[model]
+name = "brake"
+[states]
+x = 0
+z = 0.5
+vx = 3
+vz = 0
+[controls]
+f = { lower = -30, upper = 30 }
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+potential = "10*z"
+force = { vz = "f" }
+[[contacts]]
+name = "road"
+gap = "z"
+tangent = { x = 1 }
+friction = 0.4
+[time_freezing]
+a_n = 30
+[optimize]
+horizon = 1
+control_intervals = 8
+elements = 3
+running_cost = "0.01*f^2"
+terminal_constraints = ["vx == 0"]
+"""
+        _, err = self.run_tool("optimize", self.write("m.toml", braked), "--out", "r.json", code=0)
+        self.assertIn("impacts at t = 0.375 lie at ends of control intervals", err)
+        impact = next(e for e in json.loads((self.folder / "r.json").read_text())["events"] if e["kind"] == "impact")
+        change = [b - a for a, b in zip(impact["x"][2:], impact["x_after"][2:], strict=True)]
+        self.assertAlmostEqual(impact["impulse"][0][0], change[1], delta=1e-9)
+        self.assertAlmostEqual(impact["impulse"][0][1], change[0], delta=1e-9)
+        out, err = self.run_tool("optimize", self.write("m.toml", braked.replace("intervals = 8", "intervals = 7")), code=0)
+        self.assertNotIn("ends of control intervals", err)
+
     def test_turns_of_a_slip_and_impulses_are_told(self):
         """A block on a spring with friction turns twice before it sticks, and a ball's impact has its impulse in its row."""
         spring = """[model]

@@ -185,6 +185,23 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
   return verify(physical_ocp(ocp), *physical, wanted, observers.is_interrupted);
 }
 
+/// An impact cannot move from one interval into the next: that is another branch, which no certificate looks at.
+void warn_of_impacts_at_nodes(const result::Result& run, const OptimizeObservers& observers) {
+  const auto& grid = run.optimization->grid;
+  std::string times;
+  for (const auto& event : run.events) {
+    const auto is_here = [&](double node) { return std::abs(event.t - node) <= 1e-9 * (grid.back() - grid.front()); };
+    if (event.kind != result::EventKind::impact || grid.size() < 3) continue;
+    if (std::none_of(grid.begin() + 1, grid.end() - 1, is_here)) continue;
+    times += fmt::format("{}{:.6g}", times.empty() ? "" : ", ", event.t);
+  }
+  if (times.empty()) return;
+  observers.on_warning(
+      fmt::format("impacts at t = {} lie at ends of control intervals, and an optimum may have them on the other side; "
+                  "compare with one interval more or less",
+                  times));
+}
+
 void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
   const int stabilisation = ocp.system.freezing ? ocp.system.freezing->stabilisation : -1;
   for (std::size_t i = 0; i < read.parameters.size(); ++i) {
@@ -234,6 +251,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   result.drawing = drawing_of(ocp.system, read.parameters, result.trajectory);
   result.events = std::move(run->events);
   if (auto told = add_impulses(ocp, run->path.parameters, result); !told) return tl::unexpected(told.error());
+  warn_of_impacts_at_nodes(result, observers);
   result.final = std::move(run->final);
   result.elements = std::move(run->elements);
   if (ocp.system.freezing) result.switching_functions = run->switching_functions;
