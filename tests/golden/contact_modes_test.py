@@ -1,38 +1,12 @@
 """Modes of [[contacts]]: in any units, behind jumps of bodies at rest, and what they hold exactly."""
 
-import json
 import math
 
+import contacts_test
 import tool
 
-SPACE = """[model]
-name = "ball in space"
-[states]
-x = 0
-y = 0
-z = 1
-vx = 3
-vy = 4
-vz = 0
-[mechanics]
-positions = ["x", "y", "z"]
-velocities = ["vx", "vy", "vz"]
-potential = "10*z"
-[[contacts]]
-name = "ground"
-gap = "z"
-tangents = [{ x = 1 }, { y = 1 }]
-friction = 0.3
-[simulate]
-until = 3
-"""
 
-
-class ContactModes(tool.ToolTest):
-    def result(self, text, *arguments, code=0):
-        self.run_tool("simulate", self.write("m.toml", text), "--out", "r.json", *arguments, code=code)
-        return json.loads((self.folder / "r.json").read_text())
-
+class ContactModes(tool.ResultTest):
     def test_the_unit_of_mass_changes_nothing(self):
         """A body leaves its table where 2 sin 2t = 1; a puck of 1 m/s stops at t = 1/(mu g); the corners of a box come to rest."""
         lifted = """[model]
@@ -61,7 +35,7 @@ atol = 1e-16
             events = self.result(lifted, "--set", f"m={mass}")["events"]
             self.assertEqual([event["kind"] for event in events], ["lift_off"])
             self.assertAlmostEqual(events[0]["t"], math.pi / 12, delta=1e-9)
-        puck = SPACE.replace("[states]", "[parameters]\nm = 1\n[states]").replace("z = 1\nvx = 3\nvy = 4", "z = 0\nvx = 0.6\nvy = 0.8")
+        puck = contacts_test.SPACE.replace("[states]", "[parameters]\nm = 1\n[states]").replace("z = 1\nvx = 3\nvy = 4", "z = 0\nvx = 0.6\nvy = 0.8")
         puck = puck.replace('potential = "10*z"', 'potential = "m*10*z"\nmass = [["m", 0, 0], [0, "m", 0], [0, 0, "m"]]')
         for mass in ("1e-9", "1", "1e9"):
             events = self.result(puck, "--rtol", "1e-11", "--atol", "1e-13", "--set", f"m={mass}")["events"]
@@ -128,31 +102,10 @@ until = 5
 
     def test_jumps_of_bodies_at_rest(self):
         """What a jump sets is what follows: the modes are found afresh, as at a start."""
-        rest = """[model]
-name = "kick"
-[states]
-x = 0
-z = 0
-vx = 0
-vz = 0
-[mechanics]
-positions = ["x", "z"]
-velocities = ["vx", "vz"]
-potential = "10*z"
-[[contacts]]
-name = "ground"
-gap = "z"
-tangent = { x = 1 }
-friction = 0.5
-restitution = 0.5
-[[jumps]]
-name = "kick"
-at = [0.5]
-set = { SET }
-[simulate]
-until = 1.5
-rtol = 1e-10
-"""
+        rest = (contacts_test.BALL.replace("z = 1\nvx = 4", "z = 0\nvx = 0").replace("mu = 0.3", "mu = 0.5")
+                .replace('friction = "mu"', 'friction = "mu"\nrestitution = 0.5\n[[jumps]]\nname = "kick"\nat = [0.5]\nset = { SET }')
+                .replace("until = 2", "until = 1.5\nrtol = 1e-10"))
+
         def kinds(change, code=0):
             result = self.result(rest.replace("SET", change), code=code)
             return result, [(event["kind"], round(event["t"], 9)) for event in result["events"]]

@@ -184,11 +184,7 @@ MALFORMED = {
 }
 
 
-class Contacts(tool.ToolTest):
-    def result(self, text, *arguments, code=0):
-        self.run_tool("simulate", self.write("m.toml", text), "--out", "r.json", *arguments, code=code)
-        return json.loads((self.folder / "r.json").read_text())
-
+class Contacts(tool.ResultTest):
     def test_a_ball_lands_slides_and_stops(self):
         result = self.result(BALL, "--rtol", "1e-11", "--atol", "1e-13")
         self.assertEqual(result["states"], ["x", "z", "vx", "vz"])

@@ -251,26 +251,9 @@ class TimeFreezing(tool.ToolTest):
 
     def test_an_impact_at_the_end_of_an_interval_is_told(self):
         """A falling body that brakes by friction: with 8 intervals its impact stays at a node, with 7 it does not."""
-        braked = """[model]
-name = "brake"
-[states]
-x = 0
-z = 0.5
-vx = 3
-vz = 0
-[controls]
-f = { lower = -30, upper = 30 }
-[mechanics]
-positions = ["x", "z"]
-velocities = ["vx", "vz"]
-potential = "10*z"
-force = { vz = "f" }
-[[contacts]]
-name = "road"
-gap = "z"
-tangent = { x = 1 }
-friction = 0.4
-[time_freezing]
+        fall, _ = BALL.replace("z = 1\nvx = 4", "z = 0.5\nvx = 3").replace("friction = 0.3", "friction = 0.4").split("[simulate]")
+        braked = fall.replace("[mechanics]", "[controls]\nf = { lower = -30, upper = 30 }\n[mechanics]").replace(
+            'potential = "10*z"', 'potential = "10*z"\nforce = { vz = "f" }') + """[time_freezing]
 a_n = 30
 [optimize]
 horizon = 1
@@ -290,25 +273,8 @@ terminal_constraints = ["vx == 0"]
 
     def test_turns_of_a_slip_and_impulses_are_told(self):
         """A block on a spring with friction turns twice before it sticks, and a ball's impact has its impulse in its row."""
-        spring = """[model]
-name = "spring"
-[states]
-x = 2
-z = 0
-vx = 0
-vz = 0
-[mechanics]
-positions = ["x", "z"]
-velocities = ["vx", "vz"]
-potential = "10*z + 2.5*x^2"
-[[contacts]]
-name = "floor_"
-gap = "z"
-tangent = { x = 1 }
-friction = 0.2
-[simulate]
-until = 4
-"""
+        spring = (BALL.replace("x = 0\nz = 1\nvx = 4", "x = 2\nz = 0\nvx = 0").replace('"10*z"', '"10*z + 2.5*x^2"')
+                  .replace("friction = 0.3", "friction = 0.2").replace("until = 2\noutput = { times = [0.25, 1.0] }", "until = 4"))
         self.run_tool("simulate", self.write("s.toml", spring), "--out", "e.json", code=0)
         self.run_tool("simulate", "s.toml", "--method", "fesd", "--out", "f.json", code=0)
         events, frozen = (json.loads((self.folder / f).read_text())["events"] for f in ("e.json", "f.json"))

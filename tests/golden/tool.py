@@ -1,5 +1,6 @@
 """Runs the tool for the golden tests: argv is the tool and the source tree."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -33,6 +34,13 @@ class ToolTest(unittest.TestCase):
         else:
             path.write_text(text, encoding="utf-8")
         return path
+
+
+class ResultTest(ToolTest):
+    def result(self, text, *arguments, code=0):
+        """The result of a model that stands in a text."""
+        self.run_tool("simulate", self.write("m.toml", text), "--out", "r.json", *arguments, code=code)
+        return json.loads((self.folder / "r.json").read_text())
 
 
 def main():

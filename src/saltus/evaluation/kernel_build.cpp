@@ -101,16 +101,11 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
 /// Guards of contacts are numbers of order 1, in the units of their modes; a gap is a length.
 SX CompiledModel::sizes_of_contact_guards(const model::System& system) const {
   SX sizes = SX::zeros(phi.numel(), 1);
-  casadi_int first = first_jump_guard;
-  for (std::size_t k = 0; k < system.jumps.size(); ++k) {
-    const auto guards = system.jumps[k].guards.numel();
-    for (const auto& contact : system.contacts.contacts) {
-      if (contact.jump != static_cast<int>(k)) continue;
-      for (casadi_int g = 0; g < guards; ++g) {
-        sizes(first + g) = contact.has_gap && g == 0 ? x(contact.closed) : SX(1.0);
-      }
+  for (const auto& contact : system.contacts.contacts) {
+    const auto guards = static_cast<int>(system.jumps[at(contact.jump)].guards.numel());
+    for (int g = 0; g < guards; ++g) {
+      sizes(functions.jumps.guard(contact.jump, g)) = contact.has_gap && g == 0 ? x(contact.closed) : SX(1.0);
     }
-    first += guards;
   }
   return sizes;
 }
@@ -121,6 +116,7 @@ void CompiledModel::compile_functions(const model::System& system) {
   functions.functions = ModelFunction("saltus_functions", arguments, {phi});
   functions.output_function = ModelFunction("saltus_outputs", arguments, {outputs});
   functions.input_function = ModelFunction("saltus_inputs", arguments, {input});
+  functions.jumps = JumpFunctions(system, arguments, input, first_jump_guard);
   // Modes of contacts are exact: what has a rounding, and an error, are the states before them.
   const SX moving = x(casadi::Slice(0, system.contacts.empty() ? x.numel() : system.contacts.first_hidden));
   const SX slope = SX::jacobian(phi, moving);
@@ -130,7 +126,6 @@ void CompiledModel::compile_functions(const model::System& system) {
   functions.affine_rows = AffineRowFunctions(phi, symbols(), affine);
   functions.gradients.resize(at(phi.numel()));
   compile_conditions(system);
-  functions.jumps = JumpFunctions(system, arguments, input, first_jump_guard);
   start.cells.compile(arguments, system, input);
   if (const auto& touching = system.contacts; !touching.empty()) {
     const SX acceleration =

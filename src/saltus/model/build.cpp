@@ -94,14 +94,6 @@ class Build {
     return std::nullopt;
   }
 
-  [[nodiscard]] bool is_mechanical(const std::string& name) const {
-    if (!description_.mechanics) return false;
-    const auto lists = [&](const std::vector<StateName>& names) {
-      return std::any_of(names.begin(), names.end(), [&](const StateName& entry) { return entry.name == name; });
-    };
-    return lists(description_.mechanics->positions) || lists(description_.mechanics->velocities);
-  }
-
   /// A state without right-hand side, which only the assembly refuses.
   void tell_of_still_states(std::vector<Error>& found) const {
     std::unordered_set<std::string_view> moved;
@@ -110,7 +102,7 @@ class Build {
       for (const auto& rate : mode.dynamics) moved.insert(rate.name);
     }
     for (const auto& entry : description_.states) {
-      if (!moved.contains(entry.name) && !is_mechanical(entry.name))
+      if (!moved.contains(entry.name) && !is_mechanical(description_, entry.name))
         found.push_back(no_right_hand_side(entry.name, entry.location));
     }
   }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/report/axis_title.hpp"
 #include "saltus/report/page_text.hpp"
 #include "sweep_page_script.hpp"
 
@@ -58,8 +59,7 @@ std::vector<Value> rows_in(const std::vector<Value>& values, const std::vector<s
 std::string axis_of(const std::string& column, const result::Captions& captions) {
   const auto end = std::min(column.find('('), column.size());
   const auto [unit, label] = caption_of(captions, column.substr(0, end));
-  const auto name = label.empty() ? column : label + column.substr(end);
-  return unit.empty() ? name : fmt::format("{} [{}]", name, unit);
+  return report::axis_title(label.empty() ? column : label + column.substr(end), unit);
 }
 
 std::string data_of(const std::vector<TableColumn>& table, const DrawnRows& drawn, const SweepPage& page) {

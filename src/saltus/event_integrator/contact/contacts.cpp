@@ -96,7 +96,7 @@ ContactMode Contacts::mode_of(int contact, const std::vector<double>& x) const {
 bool Contacts::touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const {
   const auto& entry = contacts_[at(contact)];
   if (!entry.has_gap || x[at(entry.closed)] != 0.0 || contains(ended, contact)) return true;
-  return std::abs(values_.gap(contact)) <= std::max(64.0 * rounding_unit * gap_terms(contact, x), none_at_start);
+  return std::abs(values_.gap(contact)) <= no_gap(contact, x);
 }
 
 /// Velocities that are 0 by their modes, or to their rounding, are 0; so is that of a slip that ends.

@@ -103,6 +103,7 @@ class Contacts {
   [[nodiscard]] bool reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
                                      const std::vector<double>& x) const;
   void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
+  [[nodiscard]] double no_gap(int contact, const std::vector<double>& x) const;
   [[nodiscard]] double gap_terms(int contact, const std::vector<double>& x) const;
   [[nodiscard]] double pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const;
   [[nodiscard]] bool rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,

@@ -19,6 +19,11 @@ double Contacts::gap_terms(int contact, const std::vector<double>& x) const {
   return terms;
 }
 
+/// How large a gap may be that is 0 to the rounding of its terms.
+double Contacts::no_gap(int contact, const std::vector<double>& x) const {
+  return std::max(64.0 * rounding_unit * gap_terms(contact, x), none_at_start);
+}
+
 /// What closes a gap again: an acceleration of its own, or one by the forces of those that rest beside it.
 double Contacts::pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const {
   HeldRows rows(point.velocity.size());
@@ -65,8 +70,7 @@ std::optional<std::string> Contacts::begin_anew(const ContactMoment& moment, std
   forget_impulses(x);
   kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
   for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
-    const double least = -std::max(64.0 * rounding_unit * gap_terms(i, x), none_at_start);
-    if (!contacts_[at(i)].has_gap || values_.gap(i) >= least) continue;
+    if (!contacts_[at(i)].has_gap || values_.gap(i) >= -no_gap(i, x)) continue;
     return fmt::format("a jump at t = {:.17g} makes the gap of {} {:.6g}: bodies must not overlap", moment.t,
                        names({i}), values_.gap(i));
   }

@@ -15,6 +15,7 @@ JumpAccumulation::JumpAccumulation(const SwitchingContext& switching_context, co
     : system_(switching_context.system),
       kernel_(switching_context.kernel),
       here_(here),
+      rates_(kernel_, here),
       last_guard_(system_.jumps.size()),
       last_rate_(system_.jumps.size(), 0.0),
       shortest_cycle_(system_.jumps.size(), 0.0),
@@ -50,14 +51,10 @@ void JumpAccumulation::note_bounces(const JumpCascade& cascade) {
                                       [&](const auto& one) { return one.jump == executed.jump; });
     if (contact == system_.contacts.contacts.end() || !contact->has_gap || executed.x[at(contact->closed)] != 0.0)
       continue;
-    const int gap = kernel_.jump_guard(executed.jump, 0);
-    std::vector<double> slope(executed.x.size()), row(executed.x.size());
-    double rate = 0.0;
+    std::vector<double> slope(executed.x.size());
     kernel_.field(here_.t, executed.x.data(), here_.state.alpha.data(), slope.data());
-    kernel_.gradient(gap, here_.t, executed.x.data(), here_.state.alpha.data(), row.data(), &rate);
-    for (std::size_t i = 0; i < row.size(); ++i) rate += row[i] * slope[i];
-    kernel_.scales(here_.t, executed.x.data(), here_.state.alpha.data(), magnitude_.data(), slope_.data());
-    shortest_cycle_[at(executed.jump)] = rate != 0.0 ? unresolved * magnitude_[at(gap)] / std::abs(rate) : 0.0;
+    const Rate rate = rates_.at(kernel_.jump_guard(executed.jump, 0), here_.t, executed.x, slope);
+    shortest_cycle_[at(executed.jump)] = rate.value != 0.0 ? unresolved * rate.magnitude / std::abs(rate.value) : 0.0;
   }
 }
 

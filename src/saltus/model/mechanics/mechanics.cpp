@@ -14,6 +14,14 @@ namespace saltus::model {
 
 using casadi::SX;
 
+bool is_mechanical(const Description& description, const std::string& name) {
+  if (!description.mechanics) return false;
+  const auto lists = [&](const std::vector<StateName>& names) {
+    return std::any_of(names.begin(), names.end(), [&](const StateName& entry) { return entry.name == name; });
+  };
+  return lists(description.mechanics->positions) || lists(description.mechanics->velocities);
+}
+
 namespace {
 
 Error mechanics_error(const SourceLocation& location, std::string message, std::string remedy) {

@@ -9,6 +9,9 @@
 
 namespace saltus::model {
 
+/// Returns whether a state is a position or a velocity of [mechanics].
+[[nodiscard]] bool is_mechanical(const Description& description, const std::string& name);
+
 /// Holds one contact in expressions of the statement it belongs to.
 struct ContactStatement {
   std::string name;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/mechanics/mechanics_internal.hpp"
 #include "saltus/model/optimal_control/ocp_checks_internal.hpp"
 
 namespace saltus::model {
@@ -168,14 +169,9 @@ std::optional<Error> check(Ocp& ocp, const Description& description) {
                    "([time_freezing] clock), or a model without the jumps",
                    description.jumps.front().location, ErrorCode::not_available);
   }
-  const auto is_velocity = [&](const std::string& name) {
-    return description.mechanics &&
-           std::any_of(description.mechanics->velocities.begin(), description.mechanics->velocities.end(),
-                       [&](const auto& entry) { return entry.name == name; });
-  };
   for (std::size_t i = 0; i < description.states.size(); ++i) {
     // A velocity that no force changes is still one.
-    if (!system.discrete_states[i] || is_velocity(system.state_names[i])) continue;
+    if (!system.discrete_states[i] || is_mechanical(description, system.state_names[i])) continue;
     return mistake(fmt::format("the state '{}' is discrete: nothing moves it", system.state_names[i]),
                    "make it a parameter, with free = true if it is to be chosen", description.states[i].location,
                    ErrorCode::not_available);

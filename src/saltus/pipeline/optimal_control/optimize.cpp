@@ -176,13 +176,11 @@ double solution_depth(const model::Ocp& ocp, const discretization::OcpSolution& 
 /// Frozen systems stand for others, which the event engine simulates.
 Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const OptimizedPath& path,
                                                 const result::Result& run, const OptimizeOptions& options,
-                                                std::vector<Eigen::MatrixXd> gains,
+                                                std::vector<Eigen::MatrixXd> gains, PhysicalBodies* bodies,
                                                 const OptimizeObservers& observers) {
   const VerificationWanted wanted{options.verification_tolerance, std::move(gains)};
-  if (!ocp.physical) return verify(ocp, path, wanted, observers.is_interrupted);
-  const auto physical = physical_path(ocp, path, run);
-  if (!physical) return tl::unexpected(physical.error());
-  return verify(physical_ocp(ocp), *physical, wanted, observers.is_interrupted);
+  if (bodies == nullptr) return verify(ocp, path, wanted, observers.is_interrupted);
+  return verify(physical_ocp(ocp), physical_path(ocp, *bodies, path, run), wanted, observers.is_interrupted);
 }
 
 /// An impact cannot move from one interval into the next: that is another branch, which no certificate looks at.
@@ -208,6 +206,18 @@ void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& r
     if (static_cast<int>(i) == stabilisation) continue;  // not one of the model
     result.model.parameters.emplace_back(ocp.system.parameter_names[i], read.parameters[i]);
   }
+}
+
+/// All of it but its path.
+void take_run(const model::Ocp& ocp, OptimizedRun& run, result::Result& result) {
+  result.trajectory = std::move(run.trajectory);
+  for (std::size_t i = 0; i < result.states.size() && !result.trajectory.x.empty(); ++i) {
+    result.model.initial_state.emplace_back(result.states[i], result.trajectory.x.front()[i]);
+  }
+  result.events = std::move(run.events);
+  result.final = std::move(run.final);
+  result.elements = std::move(run.elements);
+  if (ocp.system.freezing) result.switching_functions = std::move(run.switching_functions);
 }
 
 }  // namespace
@@ -244,24 +254,23 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   result.status.time_reached = found.grid.back();
   auto run = optimized_run(ocp, read, reformulation_options(options.element), stated->tableau);
   if (!run) return tl::unexpected(run.error());
-  result.trajectory = std::move(run->trajectory);
-  for (std::size_t i = 0; i < result.states.size() && !result.trajectory.x.empty(); ++i) {
-    result.model.initial_state.emplace_back(result.states[i], result.trajectory.x.front()[i]);
-  }
+  take_run(ocp, *run, result);
   result.drawing = drawing_of(ocp.system, read.parameters, result.trajectory);
-  result.events = std::move(run->events);
-  if (auto told = add_impulses(ocp, run->path.parameters, result); !told) return tl::unexpected(told.error());
+  std::unique_ptr<PhysicalBodies> bodies;
+  if (ocp.physical) {
+    auto made = PhysicalBodies::make(ocp, run->path.parameters);
+    if (!made) return tl::unexpected(made.error());
+    bodies = std::move(*made);
+    add_impulses(*bodies, result);
+  }
   warn_of_impacts_at_nodes(result, observers);
-  result.final = std::move(run->final);
-  result.elements = std::move(run->elements);
-  if (ocp.system.freezing) result.switching_functions = run->switching_functions;
   if (result.status.termination != Termination::stopped_by_user && solution->w.allFinite()) {
     std::vector<Eigen::MatrixXd> gains;
     if (options.closed_loop) {
       gains = solver::feedback_gains(problem, *solution, static_cast<int>(ocp.system.control_names.size()),
                                      static_cast<int>(result.states.size()));
     }
-    auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), observers);
+    auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), bodies.get(), observers);
     if (!verification) return tl::unexpected(verification.error());
     judge(*verification, options.verification_tolerance, result.status);
     if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);

@@ -249,15 +249,6 @@ Expected<OptimizeOptions> with_value(OptimizeOptions options, std::string_view k
   return tl::unexpected(unknown_optimize_key(key));
 }
 
-OptionRecord option_record(const OptimizeOptions& options) {
-  OptionRecord record;
-  record.reserve(optimize_fields().size());
-  std::string key;
-  for (const auto& field : optimize_fields()) {
-    key.assign("optimize.").append(field.key);
-    field.record(options, key, record);
-  }
-  return record;
-}
+OptionRecord option_record(const OptimizeOptions& options) { return record_of(options, "optimize", optimize_fields()); }
 
 }  // namespace saltus::pipeline

@@ -354,16 +354,7 @@ Expected<SimulateOptions> with_value(SimulateOptions options, std::string_view k
   return tl::unexpected(unknown_key(key));
 }
 
-OptionRecord option_record(const SimulateOptions& options) {
-  OptionRecord record;
-  record.reserve(simulate_fields().size());
-  std::string key;
-  for (const auto& field : simulate_fields()) {
-    key.assign("simulate.").append(field.key);
-    field.record(options, key, record);
-  }
-  return record;
-}
+OptionRecord option_record(const SimulateOptions& options) { return record_of(options, "simulate", simulate_fields()); }
 
 double number_of_rows(const OutputGrid& grid, double begin, double end) {
   if (const auto* points = std::get_if<NumberOfPoints>(&grid)) return static_cast<double>(points->points);

@@ -34,6 +34,19 @@ inline double number_in(const OptionValue& value) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+/// Returns the values in force of a table of options, under the name of their section.
+template <class Options, class Fields>
+OptionRecord record_of(const Options& options, std::string_view section, const Fields& fields) {
+  OptionRecord record;
+  record.reserve(fields.size());
+  std::string key;
+  for (const auto& field : fields) {
+    key.assign(section).append(".").append(field.key);
+    field.record(options, key, record);
+  }
+  return record;
+}
+
 enum class Range { finite, positive, not_negative };
 
 constexpr std::string_view text(Range range) {

@@ -3,9 +3,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
-#include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
-#include "saltus/pipeline/optimal_control/touching_bodies_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
 
 namespace saltus::pipeline {
@@ -17,30 +15,24 @@ model::Ocp physical_ocp(const model::Ocp& ocp) {
   return judged;
 }
 
-namespace {
-
-/// Behind the parameters of the physical system is that of a stabilisation which is followed down.
-model::System with_parameters(model::System system, const std::vector<double>& parameters) {
+Expected<std::unique_ptr<PhysicalBodies>> PhysicalBodies::make(const model::Ocp& ocp,
+                                                               const std::vector<double>& parameters) {
+  model::System system = *ocp.physical;
   system.parameter_values.assign(parameters.begin(), parameters.begin() + index(system.parameter_names.size()));
-  return system;
+  auto kernel = evaluation::ModelKernel::compile(system);
+  if (!kernel) return tl::unexpected(kernel.error());
+  return std::unique_ptr<PhysicalBodies>(new PhysicalBodies(std::move(system), std::move(*kernel)));
 }
 
-}  // namespace
-
-Expected<void> add_impulses(const model::Ocp& ocp, const std::vector<double>& parameters, result::Result& run) {
-  const auto is_impact = [](const auto& event) { return event.kind == result::EventKind::impact; };
-  if (!ocp.physical || std::none_of(run.events.begin(), run.events.end(), is_impact)) return {};
-  const model::System system = with_parameters(*ocp.physical, parameters);
-  const auto kernel = evaluation::ModelKernel::compile(system);
-  if (!kernel) return tl::unexpected(kernel.error());
-  TouchingBodies bodies(system, *kernel);
+void add_impulses(PhysicalBodies& bodies, result::Result& run) {
+  const auto& system = bodies.system();
   result::Events events;
   for (result::Event event : run.events) {
-    if (is_impact(event)) {
+    if (event.kind == result::EventKind::impact) {
       auto x = event.x, x_after = event.x_after;
       x.resize(system.state_names.size(), 0.0);
       x_after.resize(x.size(), 0.0);
-      event.impulse = bodies.impulses(event.t, x, x_after);
+      event.impulse = bodies.touching().impulses(event.t, x, x_after);
       double largest = 0.0;
       for (const auto& one : *event.impulse) largest = std::max(largest, std::abs(one.front()));
       event.surfaces.clear();
@@ -52,19 +44,16 @@ Expected<void> add_impulses(const model::Ocp& ocp, const std::vector<double>& pa
     events.push_back(std::move(event));
   }
   run.events = std::move(events);
-  return {};
 }
 
-Expected<OptimizedPath> physical_path(const model::Ocp& ocp, const OptimizedPath& path, const result::Result& run) {
-  const model::System system = with_parameters(*ocp.physical, path.parameters);
+OptimizedPath physical_path(const model::Ocp& ocp, PhysicalBodies& bodies, const OptimizedPath& path,
+                            const result::Result& run) {
+  const auto& system = bodies.system();
   const std::size_t shown = at(ocp.system.freezing->first_hidden), n = system.state_names.size();
   OptimizedPath physical = path;
   physical.parameters = system.parameter_values;
   const std::size_t intervals = path.controls.size();
   const auto& rows = run.trajectory;
-  const auto kernel = evaluation::ModelKernel::compile(system);
-  if (!kernel) return tl::unexpected(kernel.error());
-  TouchingBodies bodies(system, *kernel);
   for (std::size_t k = 0; k <= intervals; ++k) {
     const double share = k == intervals ? 1.0 : static_cast<double>(k) / static_cast<double>(intervals);
     const double t = ocp.from + path.horizon * share;
@@ -76,7 +65,7 @@ Expected<OptimizedPath> physical_path(const model::Ocp& ocp, const OptimizedPath
     std::vector<double> node = rows.x[row], end = rows.x[std::min(at(first), row)];
     node.resize(n, 0.0);
     end.resize(n, 0.0);
-    if (k < intervals && !rows.contact_modes.empty()) bodies.project(t, rows.contact_modes[row], node);
+    if (k < intervals && !rows.contact_modes.empty()) bodies.touching().project(t, rows.contact_modes[row], node);
     if (k > 0) physical.ends.push_back(std::move(end));
     physical.times[k] = t;
     physical.nodes[k] = std::move(node);

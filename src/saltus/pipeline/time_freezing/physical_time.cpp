@@ -51,7 +51,6 @@ class PhysicalTime {
       // Where an impact begins the run its error may take the clock back.
       double t = raw.x[r][clock_];
       if (!run_.trajectory.t.empty()) t = std::max(t, run_.trajectory.t.back());
-      impulse_.clear();
       std::vector<Event> here;
       for (; next < events.size() && (events.x(next)[clock_] <= t || same_time(events.x(next)[clock_], t)); ++next) {
         here.push_back(events[next]);
@@ -60,7 +59,8 @@ class PhysicalTime {
       if (!here.empty()) take_events(here, t);
       const bool is_event = run_.events.size() > before;
       if (is_event && last > r) add_row(raw, r, t);
-      add_row(raw, last, t, impulse_);
+      const auto impulse = is_event ? run_.events[before].impulse : std::nullopt;
+      add_row(raw, last, t, impulse.value_or(std::vector<std::vector<double>>()));
       r = last + 1;
     }
     auto& rows = run_.trajectory;
@@ -206,7 +206,7 @@ class PhysicalTime {
     return true;
   }
 
-  [[nodiscard]] bool take_impact(Event& event) {
+  [[nodiscard]] bool take_impact(Event& event) const {
     std::vector<std::vector<double>> impulse;
     for (const auto& contact : freezing_.contacts) {
       if (contact.impulse < 0) return take_jump_of_velocities(event);
@@ -219,7 +219,6 @@ class PhysicalTime {
     }
     if (event.surfaces.empty()) return false;
     event.kind = EventKind::impact;
-    impulse_ = impulse;
     event.impulse = std::move(impulse);
     return true;
   }
@@ -285,7 +284,6 @@ class PhysicalTime {
   const model::TimeFreezing& freezing_;
   result::Result& run_;
   std::size_t clock_ = 0;
-  std::vector<std::vector<double>> impulse_;  ///< of the impact at this time, by contact; empty: none
   double standing_ = 0.0;
   bool shows_regions_ = true;      ///< they are the user's
   std::vector<std::size_t> kept_;  ///< columns

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/report/axis_title.hpp"
 #include "saltus/report/figure/figure_columns_internal.hpp"
 
 namespace saltus::report {
@@ -65,9 +66,7 @@ std::vector<FigureColumn> figure_columns(const result::Result& result) {
   return columns;
 }
 
-std::string title_of(const FigureColumn& column) {
-  return column.caption.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.caption.unit);
-}
+std::string title_of(const FigureColumn& column) { return axis_title(column.name, column.caption.unit); }
 
 Range time_range(const result::Result& result) {
   const auto& t = result.trajectory.t;
