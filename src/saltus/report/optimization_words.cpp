@@ -132,6 +132,12 @@ Finding open_loop_finding(std::string text, const result::OpenLoop& open_loop) {
   return {Tone::neutral, text + "."};
 }
 
+std::string feedback_words(const std::vector<std::pair<std::string, double>>& plant) {
+  std::string text = "With feedback from the states at the nodes";
+  for (const auto& [name, value] : plant) text += fmt::format(", {} = {}", name, value);
+  return text + ": ";
+}
+
 }  // namespace
 
 std::vector<Finding> certificate_findings(const result::Certificate& certificate, double tolerance) {
@@ -149,7 +155,7 @@ std::vector<Finding> verification_findings(const result::Optimization& optimizat
   if (verification.penetration) findings.push_back(penetration_finding(*verification.penetration));
   findings.push_back(open_loop_finding("Controls over the whole horizon, from the start on: ", verification.open_loop));
   if (verification.closed_loop) {
-    findings.push_back(open_loop_finding("With feedback from the states at the nodes: ", *verification.closed_loop));
+    findings.push_back(open_loop_finding(feedback_words(verification.plant), *verification.closed_loop));
   }
   return findings;
 }

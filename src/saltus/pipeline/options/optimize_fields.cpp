@@ -209,6 +209,9 @@ constexpr std::array keys_of_problem{
     ProblemKey{"path_complementarities", "a list of pairs",
                "[[\"a\", \"b\"]]: a >= 0, b >= 0, one of them 0, at every stage."},
     ProblemKey{"initial_guess", "a table", "Where to begin: { q = \"t\" }, or { result = \"r.json\" }."},
+    ProblemKey{
+        "plant", "a table",
+        "Parameters and initial values of the system that `closed_loop` simulates, where they differ: { mu = 0.7 }."},
     ProblemKey{"least_squares", "[[optimize.least_squares]]", "Tables with of, reference, weight and at."},
 };
 
