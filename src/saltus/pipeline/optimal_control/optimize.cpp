@@ -23,6 +23,7 @@
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
+#include "saltus/result/impacts_at_nodes.hpp"
 #include "saltus/solver/feedback.hpp"
 
 namespace saltus::pipeline {
@@ -121,7 +122,8 @@ void take_point(discretization::OcpProblem& problem, const solver::Solution& sol
 }
 
 /// completed only if the other engine agrees.
-void judge(const result::Verification& verification, double tolerance, result::Status& status) {
+void judge(const result::Verification& verification, const OptimizeOptions& options, result::Status& status) {
+  const double tolerance = options.verification_tolerance;
   if (status.termination != Termination::completed) return;
   if (verification.interval_defect <= tolerance && verification.message.empty()) return;
   status.termination = Termination::verification_failed;
@@ -134,13 +136,15 @@ void judge(const result::Verification& verification, double tolerance, result::S
     return;
   }
   const bool missed = verification.switches_missed > 0;
+  const long stages = options.element.stages;
   status.message = fmt::format(
       "the event-driven simulation of interval {} differs by {:.3g} of the range of '{}' (verification_tolerance = "
       "{:.3g}); "
       "{}",
       verification.interval, verification.interval_defect, verification.state, tolerance,
-      missed ? "a switch was missed there: take more elements or more intervals (or fewer stages)"
-             : "take more stages or more elements");
+      !missed      ? "take more stages or more elements"
+      : stages > 1 ? "a switch was missed there: take more elements or more intervals (or fewer stages)"
+                   : "a switch was missed there: take more stages, elements or intervals");
 }
 
 std::optional<solver::Start> same_structure(const discretization::OcpProblem& problem, const OptimizeOptions& options) {
@@ -183,16 +187,8 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
   return verify(physical_ocp(ocp), physical_path(ocp, *bodies, path, run), wanted, observers.is_interrupted);
 }
 
-/// An impact cannot move from one interval into the next: that is another branch, which no certificate looks at.
 void warn_of_impacts_at_nodes(const result::Result& run, const OptimizeObservers& observers) {
-  const auto& grid = run.optimization->grid;
-  std::string times;
-  for (const auto& event : run.events) {
-    const auto is_here = [&](double node) { return std::abs(event.t - node) <= 1e-9 * (grid.back() - grid.front()); };
-    if (event.kind != result::EventKind::impact || grid.size() < 3) continue;
-    if (std::none_of(grid.begin() + 1, grid.end() - 1, is_here)) continue;
-    times += fmt::format("{}{:.6g}", times.empty() ? "" : ", ", event.t);
-  }
+  const auto times = result::impacts_at_nodes(run);
   if (times.empty()) return;
   observers.on_warning(
       fmt::format("impacts at t = {} lie at ends of control intervals, and an optimum may have them on the other side; "
@@ -272,7 +268,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     }
     auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), bodies.get(), observers);
     if (!verification) return tl::unexpected(verification.error());
-    judge(*verification, options.verification_tolerance, result.status);
+    judge(*verification, options, result.status);
     if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);
     found.verification = std::move(*verification);
   }

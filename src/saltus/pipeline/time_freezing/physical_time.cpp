@@ -55,10 +55,12 @@ class PhysicalTime {
       for (; next < events.size() && (events.x(next)[clock_] <= t || same_time(events.x(next)[clock_], t)); ++next) {
         here.push_back(events[next]);
       }
+      if (here.empty() && jumps(raw.x[r], raw.x[last])) here.push_back(event_between(raw, r, last));
       const std::size_t before = run_.events.size();
       if (!here.empty()) take_events(here, t);
       const bool is_event = run_.events.size() > before;
-      if (is_event && last > r) add_row(raw, r, t);
+      const bool is_doubled = is_event || std::vector<double>(raw.u[r]) != std::vector<double>(raw.u[last]);
+      if (is_doubled && last > r) add_row(raw, r, t);
       const auto impulse = is_event ? run_.events[before].impulse : std::nullopt;
       add_row(raw, last, t, impulse.value_or(std::vector<std::vector<double>>()));
       r = last + 1;
@@ -79,6 +81,28 @@ class PhysicalTime {
  private:
   [[nodiscard]] bool same_time(double a, double b) const {
     return std::abs(a - b) <= std::max(standing_, 8.0 * rounding_unit * std::max(1.0, std::abs(a)));
+  }
+
+  /// Whether velocities differ.
+  [[nodiscard]] bool jumps(const std::vector<double>& x, const std::vector<double>& x_after) const {
+    double fastest = 0.0, change = 0.0;
+    for (const int v : freezing_.velocities) {
+      fastest = std::max({fastest, std::abs(x[at(v)]), std::abs(x_after[at(v)])});
+      change = std::max(change, std::abs(x_after[at(v)] - x[at(v)]));
+    }
+    return change > same_velocity * fastest;
+  }
+
+  /// An impact at the end of a run that no change of a mode tells: gap and force are both 0 there.
+  [[nodiscard]] static Event event_between(const result::Trajectory& raw, std::size_t r, std::size_t last) {
+    Event event;
+    event.x = raw.x[r];
+    event.x_after = raw.x[last];
+    event.mode_before = Mode(raw.mode[r]);
+    event.mode_after = Mode(raw.mode[last]);
+    event.alpha_before = std::vector<double>(raw.alpha[r]);
+    event.alpha_after = std::vector<double>(raw.alpha[last]);
+    return event;
   }
 
   template <class Values>
@@ -224,12 +248,7 @@ class PhysicalTime {
   }
 
   [[nodiscard]] bool take_jump_of_velocities(Event& event) const {
-    double fastest = 0.0, change = 0.0;
-    for (const int v : freezing_.velocities) {
-      fastest = std::max({fastest, std::abs(event.x[at(v)]), std::abs(event.x_after[at(v)])});
-      change = std::max(change, std::abs(event.x_after[at(v)] - event.x[at(v)]));
-    }
-    if (change <= same_velocity * fastest) return false;
+    if (!jumps(event.x, event.x_after)) return false;
     for (std::size_t i = 0; i < freezing_.contacts.size(); ++i) {
       const bool closed = freezing_.contacts.size() == 1 || event.contact_modes_after.empty() ||
                           event.contact_modes_after[i] != ContactMode::open || freezing_.contacts[i].is_elastic;
