@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <string_view>
@@ -77,13 +76,6 @@ std::vector<std::string> changed_names(const std::vector<TableColumn>& table) {
     names.push_back(name.ends_with("(0)") ? name.substr(0, name.size() - 3) : name);
   }
   return names;
-}
-
-std::optional<double> number_of_field(const std::string& text) {
-  double value = 0.0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 /// Whether the rows are those of the runs from `first` to `last`; one for each where only ends are kept, which have the
