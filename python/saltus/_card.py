@@ -7,7 +7,7 @@ import typing
 
 import numpy as np
 
-from ._shape import broken_at_jumps, sliding_spans, thinned
+from ._shape import as_drawn, broken_at_jumps, sliding_spans, thinned
 
 if typing.TYPE_CHECKING:
     from ._model import Model
@@ -62,6 +62,7 @@ def _values(title: str, values: dict[str, float]) -> str:
 def _picture(r: Result, names: list[str]) -> str:
     if len(r.t) < 2 or not names:
         return ""
+    r = as_drawn(r)
     begin, end = float(r.t[0]), float(r.t[-1])
     if not end > begin:
         return ""
@@ -96,19 +97,20 @@ def _curve(r: Result, name: str, across: typing.Callable[[typing.Any], typing.An
     low, high = float(finite.min()), float(finite.max())
     scale = (HEIGHT - 6) / (high - low) if high > low else 0.0
     path: list[str] = []
-    pen = "M"
+    # Of no length, so that a point between two gaps is seen by the round ends of its line.
+    pen, point = "M", "h0"
     for x, v in zip(across(t), y):
         if not np.isfinite(v):
-            pen = "M"
+            pen, point = "M", "h0"
             continue
-        path.append(f"{pen}{x:.1f} {top + HEIGHT - 3 - (v - low) * scale:.1f}")
-        pen = "L"
+        path.append(f"{pen}{x:.1f} {top + HEIGHT - 3 - (v - low) * scale:.1f}{point}")
+        pen, point = "L", ""
     marks = "".join(
         f"<line x1='{across(event.t):.1f}' x2='{across(event.t):.1f}' y1='{top}' y2='{top + 4}' stroke='#888'/>"
         for event in r.events[:100]
     )
     return (
-        f"{marks}<path d='{''.join(path)}' fill='none' stroke='#1f77b4' stroke-width='1.3'/>"
+        f"{marks}<path d='{''.join(path)}' fill='none' stroke='#1f77b4' stroke-width='1.3' stroke-linecap='round'/>"
         f"<text x='0' y='{top + HEIGHT / 2:.0f}' font-weight='bold'>{html.escape(name[:12])}</text>"
         f"<text x='{LEFT - 3}' y='{top + 9}' text-anchor='end'>{high:.3g}</text>"
         f"<text x='{LEFT - 3}' y='{top + HEIGHT}' text-anchor='end'>{low:.3g}</text>"

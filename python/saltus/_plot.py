@@ -8,7 +8,7 @@ import numpy as np
 
 from ._data import with_rows
 from ._expression import Expression
-from ._shape import broken_at_jumps, slides, sliding_spans
+from ._shape import as_drawn, broken_at_jumps, is_alone, slides, sliding_spans
 
 if typing.TYPE_CHECKING:
     from ._events import Event
@@ -46,7 +46,7 @@ def plot(
     r: Result, names: typing.Sequence[str | Expression] | None, axes: typing.Any, label: str | None = None
 ) -> typing.Any:
     """A row of axes for every name; sliding is shaded, every event marked at its value."""
-    r = with_rows(r, 2)
+    r = as_drawn(with_rows(r, 2))
     pyplot = _matplotlib()
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
@@ -76,10 +76,12 @@ def plot(
 
 
 def _line(axis: typing.Any, curve: list[typing.Any], label: str | None) -> None:
-    """Another result over one that is there has another colour."""
+    """Another result over one that is there has another colour; a value between two gaps is a dot."""
     before = sum(line.get_gid() == _OURS for line in axis.lines)
     named = {"label": label} if label is not None else {}
-    axis.plot(*curve, color=LINES[before % len(LINES)], linewidth=1.2, gid=_OURS, **named)
+    dots = np.flatnonzero(is_alone(curve[0] + curve[1])).tolist()
+    style = {"marker": ".", "markersize": 2.4, "markevery": dots} if dots else {}
+    axis.plot(*curve, color=LINES[before % len(LINES)], linewidth=1.2, gid=_OURS, **style, **named)
 
 
 def _legend(axis: typing.Any) -> None:
@@ -105,20 +107,20 @@ def _mark_events(axis: typing.Any, r: Result, x: str, y: str) -> None:
 
 
 def _at(r: Result, name: str, event: Event) -> float:
-    """A column before an event; of a result without rows at its events from the event itself."""
-    row = int(r.t.searchsorted(event.t, side="left"))
-    if row < len(r.t) and r.t[row] == event.t:
-        return float(r[name][row])
+    """A column before an event; NaN where neither the event nor a row has it."""
+    if name == "t":
+        return event.t
     if name in r.states:
         return float(event.x[r.states.index(name)])
-    return float(np.interp(event.t, r.t, r[name]))
+    row = int(r.t.searchsorted(event.t, side="left"))
+    return float(r[name][row]) if row < len(r.t) and r.t[row] == event.t else float("nan")
 
 
 def phase(
     r: Result, x: str | Expression, y: str | Expression, axis: typing.Any, label: str | None = None
 ) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
-    r = with_rows(r, 2)
+    r = as_drawn(with_rows(r, 2))
     pyplot = _matplotlib()
     x, y = str(x), str(y)
     if axis is None:

@@ -10,17 +10,17 @@ if typing.TYPE_CHECKING:
     from ._result import Result
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
-#: Kinds of events at which states may jump.
-JUMPS = frozenset({"jump", "impact", "accumulation"})
+
+
+def as_drawn(r: Result) -> Result:
+    """The result with two rows at every event, which it need not have: what pages and figures show."""
+    run = r._run.drawn()
+    return r if run is None else type(r)(run)
 
 
 def broken_at_jumps(r: Result, *columns: Array) -> list[Array]:
-    """The columns with a NaN between the two rows of every jump, so that no line joins them: of jumps of the state, and
-    where a column itself is not continuous, as an output that switches."""
-    jumps = sorted({event.t for event in r.events if event.kind in JUMPS})
-    first, behind = np.searchsorted(r.t, jumps, side="left"), np.searchsorted(r.t, jumps, side="right")
-    # Behind the first of the rows of a time, as the others lie on the other side; one alone, or none, lies behind it.
-    places = set(np.where(behind - first > 1, first + 1, first).tolist()) - {0, len(r.t)}
+    """The columns with a NaN between the two rows of every jump of one of them, so that no line joins them."""
+    places: set[int] = set()
     twice = np.flatnonzero(np.diff(r.t) == 0)
     for column in columns:
         finite = column[np.isfinite(column)]
@@ -30,6 +30,13 @@ def broken_at_jumps(r: Result, *columns: Array) -> list[Array]:
     if not places:
         return list(columns)
     return [np.insert(column.astype(float), sorted(places), np.nan) for column in columns]
+
+
+def is_alone(values: Array) -> Array:
+    """Of every value, whether it lies between two gaps, where no line is drawn through it."""
+    missing = np.isnan(np.concatenate(([np.nan], values, [np.nan])))
+    lone: Array = ~missing[1:-1] & missing[:-2] & missing[2:]
+    return lone
 
 
 def sliding_spans(r: Result) -> list[tuple[float, float]]:

@@ -24,6 +24,7 @@
 #include "saltus/report/html.hpp"
 #include "saltus/report/table.hpp"
 #include "saltus/result/difference.hpp"
+#include "saltus/result/drawn.hpp"
 #include "saltus/result/kept_columns.hpp"
 
 namespace nb = nanobind;
@@ -133,6 +134,13 @@ nb::list contact_modes(const Run& run) {
     rows.append(std::move(words));
   }
   return rows;
+}
+
+/// What pictures show of it; none if that is the run itself.
+std::optional<Run> drawn(const Run& run) {
+  auto result = result::as_drawn(*run.result);
+  if (!result) return std::nullopt;
+  return Run{std::make_shared<result::Result>(std::move(*result)), nullptr, {}, {}, {}};
 }
 
 /// The stored form of what is no row and no event.
@@ -276,6 +284,7 @@ void add_result(nb::module_& module) {
       .def_prop_ro("final", final_of)
       .def_prop_ro("branches", branches)
       .def_prop_ro("sensitivities", sensitivities)
+      .def("drawn", drawn)
       .def("facts", facts)
       .def("table", [](const Run& self) { return report::to_table(*self.result); })
       .def("json",

@@ -252,6 +252,9 @@ def test_hysteresis_switches_at_its_thresholds():
     m.rate(T, 10 * heats - 0.1 * T)
     r = m.simulate(until=10)
     assert {round(float(e.x[0]), 9) for e in r.events} == {18.0, 20.0}
+    m.rate(m.state("clock", 0), 1)
+    with pytest.raises(saltus.ModelError, match=r"a state with the name 'clock' beside \[\[hysteresis\]\]"):
+        m.simulate(until=10)
 
 
 def test_a_builder_is_a_model_in_all_it_does():

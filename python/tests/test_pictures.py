@@ -65,17 +65,19 @@ def test_the_sides_of_a_jump_are_not_joined(ball):
         assert y[between - 1] == pytest.approx(event.x[1])
         assert y[between + 1] == pytest.approx(event.x_after[1])
         break
-    assert np.isnan(y).sum() == len({e.t for e in ball.events if e.kind in ("jump", "accumulation")})
+    assert np.isnan(y).sum() == sum(abs(e.x_after[1] - e.x[1]) > 1e-6 * np.ptp(ball["v"]) for e in ball.events)
 
 
 def test_a_jump_between_two_rows_is_not_joined():
-    """Of a result without rows at events the gap lies where the jump is, and so do the marks of events."""
+    """Of a result without rows at events curves have the sides of the event, and so have the marks of events."""
     m = saltus.catalogue("bouncing-ball")
     r = m.simulate(until=3, output={"every": 0.1, "events": False})
     (axis,) = r.plot(["v"])
     x, y = (np.asarray(data, dtype=float) for data in axis.lines[0].get_data())
     (gap,) = np.flatnonzero(np.isnan(y))
-    assert x[gap - 1] < r.events[0].t < x[gap + 1]
+    (jump,) = r.events
+    assert (x[gap - 1], y[gap - 1]) == (jump.t, jump.x[1]) and (x[gap + 1], y[gap + 1]) == (jump.t, jump.x_after[1])
+    assert f"{y.min():.3g}</text>" in r._repr_html_() and y.min() == jump.x[1]
     (mark,) = [line for line in axis.lines if line.get_label() == "jump"]
     assert [data.tolist() for data in map(np.asarray, mark.get_data())] == [[r.events[0].t], [r.events[0].x[1]]]
     assert len(m.simulate(until=3, output={"times": [0, 0.1], "events": False}).plot()) == 2
@@ -102,6 +104,21 @@ def test_an_output_that_switches_is_not_joined():
     way, _, u = r.plot()
     assert np.isnan(u.lines[0].get_ydata()).sum() == len(r.events) > 1
     assert not np.isnan(way.lines[0].get_ydata()).any()
+
+
+def test_an_output_that_no_row_has_at_an_event_is_not_joined():
+    r = relay().simulate(until=5, output={"every": 0.5, "events": False})
+    (u,) = r.plot(["u"])
+    x, y = (np.asarray(data, dtype=float) for data in u.lines[0].get_data())
+    for event in r.events:
+        assert np.isnan(y[x == event.t]).all() and (x == event.t).sum() == 2
+
+
+def test_a_value_alone_between_events_is_seen():
+    r = relay().simulate(until=5, output={"times": [0, 2, 4.9], "events": False})
+    (line,) = (line for line in r.plot(["u"])[0].lines if line.get_gid() == "saltus")
+    dots = line.get_markevery()
+    assert line.get_marker() == "." and np.asarray(line.get_xdata())[dots].tolist() == [0, 2, 4.9]
 
 
 def test_axes_have_labels_and_units():

@@ -243,11 +243,16 @@ def test_shares_are_the_whole(tool, tmp_path, keep):
 def test_axes_of_the_page_say_labels_and_units(tool, tmp_path):
     (tmp_path / "m.toml").write_text(
         '[model]\nname = "m"\n[parameters]\nF = { initial = 1, unit = "N", label = "force" }\n'
-        '[states]\nx = { initial = 1, unit = "m" }\n[dynamics]\nx = "F - x"\n')
-    run_tool(tool, tmp_path, "m.toml", "--until", "1", "--over", "F=1,2", "--over", "x=1,2", "--report", "m.html")
+        '[states]\nx = { initial = 1, unit = "m" }\n[dynamics]\nx = "F - x"\n'
+        '[outputs]\ny = { value = "2*x", label = "twice, \\"x\\"" }\n')
+    sweep = ["m.toml", "--until", "1", "--over", "F=1,2", "--over", "x=1,2"]
+    run_tool(tool, tmp_path, *sweep, "--report", "m.html")
     data = page_data((tmp_path / "m.html").read_text())
     assert dict(zip(data["columns"], data["axes"], strict=True)) == {
-        "run": "run", "F": "force [N]", "x(0)": "x(0) [m]", "status": "status", "t": "t", "x": "x [m]", "events": "events"}
+        "run": "run", "F": "force [N]", "x(0)": "x(0) [m]", "status": "status", "t": "t", "x": "x [m]", "y": 'twice, "x"',
+        "events": "events"}
+    run_tool(tool, tmp_path, "--join", *shares(tool, tmp_path, 2, *sweep), "--report", "joined.html")
+    assert (tmp_path / "joined.html").read_text() == (tmp_path / "m.html").read_text()
 
 
 def test_shares_say_what_the_page_needs(tool, tmp_path):

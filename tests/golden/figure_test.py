@@ -44,6 +44,18 @@ class Figure(tool.ToolTest):
         self.run_tool("report", "r.json", "--figure", "a.svg", "--phase", "t,v", code=0)
         self.assertEqual(self.marks("a.svg", "path", "stroke", "#b9c0ca"), [])
 
+    def test_jumps_are_seen_without_rows_at_events(self):
+        """Dotted lines from the state before an event to that behind it, and none through it."""
+        rows = ("--set", "simulate.until=3", "--set", "simulate.output.every=0.1")
+        self.run_tool("simulate", "bouncing-ball", *rows, "--out", "a.json", "--quiet", code=0)
+        self.run_tool("simulate", "bouncing-ball", *rows, "--set", "simulate.output.events=false", "--out", "b.json", "--quiet", code=0)
+        jumps = []
+        for name in ("a", "b"):
+            self.run_tool("report", f"{name}.json", "--figure", f"{name}.svg", "--columns", "v", code=0)
+            jumps.append([mark.get("d") for mark in self.marks(f"{name}.svg", "path", "stroke-dasharray", "2 3")])
+        self.assertEqual(len(jumps[0]), 1)
+        self.assertEqual(jumps[0], jumps[1])
+
     def test_units_and_labels_stand_beside_panels_and_axes(self):
         self.run_tool("new", "u", "--like", "impact", code=0)
         self.run_tool("simulate", "u.toml", "--out", "u.json", "--quiet", code=0)

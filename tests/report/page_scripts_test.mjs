@@ -58,6 +58,14 @@ test("a jump is a gap with its two sides, a continuous event and a rounding are 
   assert.deepEqual(jumps, {x: [1, 1, null], y: [1, 5, null]});
 });
 
+test("a missing side of an event is a gap without a jump, and a value between two gaps is seen", () => {
+  const t = [0, 1, 1, 2, 3, 3, 4];
+  const {x, y, jumps} = saltus.points(t, [5, null, null, 7, null, 8, 8], [0, 4], 4);
+  assert.deepEqual(jumps.x, []);
+  assert.deepEqual(y, [5, 5, null, null, 7, 7, null, 8, 8]);
+  assert.deepEqual(x, [-0.5, 0.5, 1, 1, 1.5, 2.5, 3, 3, 4]);
+});
+
 test("a discrete state is drawn as steps without gaps", () => {
   const t = [0, 1, 1, 2, 2, 3];
   const steps = [0, 0, 1, 1, 2, 2];

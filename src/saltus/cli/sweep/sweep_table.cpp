@@ -66,7 +66,7 @@ class Beginning {
     for (std::size_t i = 0; i < plan.runs(); ++i) {
       values_.push_back(plan.values(i));
       for (std::size_t k = 0; k < is_number_.size(); ++k) {
-        const auto value = number(values_[i][k]);
+        const auto value = number_of_field(values_[i][k]);
         is_number_[k] = is_number_[k] && value;
         numbers_.push_back(value.value_or(nothing));
       }
@@ -95,12 +95,6 @@ class Beginning {
   }
 
  private:
-  static std::optional<double> number(const std::string& text) {
-    double value = 0.0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-  }
   const SweepPlan& plan_;
   std::size_t begin_;
   std::vector<bool> is_number_;
@@ -210,6 +204,13 @@ std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<Sw
       return with_distinct_names(trajectory_table(beginning, first, runs).columns());
   }
   __builtin_unreachable();
+}
+
+std::optional<double> number_of_field(const std::string& text) {
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
 }
 
 std::string to_csv(const std::vector<TableColumn>& table) {

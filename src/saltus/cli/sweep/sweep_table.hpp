@@ -1,6 +1,7 @@
 // All runs of a sweep as one table.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -30,6 +31,9 @@ struct TableColumn {
 [[nodiscard]] inline std::size_t rows_of(const TableColumn& column) {
   return std::visit([](const auto& values) { return values.size(); }, column.values);
 }
+
+/// Returns the number that a field is; nullopt if it is anything else.
+[[nodiscard]] std::optional<double> number_of_field(const std::string& text);
 
 /// Writes RFC 4180, numbers as the shortest text that reads back the same.
 [[nodiscard]] std::string to_csv(const std::vector<TableColumn>& table);

@@ -99,7 +99,7 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
                                           [](const auto& mode) { return mode.indicator != nullptr; });
   plan.takes_plane = plan.purpose == FrozenFor::optimisation && description.hysteresis.size() == 1 &&
                      description.contacts.empty() && !has_indicators;
-  plan.made.clock = declare_state(recognition, statement, "clock");
+  plan.made.clock = declare_state(recognition, statement, clock_name);
   plan.numerical_time = statement.time;
   statement.time = statement.states.back().symbol;
   return std::nullopt;

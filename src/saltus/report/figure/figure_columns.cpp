@@ -155,7 +155,9 @@ void draw_pieces(Svg& svg, const CurvePieces& pieces, std::string_view color, st
                  double wide) {
   for (const auto& piece : pieces.lines) {
     const bool marked = piece.sliding && wide > 0.0;
-    svg.path(piece.points, {marked ? paper::sliding : color, marked ? wide : 1.6});
+    const Pen pen{marked ? paper::sliding : color, marked ? wide : 1.6};
+    if (piece.points.size() == 1) svg.disc(piece.points.front(), pen.width / 2, pen.color, "none");
+    svg.path(piece.points, pen);
   }
   for (const auto& jump : pieces.jumps) svg.path(jump, {jump_color, 1.0, "2 3"});
 }
