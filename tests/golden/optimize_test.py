@@ -120,6 +120,22 @@ class ClosedLoop(tool.ToolTest):
         self.run_tool("optimize", "m.toml", *arguments, "--quiet", "--out", "r.json", code=0)
         return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
 
+    def test_a_controller_that_tracks_the_plan(self):
+        """A plan that costs nothing is left alone by the optimal feedback; tracking brings the plant back to it."""
+        self.write("m.toml", UNSTABLE.replace("3*x + u", "a*(x - 1) + u").replace("[states]", "[parameters]\na = 1\n[states]")
+                   .replace('running_cost = "u^2"\nterminal_cost = "100*x^2"', 'running_cost = "u^2 + (x - 1 - t)^2"'))
+        settings = ["optimize.closed_loop=true", "optimize.plant.a=1.5", "optimize.stages=3"]
+        ends = {}
+        for feedback in ("optimal", "tracking"):
+            result = self.optimised(*settings, f"optimize.feedback={feedback}")
+            ends[feedback] = result["verification"]["closed_loop"]["end_state_error"]
+            open_loop = result["verification"]["open_loop"]["end_state_error"]
+            self.assertLess(open_loop, 1e-3)  # of the model itself
+        self.assertLess(ends["tracking"], 0.2)
+        self.assertNotEqual(ends["tracking"], ends["optimal"])
+        _, err = self.run_tool("optimize", "m.toml", "--set", "optimize.feedback=none", code=2)
+        self.assertIn("tracking", err)
+
     def test_the_plant_may_differ_from_the_model(self):
         text = UNSTABLE.replace("3*x + u", "a*x + u").replace("[states]", "[parameters]\na = 3\n[states]")
         self.write("m.toml", text)

@@ -122,7 +122,8 @@ class Conditions {
       if (place >= 0) hessian_.emplace_back(place, place, 1.0 / (scale * scale));
     };
     for (const auto& [shared, first, elements] : chain_.intervals) {
-      for (std::size_t i = 0; i < scales.controls.size(); ++i) weigh(shared.first + static_cast<int>(i), scales.controls[i]);
+      for (std::size_t i = 0; i < scales.controls.size(); ++i)
+        weigh(shared.first + static_cast<int>(i), scales.controls[i]);
       const auto& end = chain_.elements[at(first + elements - 1)].link_state;
       for (std::size_t i = 0; i < std::min(end.size(), scales.states.size()); ++i) weigh(end[i], scales.states[i]);
     }

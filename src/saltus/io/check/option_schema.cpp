@@ -7,9 +7,8 @@ namespace saltus::io {
 namespace {
 
 using pipeline::ListOf;
-using pipeline::Numbers;
 
-Json number_schema(const Numbers& numbers) {
+Json number_schema(const pipeline::Numbers& numbers) {
   Json json = {{"type", "number"}};
   if (numbers.whole) json["multipleOf"] = 1;
   if (numbers.above) json["exclusiveMinimum"] = *numbers.above;
@@ -35,7 +34,7 @@ Json option_schema(const pipeline::OptionKind& kind) {
     case ListOf::nothing:
       break;
     case ListOf::the_same:
-      parts.push_back(list_schema(number_schema(kind.number.value_or(Numbers{}))));
+      parts.push_back(list_schema(number_schema(kind.number.value_or(pipeline::Numbers{}))));
       break;
     case ListOf::increasing_numbers:
       parts.push_back(list_schema(number_schema({})));

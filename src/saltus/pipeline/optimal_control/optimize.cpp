@@ -160,6 +160,20 @@ std::optional<solver::Start> same_structure(const discretization::OcpProblem& pr
   return start;
 }
 
+/// States by the range that they have in the plan, controls by the width of their bounds; what does not move, or has
+/// none, may be off by anything.
+std::optional<solver::TrackingScales> tracking_scales(const model::Ocp& ocp, const OptimizeOptions& options,
+                                                      const OptimizedPath& path) {
+  if (options.feedback != Feedback::tracking) return std::nullopt;
+  const auto widths = [](const std::vector<double>& low, const std::vector<double>& high) {
+    std::vector<double> list;
+    for (std::size_t i = 0; i < low.size(); ++i) list.push_back(high[i] > low[i] ? high[i] - low[i] : INFINITY);
+    return list;
+  };
+  return solver::TrackingScales{widths(path.state_min, path.state_max),
+                                widths(ocp.system.control_lower, ocp.system.control_upper)};
+}
+
 /// How deep bodies are in each other at the nodes and stages.
 double solution_depth(const model::Ocp& ocp, const discretization::OcpSolution& solution) {
   Gaps gaps(*ocp.physical, solution.parameters);
@@ -264,7 +278,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     std::vector<Eigen::MatrixXd> gains;
     if (options.closed_loop) {
       gains = solver::feedback_gains(problem, *solution, static_cast<int>(ocp.system.control_names.size()),
-                                     static_cast<int>(result.states.size()));
+                                     static_cast<int>(result.states.size()), tracking_scales(ocp, options, run->path));
     }
     auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), bodies.get(), observers);
     if (!verification) return tl::unexpected(verification.error());

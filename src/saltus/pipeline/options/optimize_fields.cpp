@@ -18,11 +18,13 @@ constexpr auto native_functions_of = [](auto& o) -> auto& { return o.native; };
 constexpr auto start_values_of = [](auto& o) -> auto& { return o.start; };
 constexpr auto detection_of = [](auto& o) -> auto& { return o.switch_detection; };
 constexpr auto closed_loop_of = [](auto& o) -> auto& { return o.closed_loop; };
+constexpr auto feedback_of = [](auto& o) -> auto& { return o.feedback; };
 constexpr auto time_limit_of = [](auto& o) -> auto& { return o.mpcc.time_limit; };
 constexpr auto solver_of = [](auto& o) -> auto& { return o.solver; };
 constexpr auto verification_of = [](auto& o) -> auto& { return o.verification_tolerance; };
 
 constexpr Choices<Native, 3> native_words{{"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
+constexpr Choices<Feedback, 2> feedback_words{{"optimal", "tracking"}, {Feedback::optimal, Feedback::tracking}};
 constexpr Choices<StartValues, 2> start_words{{"neutral", "simulated"}, {StartValues::neutral, StartValues::simulated}};
 
 void set_elements(OptimizeOptions& options, std::string_view, const OptionValue& value) {
@@ -82,6 +84,10 @@ constexpr std::array method_fields{
         "start", "What selections and multipliers begin with: middle values, or those of a simulation of the guess."),
     truth_field<closed_loop_of, OptimizeOptions>(
         "closed_loop", "Simulate the controls with feedback from the states at the nodes, too, beside the open loop."),
+    choice_field<feedback_of, feedback_words, OptimizeOptions>(
+        "feedback",
+        "Gains of `closed_loop`: how the optimal controls change with the state, or a controller that tracks "
+        "the plan."),
     number_field<verification_of, OptimizeOptions>(
         "verification_tolerance", positive,
         "Of the defects of intervals that are simulated again, relative to the range of each state."),
