@@ -121,18 +121,13 @@ class ClosedLoop(tool.ToolTest):
         return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
 
     def test_a_controller_that_tracks_the_plan(self):
-        """A plan that costs nothing is left alone by the optimal feedback; tracking brings the plant back to it."""
-        self.write("m.toml", UNSTABLE.replace("3*x + u", "a*(x - 1) + u").replace("[states]", "[parameters]\na = 1\n[states]")
-                   .replace('running_cost = "u^2"\nterminal_cost = "100*x^2"', 'running_cost = "u^2 + (x - 1 - t)^2"'))
-        settings = ["optimize.closed_loop=true", "optimize.plant.a=1.5", "optimize.stages=3"]
-        ends = {}
-        for feedback in ("optimal", "tracking"):
-            result = self.optimised(*settings, f"optimize.feedback={feedback}")
-            ends[feedback] = result["verification"]["closed_loop"]["end_state_error"]
-            open_loop = result["verification"]["open_loop"]["end_state_error"]
-            self.assertLess(open_loop, 1e-3)  # of the model itself
-        self.assertLess(ends["tracking"], 0.2)
-        self.assertNotEqual(ends["tracking"], ends["optimal"])
+        """Where the end costs little it is optimal to let an error grow; a controller that tracks the plan does not."""
+        self.write("m.toml", UNSTABLE.replace("100*x^2", "0.001*x^2").replace("stages = 1", "stages = 3"))
+        settings = ["optimize.closed_loop=true", "optimize.plant.x=1.1"]
+        ends = {feedback: self.optimised(*settings, f"optimize.feedback={feedback}")["verification"]["closed_loop"]["end_state_error"]
+                for feedback in ("optimal", "tracking")}
+        self.assertGreater(ends["optimal"], 0.05)
+        self.assertLess(ends["tracking"], 1e-3)
         _, err = self.run_tool("optimize", "m.toml", "--set", "optimize.feedback=none", code=2)
         self.assertIn("tracking", err)
 
