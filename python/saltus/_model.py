@@ -172,8 +172,9 @@ class Model:
         """Finds the controls, times and parameters that [optimize] of the file asks for, and verifies them.
 
         `options` are the keys of [optimize] (docs/optimal-control.md): ``control_intervals=20``, ``time_limit=60``,
-        ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file. ``optimization`` of the result
-        has costs, parameters, multipliers and what was verified.
+        ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file; or the word of the option of that
+        name, ``"neutral"`` or ``"simulated"``. ``optimization`` of the result has costs, parameters, multipliers and
+        what was verified.
 
         >>> m = saltus.Model.from_text('''
         ... [model]
@@ -195,6 +196,8 @@ class Model:
         2.0
         """
         names_no_keys(options, {**self.states, **self.parameters} if options else {})
+        if start in ("neutral", "simulated"):
+            options, start = {**options, "start": start}, None
         typed, chosen = optimize_options(options)
         warned: list[str] = []
         with _started_at(start) as file, own_results():

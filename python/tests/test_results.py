@@ -132,6 +132,8 @@ def test_optimal_control(source):
     assert r.u.shape == (len(r.t), 1)
     again = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start=r, control_intervals=6)
     assert again.optimization["objective"] == pytest.approx(r.optimization["objective"], rel=1e-5)
+    simulated = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start="simulated", control_intervals=6)
+    assert simulated.options["optimize.start"] == "simulated"
     with pytest.raises(saltus.ModelError, match="control_interval"):
         saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(control_interval=6)
     with pytest.raises(saltus.ModelError, match="optimize"):
