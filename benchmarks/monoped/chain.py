@@ -88,9 +88,8 @@ def main():
         first, *others = arguments.stages or STAGES[arguments.by]
         long = run(arguments, folder, 30, start, f"form={arguments.form},{first}", *others)
         if arguments.by == "hop" and not arguments.stages:
-            for _ in range(2):  # to the goal, and once more with good elements
-                cut(long, start, 30)
-                long = run(arguments, folder, 30, start, f"form={arguments.form},{FINER}")
+            cut(long, start, 30)
+            long = run(arguments, folder, 30, start, f"form={arguments.form},{FINER}")
         for intervals in arguments.finer:
             cut(long, start, intervals)
             run(arguments, folder, intervals, start, FINER)
