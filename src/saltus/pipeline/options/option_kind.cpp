@@ -47,7 +47,7 @@ std::string text(ListOf list, std::string_view pattern) {
     case ListOf::increasing_numbers:
       return "a list of finite, increasing numbers";
     case ListOf::names:
-      return fmt::format("names, or patterns like {}", pattern);
+      return fmt::format("a list of names, or of patterns like {}", pattern);
   }
   __builtin_unreachable();
 }
