@@ -13,6 +13,7 @@ class Alternative:
     mode: list[int]
     alpha: Floats
     regions: list[list[str]]
+    def __repr__(self) -> str: ...
 
 class Intersection:
     surfaces: list[str]
@@ -24,6 +25,7 @@ class Event:
     t: float
     kind: str
     name: str | None
+    turned: str | None
     surfaces: list[str]
     mode_before: list[int] | None
     mode_after: list[int] | None

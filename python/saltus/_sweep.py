@@ -273,8 +273,9 @@ class Sweep:
     ) -> typing.Any:
         """Draws a bifurcation diagram (matplotlib): a column at events, over what was swept, a point for each of them.
 
-        `event` is the name or the kind of the events, without it all are drawn; `after` is the time from which on, as
-        transients are no part of it. Needs ``keep="events"``.
+        `event` is the name of the events, their kind, or both the kind and the surface ("crossing slip"); without it
+        all are drawn, each sort in its colour. `after` is the time from which on, as transients are no part of it. Needs
+        ``keep="events"``.
 
         >>> m = saltus.catalogue("stick-slip")
         >>> s = m.sweep(belt=np.linspace(0.1, 0.3, 5), until=40, keep="events")

@@ -26,6 +26,7 @@
 #include "saltus/result/difference.hpp"
 #include "saltus/result/drawn.hpp"
 #include "saltus/result/kept_columns.hpp"
+#include "saltus/result/turned.hpp"
 
 namespace nb = nanobind;
 
@@ -275,12 +276,16 @@ void add_result(nb::module_& module) {
                                             : result::region_labels(run.result->region_groups).size();
                      return block_array(run.theta, run.result->trajectory.theta, width, self);
                    })
-      .def_prop_ro("events",
-                   [](const Run& self) {
-                     nb::list list;
-                     for (result::Event event : self.result->events) list.append(nb::cast(std::move(event)));
-                     return list;
-                   })
+      .def_prop_ro(
+          "events",
+          [](const Run& self) {
+            nb::list list;
+            for (result::Event event : self.result->events) {
+              const auto word = turned(event, *self.result);
+              list.append(nb::cast(RunEvent{std::move(event), word ? std::optional(text_of(*word)) : std::nullopt}));
+            }
+            return list;
+          })
       .def_prop_ro("final", final_of)
       .def_prop_ro("branches", branches)
       .def_prop_ro("sensitivities", sensitivities)

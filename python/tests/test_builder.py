@@ -245,6 +245,21 @@ def test_friction_in_a_plane():
     assert (r.final["u"], r.final["v"]) == (0, 0)
 
 
+def test_numbers_are_numbers_of_toml():
+    m = saltus.Builder("m")
+    numbers = [6, -2.5, 1e-7, 1e22, 0.1, np.float64(3), 2**70]
+    for place, value in enumerate(numbers):
+        m.parameter(f"p{place}", value, unit="V")
+    x = m.state("x", -1)
+    m.rate(x, -m.parameter("k", 2) * x)
+    text = m.to_toml()
+    for line in ("p0 = { initial = 6, unit", "p1 = { initial = -2.5,", "p2 = { initial = 1e-7,", "\nx = -1\n", "\nk = 2\n", '\nx = "-k*x"\n'):
+        assert line in text
+    # A whole number that TOML does not have.
+    assert f'p6 = {{ initial = "{2**70}",' in text
+    assert [m.model().parameters[f"p{place}"] for place in range(7)] == numbers
+
+
 def test_hysteresis_switches_at_its_thresholds():
     m = saltus.Builder("room")
     T = m.state("T", 15)

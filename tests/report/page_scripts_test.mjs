@@ -264,6 +264,14 @@ test("the search finds numbers, kinds, names, surfaces and reasons, all words to
   assert.deepEqual(saltus.matchingEvents(events, "slip crossing"), []);
 });
 
+test("a jump of a hysteresis says what it turned to", () => {
+  const event = {kind: "jump", name: "heats", turned: "on", surfaces: ["heats"], reason: ""};
+  assert.equal(saltus.eventPlace(event), "heats on");
+  assert.equal(saltus.eventPlace({...event, turned: null}), "heats");
+  assert.equal(saltus.eventPlace({...event, name: null, turned: null, surfaces: ["a", "b"]}), "a, b");
+  assert.deepEqual(saltus.matchingEvents([event, {...event, turned: "off"}], "heats on"), [0]);
+});
+
 const meetingOf = (velocities, before = [0, 0]) =>
     ({surfaces: ["a", "b"], velocities, alpha_before: before, alpha_after: [0.5, 0.5]});
 

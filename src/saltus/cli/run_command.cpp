@@ -244,8 +244,7 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
                                  : outputs->write(*result, progress_of(arguments));
   if (has_grown) result->events = growing->ends();
   // Also if nothing could be written: it is all that is left.
-  if (!arguments.quiet && !outputs->fill_standard_output())
-    print(report::to_table(*result, *shown, input->file.captions, arguments.show));
+  if (!arguments.quiet && !outputs->fill_standard_output()) print(report::to_table(*result, *shown, arguments.show));
   if (!written) return refuse(written.error());
   if (*written == Written::interrupted) return ExitCode::stopped_early;
   return report_stops(*result, arguments);

@@ -74,6 +74,30 @@ TEST(Figure, BreaksCurvesAtEventsWithoutRows) {
   EXPECT_EQ(occurrences(*svg, "<circle"), 1U) << "the first row of y lies alone";
 }
 
+TEST(Figure, BreaksCurvesAtEventsBetweenRowsOfOnePixel) {
+  auto result = report_samples::decay();
+  result.states = {"x"}, result.switching_functions = {}, result.outputs = {"y"};
+  result.trajectory = {};
+  constexpr int rows = 20000;
+  for (int i = 0; i <= rows; ++i) {
+    const double t = static_cast<double>(i) / rows;
+    for (const double y : {i <= rows / 2 ? 6.0 : -6.0, i < rows / 2 ? 6.0 : -6.0}) {
+      if (i != rows / 2 && !result.trajectory.t.empty() && result.trajectory.t.back() == t) continue;
+      result.trajectory.t.push_back(t);
+      result.trajectory.x.push_back({t});
+      result.trajectory.outputs.push_back({y});
+    }
+  }
+  result.events = {};
+  const auto drawn = [&](const std::string& column) {
+    const auto svg = to_svg(result, std::nullopt, {column});
+    EXPECT_TRUE(svg);
+    return std::pair(occurrences(*svg, "stroke-dasharray=\"2 3\""), occurrences(*svg, "stroke-width=\"1.6\""));
+  };
+  EXPECT_EQ(drawn("y"), (std::pair<std::size_t, std::size_t>{1, 2})) << "a jump, and a line on either side";
+  EXPECT_EQ(drawn("x"), (std::pair<std::size_t, std::size_t>{0, 1}));
+}
+
 TEST(Figure, UnknownColumnsAreRefusedWithTheNearestName) {
   const auto result = report_samples::stick_slip(4, 5);
   for (const char* wrong : {"q,vv", "vv,q", "q", ""}) {
