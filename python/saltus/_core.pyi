@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 version: str
 Floats = NDArray[np.float64]
 Option = tuple[str, str, str]
+SharedWarning = tuple[str, list[int]]
 
 class Alternative:
     mode: list[int]
@@ -141,8 +142,10 @@ class Model:
         jobs: int,
         share: tuple[int, int],
         progress: typing.Callable[[float, float], None] | None,
-        warnings: list[str],
+        warnings: list[SharedWarning],
     ) -> tuple[dict[str, typing.Any], list[Run], list[str]]: ...
+    @staticmethod
+    def told_with_runs(warnings: list[SharedWarning]) -> list[str]: ...
     def check(self, settings: list[str]) -> str: ...
 
 def run_tool(arguments: list[str]) -> int: ...

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,7 +59,10 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What all tables begin with: the number of the run, its values, its status.
+/// As in archives of results.
+double number_of(std::optional<bool> unique) { return !unique ? -1.0 : *unique ? 1.0 : 0.0; }
+
+/// What all tables begin with: the number of the run, its values, its status, whether its solution is unique.
 class Beginning {
  public:
   Beginning(const SweepPlan& plan, const Result& first, std::size_t begin)
@@ -79,6 +83,7 @@ class Beginning {
       columns_.push_back(is_number_[k] ? Table::numbers(heading) : Table::words(heading));
     }
     columns_.push_back(Table::words("status"));
+    columns_.push_back(Table::numbers("unique"));
   }
   [[nodiscard]] std::vector<TableColumn> columns() const { return columns_; }
   void write(Table& table, std::size_t i, const SweepRun& run) const {
@@ -91,7 +96,7 @@ class Beginning {
         table << values_[i][k];
       }
     }
-    table << std::string(result::name(run.result.status.termination));
+    table << std::string(result::name(run.result.status.termination)) << number_of(run.unique);
   }
 
  private:

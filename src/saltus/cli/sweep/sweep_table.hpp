@@ -19,7 +19,8 @@ struct TableColumn {
 };
 
 /// Returns a row for every run (Keep::final), event or row of a trajectory: `run` from 1, what was changed ("v(0)" if v
-/// is a state, whose value has the column "v"), `status`, then
+/// is a state, whose value has the column "v"), `status`, `unique` (1; 0 if other solutions are admissible; -1 if that
+/// was not decided), then
 ///   final:       t, states, outputs at the end, `events` (their number);
 ///   events:      `events`, `event` from 1, t, kind, name, surfaces, states before, states behind ("v(after)"); a run
 ///                without one has a row whose `event` is 0, without time and kind;

@@ -1,6 +1,9 @@
 // JSON -> Result.
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -246,6 +249,17 @@ Expected<result::Result> parse_result(const std::string& text, const std::string
 }
 
 Expected<result::Result> read_result(const std::filesystem::path& file) {
+  std::error_code ignored;
+  for (const std::string_view table : {".csv", ".npz"}) {
+    if (file.extension() != table || !std::filesystem::exists(file, ignored)) continue;
+    return tl::unexpected(Error{
+        ErrorCode::parse_failure,
+        fmt::format("a {} file is a table, not the whole result", table),
+        "a result is what saltus simulate or saltus optimize writes with --out FILE.json; a sweep draws its table "
+        "with --report FILE.html, where every picture can be saved",
+        {file.string(), 0, 0},
+        {}});
+  }
   const auto text = read_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_result(*text, file.string());
