@@ -42,7 +42,7 @@ template <auto part>
 constexpr OptionField error_limit_field() {
   constexpr auto error_limit = option_of<part, &ElementOptions::error_limit>;
   auto field = number_or_none_field<error_limit, off_word>(
-      "error_limit", positive,
+      "error_limit", positive_number,
       "Of the estimated errors of all elements, relative to the states: steps are divided for it.");
   if (is_fesd<part>) return field;
   field.kind.number.reset();
@@ -55,10 +55,11 @@ template <auto part>
 constexpr std::array fields_of{
     choice_field<option_of<part, &ElementOptions::scheme>, schemes>("scheme", "Runge-Kutta method of the elements."),
     number_field<option_of<part, &ElementOptions::stages>>(
-        "stages", counts,
+        "stages", counting_number,
         "Its stages: radau_iia and gauss_legendre have 1 to 9, the Lobatto methods 2 to 5, explicit 1 to 4."),
-    number_field<option_of<part, &ElementOptions::steps>>("steps", counts, "Simulation steps, of equal length."),
-    number_field<option_of<part, &ElementOptions::elements>>("elements", counts,
+    number_field<option_of<part, &ElementOptions::steps>>("steps", counting_number,
+                                                          "Simulation steps, of equal length."),
+    number_field<option_of<part, &ElementOptions::elements>>("elements", counting_number,
                                                              "Elements in each; at least 2 with switch detection."),
     choice_field<option_of<part, &ElementOptions::representation>, representations>(
         "representation", "Unknowns of an element: stage states or stage slopes; the solutions are the same."),
@@ -68,10 +69,10 @@ constexpr std::array fields_of{
         is_fesd<part>
             ? "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided."
             : "Lengths are fixed: every value holds."),
-    number_field<option_of<part, &ElementOptions::rho>>("rho", positive,
+    number_field<option_of<part, &ElementOptions::rho>>("rho", positive_number,
                                                         "Weight of the objective terms of step_equilibration."),
     number_field<option_of<part, &ElementOptions::equilibration_scale>>(
-        "equilibration_scale", positive, "Scale of step_equilibration = \"l2_relaxed_scaled\"."),
+        "equilibration_scale", positive_number, "Scale of step_equilibration = \"l2_relaxed_scaled\"."),
     choice_field<option_of<part, &ElementOptions::reformulation>, reformulations>(
         "reformulation", "How set-valued selections are written with complementarities."),
     choice_field<option_of<part, &ElementOptions::cross_complementarity>, cross_complementarities>(

@@ -48,10 +48,11 @@ const std::array fields_of_mpcc{
     choice_field<relaxation_of, relaxations, SolveOptions>("method", "How complementarities are relaxed by sigma."),
     choice_field<steering_of, steerings, SolveOptions>(
         "steering", "What makes sigma small: its bound alone, or a price on the sum or the largest of the products."),
-    number_field<sigma_initial_of, SolveOptions>("sigma_initial", positive, "Sigma of the first relaxed problem."),
+    number_field<sigma_initial_of, SolveOptions>("sigma_initial", positive_number,
+                                                 "Sigma of the first relaxed problem."),
     number_field<sigma_factor_of, SolveOptions>("sigma_factor", Numbers{.above = 0.0, .below = 1.0},
                                                 "From one relaxed problem to the next."),
-    number_field<sigma_final_of, SolveOptions>("sigma_final", positive, "Sigma of the last relaxed problem."),
+    number_field<sigma_final_of, SolveOptions>("sigma_final", positive_number, "Sigma of the last relaxed problem."),
     choice_field<warm_start_of, warm_starts, SolveOptions>("warm_start", "What the next relaxed problem starts with."),
     choice_field<first_of, first_problems, SolveOptions>(
         "first",
@@ -61,7 +62,7 @@ const std::array fields_of_mpcc{
         "crossover",
         "Problems with one side of every pair fixed behind the relaxed ones: exact zeros, and a certificate."),
     number_field<tolerance_of, SolveOptions>(
-        "tolerance", positive, "Of feasibility, complementarity min(|G|, |H|) and stationarity of the answer."),
+        "tolerance", positive_number, "Of feasibility, complementarity min(|G|, |H|) and stationarity of the answer."),
     number_field<iteration_limit_of, SolveOptions>("iteration_limit",
                                                    Numbers{.whole = true, .from = 1.0, .up_to = most_iterations},
                                                    "Of the solver, in all problems together."),

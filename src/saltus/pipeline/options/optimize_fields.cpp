@@ -65,12 +65,12 @@ void name_later_solver(Error& error, const OptionValue& value) {
 using OwnField = FieldOf<OptimizeOptions>;
 constexpr std::array grid_fields{
     OwnField{"control_intervals",
-             {.number = counts},
+             {.number = counting_number},
              "Intervals of equal length, with one vector of controls each; there is no default.",
              set_number<intervals_of, OptimizeOptions>,
              record_intervals},
     OwnField{"elements",
-             {.number = counts, .list = ListOf::the_same},
+             {.number = counting_number, .list = ListOf::the_same},
              "Finite elements in each interval; of a list one number per interval.",
              set_elements,
              record_elements},
@@ -89,9 +89,9 @@ constexpr std::array method_fields{
         "Gains of `closed_loop`: how the optimal controls change with the state, or a controller that tracks "
         "the plan."),
     number_field<verification_of, OptimizeOptions>(
-        "verification_tolerance", positive,
+        "verification_tolerance", positive_number,
         "Of the defects of intervals that are simulated again, relative to the range of each state."),
-    number_or_none_field<time_limit_of, none_word, OptimizeOptions>("time_limit", positive,
+    number_or_none_field<time_limit_of, none_word, OptimizeOptions>("time_limit", positive_number,
                                                                     "Seconds, of all problems together."),
     OwnField{"mpcc.solver",
              {.words = solvers},

@@ -142,8 +142,8 @@ constexpr FieldOf<Options> choice_field(std::string_view key, std::string_view d
           explain};
 }
 
-inline constexpr Numbers any_number{}, positive{.above = 0.0}, not_negative{.from = 0.0},
-    counts{.whole = true, .from = 1.0};
+inline constexpr Numbers any_number{}, positive_number{.above = 0.0}, not_negative_number{.from = 0.0},
+    counting_number{.whole = true, .from = 1.0};
 /// The words of numbers that there may be none of.
 inline constexpr std::array<std::string_view, 1> none_word{"none"}, off_word{"off"};
 
