@@ -177,8 +177,8 @@ std::vector<double> sign_changes(FunctionRef<double(double)> f, Interval range) 
   for (int i = 1; i <= samples_of_an_interval; ++i) {
     const double after = f(at(i));
     if (std::isfinite(before) && std::isfinite(after) && (before > 0.0) != (after > 0.0)) {
-      const auto is_positive = [&](double part) { return f(at(i - 1 + part)) > 0.0; };
-      found.push_back(at(i - 1 + bisect(is_positive, before > 0.0, halvings)));
+      const auto positive = [&](double part) { return f(at(i - 1 + part)) > 0.0; };
+      found.push_back(at(i - 1 + bisect(positive, before > 0.0, halvings)));
     }
     before = after;
   }
