@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
@@ -204,10 +205,10 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
 void warn_of_impacts_at_nodes(const result::Result& run, const OptimizeObservers& observers) {
   const auto times = result::impacts_at_nodes(run);
   if (times.empty()) return;
-  observers.on_warning(
-      fmt::format("impacts at t = {} lie at ends of control intervals, and an optimum may have them on the other side; "
-                  "compare with one interval more or less",
-                  times));
+  observers.on_warning(fmt::format(
+      "impacts at t = {:.6g} lie at ends of control intervals, and an optimum may have them on the other side; "
+      "compare with one interval more or less",
+      fmt::join(times, ", ")));
 }
 
 void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
