@@ -232,6 +232,7 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
   event_.before = here_.state;
   event_.x_before = here_.x;
   event_.jumped = event_.listed_only = false;
+  event_.last_bounces.clear();
   event_.cells_before = cells_.indices();
   event_.cell_change = CellChange::none;
   rows_.arrive(row);
