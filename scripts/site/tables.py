@@ -230,9 +230,9 @@ def write(source, tool, root):
 
 def write_index(source, with_cpp, quick):
     """The list of the generated pages that the index includes."""
-    names = ["commands", "keys", "functions", "python"] + (["cpp"] if with_cpp else [])
+    names = ["commands", "keys", "functions", "python", "cpp"]
     if not with_cpp:
-        (source / "made/cpp.md").unlink()
+        (source / "made/cpp.md").write_text("# The C++ library\n\nNot made in a quick build, or without Doxygen.\n")
     lines = "\n".join(f"made/{name}" for name in names)
     page = source / "reference.md"
     page.write_text(page.read_text().replace("% made", lines))

@@ -120,6 +120,17 @@ class ClosedLoop(tool.ToolTest):
         self.run_tool("optimize", "m.toml", *arguments, "--quiet", "--out", "r.json", code=0)
         return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
 
+    def test_a_controller_that_tracks_the_plan(self):
+        """Where the end costs little it is optimal to let an error grow; a controller that tracks the plan does not."""
+        self.write("m.toml", UNSTABLE.replace("100*x^2", "0.001*x^2").replace("stages = 1", "stages = 3"))
+        settings = ["optimize.closed_loop=true", "optimize.plant.x=1.1"]
+        ends = {feedback: self.optimised(*settings, f"optimize.feedback={feedback}")["verification"]["closed_loop"]["end_state_error"]
+                for feedback in ("optimal", "tracking")}
+        self.assertGreater(ends["optimal"], 0.05)
+        self.assertLess(ends["tracking"], 1e-3)
+        _, err = self.run_tool("optimize", "m.toml", "--set", "optimize.feedback=none", code=2)
+        self.assertIn("tracking", err)
+
     def test_the_plant_may_differ_from_the_model(self):
         text = UNSTABLE.replace("3*x + u", "a*x + u").replace("[states]", "[parameters]\na = 3\n[states]")
         self.write("m.toml", text)

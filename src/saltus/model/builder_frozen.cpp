@@ -76,7 +76,7 @@ Expected<System> Builder::Parts::frozen_copy(Recognition recognised, Statement w
   // The symbol of t is that of the clock from now on.
   plan.made.clock = static_cast<int>(whole.states.size());
   recognised.restate_as_state(whole.time, plan.made.clock);
-  whole.states.push_back({.name = "clock", .symbol = whole.time, .dynamics = SXElem(0.0)});
+  whole.states.push_back({.name = clock_name, .symbol = whole.time, .dynamics = SXElem(0.0)});
   plan.numerical_time = recognised.graph.symbol("t", {.kind = VariableKind::time});
   if (auto mistake = find_equalities(recognised)) return tl::unexpected(*mistake);
 

@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/optimization_words_internal.hpp"
+#include "saltus/result/impacts_at_nodes.hpp"
 
 namespace saltus::report {
 namespace {
@@ -142,6 +144,16 @@ std::string feedback_words(const std::vector<std::pair<std::string, double>>& pl
 
 std::vector<Finding> certificate_findings(const result::Certificate& certificate, double tolerance) {
   return {residuals(certificate, tolerance), b_stationarity(certificate)};
+}
+
+std::vector<Finding> certificate_findings(const result::Result& result) {
+  auto findings = certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
+  if (const auto times = result::impacts_at_nodes(result); !times.empty()) {
+    findings.push_back({Tone::bad, fmt::format("Not looked at: impacts at t = {} lie at ends of control intervals, and "
+                                               "on the other side there may be a better optimum.",
+                                               times)});
+  }
+  return findings;
 }
 
 std::vector<Finding> verification_findings(const result::Optimization& optimization) {

@@ -45,7 +45,7 @@ std::string Run::advice_on_steps() {
   if (!norm.empty()) return norm;
   const std::string cycles = ContractingCycles(switching_context_, here_, recorder_).describe();
   const std::string raise = "; raise simulate.max_steps if they are meant";
-  if (!cycles.empty()) return fmt::format("{}, or change the model: {}", raise, cycles);
+  if (!cycles.empty()) return "; " + cycles;  // more steps are of no use
   const bool explicit_steps = options_.method == ode::Method::dopri5 || options_.method == ode::Method::dop853;
   const bool is_told = steps_.stiff_at().has_value();  // at the end of the message
   return raise + (explicit_steps && !is_told ? ", or try --integrator radau5: the model may be stiff" : "");
@@ -64,9 +64,10 @@ bool Run::too_many_events() {
     const std::string advice = names.empty() ? "see what happens in the last events"
                                              : fmt::format("see why {} switch{} so often", fmt::join(names, ", "),
                                                            names.size() == 1 ? "es" : "");
+    // More events are of no use for a sequence without an end.
     fail(Termination::iteration_limit,
-         fmt::format("max_events = {} reached at {}; raise simulate.max_events if they are meant, or {}",
-                     options_.max_events, where(), cycles.empty() ? advice : "change the model: " + cycles));
+         fmt::format("max_events = {} reached at {}; {}", options_.max_events, where(),
+                     cycles.empty() ? "raise simulate.max_events if they are meant, or " + advice : cycles));
     return true;
   }
   // Jumps have their own limits.

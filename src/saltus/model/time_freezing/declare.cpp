@@ -129,7 +129,7 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
   const bool has_indicators = std::any_of(description.modes.begin(), description.modes.end(),
                                           [](const auto& mode) { return mode.indicator != nullptr; });
   plan.takes_plane = plan.takes_plane && !has_indicators;
-  plan.made.clock = declare_state(recognition, statement, "clock");
+  plan.made.clock = declare_state(recognition, statement, clock_name);
   plan.numerical_time = statement.time;
   statement.time = statement.states.back().symbol;
   return std::nullopt;
