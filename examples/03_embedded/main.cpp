@@ -45,10 +45,9 @@ std::vector<double> swept(const model::System& system, const std::vector<double>
     stated.system.parameter_values[0] = mu[run];
     return stated;
   };
+  const auto outcome = value(pipeline::sweep({.runs = mu.size(), .jobs = 2}, state));
   std::vector<double> rest;
-  for (const auto& run : value(pipeline::sweep({.runs = mu.size(), .jobs = 2}, state))) {
-    rest.push_back(run.result.final.x[0]);
-  }
+  for (const auto& run : outcome.runs) rest.push_back(run.result.final.x[0]);
   return rest;
 }
 // [own threads]

@@ -75,7 +75,7 @@ endif()
 # Installed, it runs without CasADi's folder.
 build_and_run(embedded ${source_dir}/examples/03_embedded)
 run(${CMAKE_COMMAND} --install ${work_dir}/build/embedded --prefix ${work_dir}/build/embedded_installed)
-run(${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH --chdir=${work_dir}/build ${work_dir}/build/embedded_installed/bin/embedded)
+run(${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH ${work_dir}/build/embedded_installed/bin/embedded)
 foreach(expected "x\\(0.5\\) = 1\\.22" "the same end: yes" "the same in threads: yes" "was built for mu = 0")
   if(NOT output MATCHES "${expected}")
     message(FATAL_ERROR "examples/03_embedded printed\n${output}")
