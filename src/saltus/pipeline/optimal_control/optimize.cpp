@@ -13,6 +13,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/model/decisions.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
@@ -237,6 +238,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
                                   const OptimizeObservers& observers) {
   const SymbolicLock lock;  // problems are made, and dropped, while it runs
   const Stopwatch whole;
+  if (auto error = model::find_stale(ocp.system)) return tl::unexpected(*error);
   auto stated = state_problem(ocp, options);
   if (!stated) return tl::unexpected(stated.error());
   for (const auto& warning : stated->warnings) observers.on_warning(warning);
