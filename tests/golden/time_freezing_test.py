@@ -321,8 +321,8 @@ dynamics = { v = 1, y = "if(first + second >= 2, 11, if(first + second == 1, fir
         # A pendulum upside down, not a ball that falls through the hump.
         self.assertLess(result["verification"]["open_loop"]["amplification"], 1e3)
 
-    def test_an_impact_at_the_end_of_an_interval_is_told(self):
-        """A falling body that brakes by friction: with 8 intervals its impact stays at a node, with 7 it does not."""
+    def test_an_impact_at_the_end_of_an_interval_is_moved_or_told(self):
+        """A body that falls brakes by friction, best without control: two elements have no room for that."""
         fall, _ = BALL.replace("z = 1\nvx = 4", "z = 0.5\nvx = 3").replace("friction = 0.3", "friction = 0.4").split("[simulate]")
         braked = fall.replace("[mechanics]", "[controls]\nf = { lower = -30, upper = 30 }\n[mechanics]").replace(
             'potential = "10*z"', 'potential = "10*z"\nforce = { vz = "f" }') + """[time_freezing]
@@ -330,19 +330,47 @@ a_n = 30
 [optimize]
 horizon = 1
 control_intervals = 8
-elements = 3
+elements = 2
 running_cost = "0.01*f^2"
 terminal_constraints = ["vx == 0"]
 """
         out, err = self.run_tool("optimize", self.write("m.toml", braked), "--out", "r.json", code=0)
         self.assertIn("impacts at t = 0.375 lie at ends of control intervals", err)
-        self.assertIn("Not looked at: impacts at t = 0.375 lie at ends of control intervals", " ".join(out.split()))
+        self.assertIn("Impacts at t = 0.375 lie at ends of control intervals", " ".join(out.split()))
         impact = next(e for e in json.loads((self.folder / "r.json").read_text())["events"] if e["kind"] == "impact")
         change = [b - a for a, b in zip(impact["x"][2:], impact["x_after"][2:], strict=True)]
         self.assertAlmostEqual(impact["impulse"][0][0], change[1], delta=1e-9)
         self.assertAlmostEqual(impact["impulse"][0][1], change[0], delta=1e-9)
-        out, err = self.run_tool("optimize", self.write("m.toml", braked.replace("intervals = 8", "intervals = 7")), code=0)
+        out, err = self.run_tool("optimize", self.write("m.toml", braked.replace("elements = 2", "elements = 3")), "--out", "r.json", code=0)
         self.assertNotIn("ends of control intervals", out + err)
+        self.assertAlmostEqual(json.loads((self.folder / "r.json").read_text())["objective"], 0.0, delta=1e-12)
+
+    def test_impacts_move_to_where_they_are_best(self):
+        """Until it stops at a wall a ball needs no control: 1/3 later it goes half of the way back, at 3/4 / (T - 1/3)^3."""
+        wall = HEAD + """[states]
+q = 0
+v = 3
+[controls]
+u = { lower = -20, upper = 20 }
+[mechanics]
+positions = ["q"]
+velocities = ["v"]
+force = { v = "u" }
+[[contacts]]
+name = "wall"
+gap = "1 - q"
+[optimize]
+horizon = 1
+control_intervals = 10
+running_cost = "u^2"
+terminal_constraints = ["q == 0.5"]
+"""
+        for horizon, intervals, at_nodes in ((1, 8, 4.017), (1, 10, 5.401), (1, 15, 5.371), (2, 10, 2.183), (2, 20, 6.283)):
+            result = self.optimised(wall.replace("intervals = 10", f"intervals = {intervals}").replace("horizon = 1", f"horizon = {horizon}"))
+            least = 0.75 / (horizon - 1/3) ** 3
+            self.assertLess(result["objective"] - least, 0.25 * (at_nodes - least))
+            self.assertGreater(result["objective"], 0.97 * least)  # it may touch the wall a little earlier
+            self.assertAlmostEqual(result["events"][0]["t"], 1/3, delta=0.02)
 
     def test_a_body_stopped_by_a_wall_at_the_end(self):
         """A block is pushed into a wall that takes its speed: the impact is the last thing that happens."""
