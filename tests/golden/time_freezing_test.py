@@ -56,6 +56,43 @@ off = 0.1
 until = 9
 """
 
+# A room whose heating is compared; without it its rate is 10 heating - (x - 15)/2, written as a factor.
+ROOM = HEAD + """[states]
+x = 15
+y = 0
+[dynamics]
+x = "RATE"
+y = "x - 15"
+[[hysteresis]]
+name = "heating"
+input = "x"
+on = 18
+off = 20
+initial = 1
+[simulate]
+until = 3
+"""
+
+ROOMS = {
+    "a factor": "10*heating - 0.5*(x - 15)",
+    "greater": "if(heating > 0.5, 10 - 0.5*(x - 15), -0.5*(x - 15))",
+    "greater than 0": "if(heating > 0, 10, 0) - 0.5*(x - 15)",
+    "less": "if(heating < 0.3, 0, 10) - 0.5*(x - 15)",
+    "equal": "if(heating == 1, 10, 0) - 0.5*(x - 15)",
+    "not equal": "if(heating != 0, 10, 0) - 0.5*(x - 15)",
+    "sign": "5 + 5*sign(heating - 0.5) - 0.5*(x - 15)",
+    "step": "10*step(2*heating - 1) - 0.5*(x - 15)",
+    "max": "20*max(heating - 0.5, 0) - 0.5*(x - 15)",
+    "abs": "20*abs(0.5 - heating) * heating - 0.5*(x - 15)",
+    "and": "if(heating > 0.5 and x > 10, 10, 0) - 0.5*(x - 15)",
+    "or": "if(heating > 0.5 or x > 100, 10, 0) - 0.5*(x - 15)",
+    "a limit": "if(x < 19 + 2*heating - y/100, 10*heating, 0) - 0.5*(x - 15)",
+    "another limit": "if(x < 18.5 + 2.5*heating, 10*heating, -1) - 0.5*(x - 15)",
+    "nested": "if(x < if(heating == 1, 21, 18.5), 10*heating, -1) - 0.5*(x - 15)",
+}
+# Motions of their own, and a surface for every value of the hysteresis.
+OTHER_ROOMS = {"a limit", "another limit", "nested"}
+
 
 # A ball lands and stays where it is; what it is pushed with costs.
 LANDING = HEAD + """[states]
@@ -172,6 +209,39 @@ class TimeFreezing(tool.ToolTest):
         _, frozen = self.assert_agree(RELAYS, 1e-8)
         self.assertEqual([e["name"] for e in frozen["events"]], 3 * ["first", "second", "third"])
 
+    def test_a_hysteresis_is_compared(self):
+        exact = self.simulated(ROOM.replace("RATE", ROOMS["a factor"]), "event")["final"]["x"]
+        self.assertAlmostEqual(exact[0], 19.0778725174, delta=1e-7)
+        for what, rate in ROOMS.items():
+            with self.subTest(what):
+                model = ROOM.replace("RATE", rate)
+                if what in OTHER_ROOMS:
+                    event, frozen = (self.simulated(model, method) for method in ("event", "fesd"))
+                    jumps = lambda run: [e["t"] for e in run["events"] if e["kind"] == "jump"]
+                    for a, b in zip(jumps(event) + event["final"]["x"], jumps(frozen) + frozen["final"]["x"], strict=True):
+                        self.assertAlmostEqual(a, b, delta=1e-5)
+                    continue
+                event, frozen = self.assert_agree(model, 1e-5)
+                for a, b in zip(exact, event["final"]["x"]):
+                    self.assertAlmostEqual(a, b, delta=1e-6)
+
+    def test_a_surface_with_a_number_is_shown(self):
+        _, frozen = self.assert_agree(ROOM.replace("RATE", "12*heating - if(x > 17.5, 2, 0) - 0.5*(x - 15)"), 1e-5)
+        self.assertEqual(frozen["events"][0]["surfaces"], ["x-17.5"])
+
+    def test_modes_of_an_automaton(self):
+        modes = RELAYS.replace("[dynamics]\n", "", 1).replace('v = "1 - 2*third"\ny = "first + 10*second - 3*third"\n', """
+[[modes]]
+when = "third == 1"
+dynamics = { v = -1, y = "first + 10*second - 3" }
+[[modes]]
+when = "otherwise"
+dynamics = { v = 1, y = "if(first + second >= 2, 11, if(first + second == 1, first + 10*second, 0))" }
+""")
+        expected, frozen = self.assert_agree(RELAYS, 1e-8)[0], self.assert_agree(modes, 1e-8)[1]
+        for a, b in zip(expected["final"]["x"], frozen["final"]["x"]):
+            self.assertAlmostEqual(a, b, delta=1e-8)
+
     def test_bad_input(self):
         for change, line in (
             (("[simulate]", "[time_freezing]\na_n = 0\n[simulate]"), "a_n is 0"),
@@ -251,8 +321,8 @@ class TimeFreezing(tool.ToolTest):
         # A pendulum upside down, not a ball that falls through the hump.
         self.assertLess(result["verification"]["open_loop"]["amplification"], 1e3)
 
-    def test_an_impact_at_the_end_of_an_interval_is_told(self):
-        """A falling body that brakes by friction: with 8 intervals its impact stays at a node, with 7 it does not."""
+    def test_an_impact_at_the_end_of_an_interval_is_moved_or_told(self):
+        """A body that falls brakes by friction, best without control: two elements have no room for that."""
         fall, _ = BALL.replace("z = 1\nvx = 4", "z = 0.5\nvx = 3").replace("friction = 0.3", "friction = 0.4").split("[simulate]")
         braked = fall.replace("[mechanics]", "[controls]\nf = { lower = -30, upper = 30 }\n[mechanics]").replace(
             'potential = "10*z"', 'potential = "10*z"\nforce = { vz = "f" }') + """[time_freezing]
@@ -260,19 +330,47 @@ a_n = 30
 [optimize]
 horizon = 1
 control_intervals = 8
-elements = 3
+elements = 2
 running_cost = "0.01*f^2"
 terminal_constraints = ["vx == 0"]
 """
         out, err = self.run_tool("optimize", self.write("m.toml", braked), "--out", "r.json", code=0)
         self.assertIn("impacts at t = 0.375 lie at ends of control intervals", err)
-        self.assertIn("Not looked at: impacts at t = 0.375 lie at ends of control intervals", " ".join(out.split()))
+        self.assertIn("Impacts at t = 0.375 lie at ends of control intervals", " ".join(out.split()))
         impact = next(e for e in json.loads((self.folder / "r.json").read_text())["events"] if e["kind"] == "impact")
         change = [b - a for a, b in zip(impact["x"][2:], impact["x_after"][2:], strict=True)]
         self.assertAlmostEqual(impact["impulse"][0][0], change[1], delta=1e-9)
         self.assertAlmostEqual(impact["impulse"][0][1], change[0], delta=1e-9)
-        out, err = self.run_tool("optimize", self.write("m.toml", braked.replace("intervals = 8", "intervals = 7")), code=0)
+        out, err = self.run_tool("optimize", self.write("m.toml", braked.replace("elements = 2", "elements = 3")), "--out", "r.json", code=0)
         self.assertNotIn("ends of control intervals", out + err)
+        self.assertAlmostEqual(json.loads((self.folder / "r.json").read_text())["objective"], 0.0, delta=1e-12)
+
+    def test_impacts_move_to_where_they_are_best(self):
+        """Until it stops at a wall a ball needs no control: 1/3 later it goes half of the way back, at 3/4 / (T - 1/3)^3."""
+        wall = HEAD + """[states]
+q = 0
+v = 3
+[controls]
+u = { lower = -20, upper = 20 }
+[mechanics]
+positions = ["q"]
+velocities = ["v"]
+force = { v = "u" }
+[[contacts]]
+name = "wall"
+gap = "1 - q"
+[optimize]
+horizon = 1
+control_intervals = 10
+running_cost = "u^2"
+terminal_constraints = ["q == 0.5"]
+"""
+        for horizon, intervals, at_nodes in ((1, 8, 4.017), (1, 10, 5.401), (1, 15, 5.371), (2, 10, 2.183), (2, 20, 6.283)):
+            result = self.optimised(wall.replace("intervals = 10", f"intervals = {intervals}").replace("horizon = 1", f"horizon = {horizon}"))
+            least = 0.75 / (horizon - 1/3) ** 3
+            self.assertLess(result["objective"] - least, 0.25 * (at_nodes - least))
+            self.assertGreater(result["objective"], 0.97 * least)  # it may touch the wall a little earlier
+            self.assertAlmostEqual(result["events"][0]["t"], 1/3, delta=0.02)
 
     def test_a_body_stopped_by_a_wall_at_the_end(self):
         """A block is pushed into a wall that takes its speed: the impact is the last thing that happens."""
@@ -371,8 +469,12 @@ terminal_cost = "x^2"
         self.assertEqual([e["name"] for e in result["events"]], ["turbo", "turbo"])
         self.assertAlmostEqual(result["events"][0]["t"], 3.0, delta=1e-7)
         self.assertLess(result["verification"]["interval_defect"], 1e-9)
+        # Compared, the turbo is the same factor.
+        compared = self.optimised(text.replace("u*(1 + 2*turbo)", "u*if(turbo == 1 and q > -1, 3, 1)"))
+        self.assertAlmostEqual(compared["objective"], 10.2292578, delta=1e-5)
         # Results are in physical time, without the clock, and can be started from all the same.
-        _, err = self.run_tool("optimize", "m.toml", "--quiet", "--start", "r.json", "--time-limit", "0.01", code=3)
+        file = self.write("m.toml", text)
+        _, err = self.run_tool("optimize", file, "--quiet", "--start", "r.json", "--time-limit", "0.01", code=3)
         self.assertIn("time", err)
 
 

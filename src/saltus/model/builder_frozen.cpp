@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "saltus/model/builder_parts_internal.hpp"
-#include "saltus/model/graph/sharing_internal.hpp"
 #include "saltus/model/statement/build_errors_internal.hpp"
 #include "saltus/model/statement/modes_internal.hpp"
 
@@ -32,19 +31,77 @@ std::optional<Error> take_inputs(Recognition& recognition, Statement& whole, Fro
   return std::nullopt;
 }
 
-/// Discrete functions of a hysteresis that are the same but for their value at 0: == and !=, > beside >=.
-std::optional<Error> find_equalities(const Recognition& recognition) {
-  std::vector<int> psi;
-  for (const auto& met : recognition.functions()) psi.push_back(met.psi_node);
-  const auto first = first_multiples(recognition.graph.tape(), psi);
-  for (std::size_t i = 0; i < psi.size(); ++i) {
-    if (first[i] == i) continue;
-    return no_frozen_form(
-        fmt::format("'{}' is compared in two ways, and moves while time stands still", recognition.functions()[i].name),
-        "compare a hysteresis with 0.5, by > or <, in one way");
+/// Puts into a statement what selections became.
+class Restatement {
+ public:
+  explicit Restatement(const std::vector<std::pair<SXElem, SXElem>>& selections) {
+    for (const auto& [before, now] : selections) {
+      before_.emplace_back(before);
+      now_.emplace_back(now);
+    }
   }
-  return std::nullopt;
-}
+
+  void apply(SX& e) const {
+    if (before_.empty() || e.is_empty()) return;
+    std::vector<SX> one{e};
+    e = SX::substitute(one, before_, now_).front();
+  }
+  void apply(SXElem& e) const {
+    SX one(e);
+    apply(one);
+    e = SX::densify(one).scalar();
+  }
+
+  void apply(Condition& condition) const { condition = restated(condition); }
+
+  void apply(Statement& whole) const {
+    for (auto& state : whole.states) {
+      if (state.dynamics) apply(*state.dynamics);
+    }
+    for (auto& group : whole.mode_groups) {
+      for (auto& mode : group.modes) {
+        if (mode.when) apply(*mode.when);
+        if (mode.indicator) apply(*mode.indicator);
+        for (auto& rate : mode.rates) apply(rate.rate);
+      }
+    }
+    for (auto* outputs : {&whole.outputs, &whole.automatic_outputs}) {
+      for (auto& output : *outputs) apply(output.expression);
+    }
+    for (auto& event : whole.events) {
+      if (event.expression) apply(*event.expression);
+      if (event.condition) apply(*event.condition);
+    }
+  }
+
+  void apply(FreezingPlan& plan) const {
+    for (auto& [state, rate] : plan.added) apply(rate);
+    apply(plan.waits);
+    apply(plan.moves);
+  }
+
+ private:
+  [[nodiscard]] Condition restated(const Condition& condition) const {
+    switch (condition.kind()) {
+      case Condition::Kind::constant:
+        break;
+      case Condition::Kind::comparison: {
+        Comparison comparison = condition.comparison();
+        apply(comparison.difference);
+        return Condition(comparison);
+      }
+      case Condition::Kind::negation:
+        return !restated(condition.left());
+      case Condition::Kind::conjunction:
+        return restated(condition.left()) && restated(condition.right());
+      case Condition::Kind::disjunction:
+        return restated(condition.left()) || restated(condition.right());
+    }
+    return condition;
+  }
+
+  std::vector<SX> before_, now_;
+};
 
 }  // namespace
 
@@ -59,8 +116,15 @@ Expected<System> Builder::Parts::frozen_copy(Recognition recognised, Statement w
   if (auto mistake = take_inputs(recognised, whole, plan.purpose)) return tl::unexpected(*mistake);
   for (const auto& stated : hysteresis) {
     plan.made.hysteresis.push_back({stated.thresholds.name, stated.state});
-    recognised.restate_as_state(whole.states[at(stated.state)].symbol, stated.state);
+    recognised.take_as_two_valued(whole.states[at(stated.state)].symbol);
     std::erase_if(whole.jumps, [&](const JumpStatement& jump) { return jump.name == stated.thresholds.name; });
+  }
+  const auto selections = recognised.restated_selections();
+  if (!selections) return tl::unexpected(selections.error());
+  const Restatement restatement(*selections);
+  restatement.apply(whole);
+  for (const auto& stated : hysteresis) {
+    recognised.restate_as_state(whole.states[at(stated.state)].symbol, stated.state);
   }
   std::vector<ContactToFreeze> touching;
   for (const auto& [name, options] : contacts) {
@@ -78,17 +142,20 @@ Expected<System> Builder::Parts::frozen_copy(Recognition recognised, Statement w
   recognised.restate_as_state(whole.time, plan.made.clock);
   whole.states.push_back({.name = clock_name, .symbol = whole.time, .dynamics = SXElem(0.0)});
   plan.numerical_time = recognised.graph.symbol("t", {.kind = VariableKind::time});
-  if (auto mistake = find_equalities(recognised)) return tl::unexpected(*mistake);
 
   if (auto mistake = add_modes(recognised, whole)) return tl::unexpected(*mistake);
   for (const auto& stated : hysteresis) {
-    auto mistake = freeze_hysteresis(recognised, whole, stated.state, stated.input, stated.thresholds, plan);
+    SXElem input = stated.input;
+    restatement.apply(input);
+    auto mistake = freeze_hysteresis(recognised, whole, stated.state, input, stated.thresholds, plan);
     if (mistake) return tl::unexpected(*mistake);
   }
   const auto take = [&](const auto& touched, const auto& motion) {
     return freeze_contacts(recognised, whole, touched, motion, plan);
   };
   if (auto mistake = add_mechanics(recognised, whole, take)) return tl::unexpected(*mistake);
+  restatement.apply(whole);  // what mechanics added
+  restatement.apply(plan);
   freeze_rates(whole, plan);
   auto system = assemble(recognised, whole);
   if (!system) return system;

@@ -151,8 +151,8 @@ std::vector<Finding> certificate_findings(const result::Result& result) {
   auto findings = certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
   if (const auto times = result::impacts_at_nodes(result); !times.empty()) {
     findings.push_back(
-        {Tone::bad, fmt::format("Not looked at: impacts at t = {:.6g} lie at ends of control intervals, and "
-                                "on the other side there may be a better optimum.",
+        {Tone::bad, fmt::format("Impacts at t = {:.6g} lie at ends of control intervals: beside them nothing that has "
+                                "room was better, but with more elements there may be a better optimum.",
                                 fmt::join(times, ", "))});
   }
   return findings;

@@ -7,8 +7,8 @@
 
 namespace saltus::result {
 
-/// Returns the times of impacts at inner nodes of the grid. An impact cannot move from one interval into the next: that
-/// is another branch, which no certificate looks at.
+/// Returns the times of impacts at inner nodes of the grid. One that moves into the next interval is on another branch,
+/// which no certificate looks at; moves of the solver do if it has room there.
 [[nodiscard]] std::vector<double> impacts_at_nodes(const Result& result);
 
 }  // namespace saltus::result

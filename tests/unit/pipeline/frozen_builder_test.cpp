@@ -97,14 +97,32 @@ TEST(FrozenBuilderTest, Hysteresis) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(frozen.x[i], exact.x[i], 1e-6) << "state " << i;
 }
 
-TEST(FrozenBuilderTest, WhatIsNotFrozenSaysSo) {
-  Builder m("twice");
-  const SX x = m.state("x", {0.0});
-  const SX on = m.hysteresis("on", x, {});
-  m.dynamics("x", m.if_(model::equal(on, 1), -1, 1));
-  const auto refused = simulate(made(m), by(Method::fesd, 1.0));
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("compared in two ways"), std::string::npos) << refused.error().message;
+// The same room, heated with 10: however its hysteresis is compared.
+TEST(FrozenBuilderTest, ComparedHysteresis) {
+  using Rate = SX (*)(Builder&, const SX& heating, const SX& x);
+  constexpr Rate rates[] = {
+      [](Builder&, const SX& h, const SX&) { return SX(10 * h); },
+      [](Builder& m, const SX& h, const SX&) { return m.if_(model::greater(h, 0.5), 10, 0); },
+      [](Builder& m, const SX& h, const SX&) { return m.if_(model::equal(h, 1), 10, 0) + 0 * m.step(h); },
+      [](Builder& m, const SX& h, const SX&) { return m.if_(model::not_equal(h, 0), 5, 0) + 5 * m.step(h - 0.5); },
+      [](Builder& m, const SX& h, const SX& x) {
+        return m.if_(model::less(x, m.if_(model::greater(h, 0), 100, 10)), 10, 0);
+      }};
+  for (const Rate rate : rates) {
+    Builder m("room");
+    const SX x = m.state("x", {15.0}), y = m.state("y", {0.0});
+    const SX heating = m.hysteresis("heating", x, {.on = 18.0, .off = 20.0, .initial = 1.0});
+    m.dynamics("x", rate(m, heating, x) - 0.5 * (x - 15));
+    m.mode(model::equal(heating, 1), {{"y", 1}});
+    m.mode(model::equal(heating, 0), {{"y", 0}});
+    const auto system = made(m);
+    const auto exact = end_of(system, by(Method::event, 3.0)), frozen = end_of(system, by(Method::fesd, 3.0));
+    EXPECT_NEAR(exact.x.at(0), 19.0778725174, 1e-8);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(frozen.x.at(i), exact.x.at(i), 1e-6) << "state " << i;
+  }
+}
+
+TEST(FrozenBuilderTest, NumbersAreChecked) {
   Builder numbers("numbers");
   numbers.time_freezing({.a_n = -1.0});
   const auto built = numbers.build();

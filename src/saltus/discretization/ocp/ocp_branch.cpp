@@ -5,6 +5,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/element_expressions_internal.hpp"
+#include "saltus/discretization/ocp/element_sides_internal.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
 
 namespace saltus::discretization {
@@ -13,51 +14,6 @@ namespace {
 using mpcc::ActiveSide;
 using mpcc::ConstVectorView;
 using Sides = std::vector<ActiveSide>;
-
-/// The share of an interval that an element gets which is to appear: far enough from zero to move.
-constexpr double small_share = 0.02;
-/// Lengths below this share of an interval are zero.
-constexpr double vanished = 1e-6;
-
-/// The modes of elements: sides of their pairs by selection.
-class ElementSides {
- public:
-  ElementSides(const OcpStructure& made, Sides sides)
-      : made_(made), sides_(std::move(sides)), selections_(made.kernel.pairs.size()) {
-    if (made.chain.elements.empty() || selections_ == 0) return;
-    const int cross = made.chain.elements.front().pairs.count - made.kernel.correction_pairs;
-    per_selection_ = cross / static_cast<int>(selections_);
-  }
-
-  [[nodiscard]] ActiveSide of(std::size_t element, std::size_t selection) const {
-    return sides_[first(element, selection)];
-  }
-  [[nodiscard]] bool are_equal(std::size_t a, std::size_t b) const {
-    for (std::size_t k = 0; k < selections_; ++k) {
-      if (of(a, k) != of(b, k)) return false;
-    }
-    return true;
-  }
-  /// With the modes of element `from` in element `to`, too.
-  [[nodiscard]] Sides copied(std::size_t from, std::size_t to) const {
-    Sides changed = sides_;
-    for (std::size_t k = 0; k < selections_; ++k) {
-      std::fill_n(changed.begin() + static_cast<std::ptrdiff_t>(first(to, k)), per_selection_, of(from, k));
-    }
-    return changed;
-  }
-
- private:
-  [[nodiscard]] std::size_t first(std::size_t element, std::size_t selection) const {
-    return static_cast<std::size_t>(made_.chain.elements[element].pairs.first) +
-           selection * static_cast<std::size_t>(per_selection_);
-  }
-
-  const OcpStructure& made_;
-  Sides sides_;
-  std::size_t selections_;
-  int per_selection_ = 0;
-};
 
 /// The point with another share of the interval for one element; the others keep their ratios.
 Eigen::VectorXd with_share(const OcpStructure& made, ConstVectorView w, const OcpElement& element, double share) {
@@ -281,6 +237,7 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
     if (w[after.length] < vanished) moves.push_back({modes.copied(e - 1, e), w});
     if (w[before.length] < vanished) moves.push_back({modes.copied(e, e - 1), w});
   }
+  add_moved_standstills(made, modes, w, moves);
   return moves;
 }
 

@@ -83,6 +83,7 @@ void take_sizes(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation
   }
   kernel.simplices = static_cast<int>(kernel.simplex_parts.size());
   take_closing_gaps(ocp, dcs, kernel);
+  if (ocp.clock) kernel.clock = ocp.clock->state;
 }
 
 void compile_functions(const OcpExpressions& made, OcpKernel::Implementation& kernel) {

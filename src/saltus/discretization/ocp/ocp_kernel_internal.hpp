@@ -43,6 +43,7 @@ struct OcpKernel::Implementation {
   bool depends_on_time = false;
   bool moves = true;  ///< lengths are variables
   int states = 0, selections = 0, simplices = 0;
+  int clock = -1;  ///< state that is physical time; -1: none
   std::vector<SelectionPair> pairs;
   std::vector<ClosingGap> closing_gaps;
   std::vector<std::pair<int, int>> simplex_parts;  ///< first selection and count

@@ -51,6 +51,9 @@ int Guards::guard(int node, AtEquality at_equality) {
 Expected<Truth> Guards::comparison_truth(const Comparison& comparison) {
   const auto difference = recognition_.difference_of(comparison);
   if (!difference) return tl::unexpected(difference.error());
+  const auto both = recognition_.both_values(*difference);
+  if (!both) return tl::unexpected(both.error());
+  if (*both) return truth_at_both(comparison, **both);
   const auto node = recognition_.graph.add(*difference);
   if (!node) return tl::unexpected(node.error());
   const auto constant = constant_value(recognition_.graph.tape(), *node);
@@ -59,6 +62,18 @@ Expected<Truth> Guards::comparison_truth(const Comparison& comparison) {
                     [&] { return fmt::format("'{}'", casadi::SX(*difference).get_str()); });
   const bool holds = *constant > 0.0 || (*constant == 0.0 && comparison.at_equality == AtEquality::is_true);
   return holds ? TruthDiagram::constant_true() : TruthDiagram::constant_false();
+}
+
+Expected<Truth> Guards::truth_at_both(Comparison comparison, const BothValues& both) {
+  comparison.difference = both.at_one;
+  const auto one = comparison_truth(comparison);
+  if (!one) return one;
+  comparison.difference = both.at_zero;
+  const auto zero = comparison_truth(comparison);
+  if (!zero) return zero;
+  const int psi = recognition_.functions()[at(both.function)].psi_node;
+  const Truth state = diagram_.literal(guard(psi, AtEquality::is_false));
+  return diagram_.disjunction(diagram_.conjunction(state, *one), diagram_.conjunction(diagram_.negation(state), *zero));
 }
 
 }  // namespace saltus::model

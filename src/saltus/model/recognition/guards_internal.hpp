@@ -35,6 +35,7 @@ class Guards {
   [[nodiscard]] casadi::SX differences() const;
   int guard(int node, AtEquality at_equality);
   [[nodiscard]] Expected<Truth> comparison_truth(const Comparison& comparison);
+  [[nodiscard]] Expected<Truth> truth_at_both(Comparison comparison, const BothValues& both);
 
   Recognition& recognition_;
   TruthDiagram diagram_;

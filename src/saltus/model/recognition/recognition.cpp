@@ -147,8 +147,12 @@ SXElem Recognition::value(const Selection& selection) {
   return graph.interpolation(alphas, steps);
 }
 
-Expected<SXElem> Recognition::step(const SXElem& e, const std::string& name) {
+Expected<SXElem> Recognition::surface(const SXElem& e, const std::string& name) {
   return selection(e, name, 0.5).map([this](const Selection& s) { return value(s); });
+}
+
+Expected<SXElem> Recognition::step(const SXElem& e, const std::string& name) {
+  return blended(e, name, [this](const SXElem& one, const std::string& its_name) { return surface(one, its_name); });
 }
 
 Expected<SXElem> Recognition::sign(const SXElem& e, const std::string& name) {
@@ -163,13 +167,15 @@ Expected<SXElem> Recognition::choose(const SXElem& difference, const std::string
     if (const auto added = graph.add(*branch); !added) return tl::unexpected(added.error());
   }
   if (graph.node(a) == graph.node(b)) return a;
-  const auto chosen = selection(difference, name, std::nullopt);
-  if (!chosen) return tl::unexpected(chosen.error());
-  if (chosen->kind == Selection::Kind::constant) return chosen->constant < 0.0 ? b : a;
-  if (chosen->kind == Selection::Kind::alpha && chosen->function.orientation < 0) {
-    return graph.blend(functions_[at(chosen->function.function)].alpha, b, a);
-  }
-  return graph.blend(value(*chosen), a, b);
+  return blended(difference, name, [&](const SXElem& one, const std::string& its_name) -> Expected<SXElem> {
+    const auto chosen = selection(one, its_name, std::nullopt);
+    if (!chosen) return tl::unexpected(chosen.error());
+    if (chosen->kind == Selection::Kind::constant) return chosen->constant < 0.0 ? b : a;
+    if (chosen->kind == Selection::Kind::alpha && chosen->function.orientation < 0) {
+      return graph.blend(functions_[at(chosen->function.function)].alpha, b, a);
+    }
+    return graph.blend(value(*chosen), a, b);
+  });
 }
 
 Expected<SXElem> Recognition::abs(const SXElem& e, const std::string& name) { return choose(e, name, e, -e); }
@@ -185,6 +191,9 @@ Expected<SXElem> Recognition::min(const SXElem& a, const SXElem& b, const std::s
 Expected<Truth> Recognition::comparison_truth(TruthDiagram& diagram, const Comparison& comparison) {
   const auto difference = difference_of(comparison);
   if (!difference) return tl::unexpected(difference.error());
+  const auto both = both_values(*difference);
+  if (!both) return tl::unexpected(both.error());
+  if (*both) return truth_at_both(diagram, comparison, **both);
   const auto chosen =
       selection(*difference, comparison.name, comparison.at_equality == AtEquality::is_true ? 1.0 : 0.0);
   if (!chosen) return tl::unexpected(chosen.error());
@@ -292,10 +301,6 @@ Expected<SXElem> Recognition::difference_of(const Comparison& comparison) {
                               "use less, less_equal, greater or greater_equal; or declare discrete_state()",
                               {},
                               {}});
-}
-
-Expected<bool> Recognition::changes_by_jumps_only(const SXElem& expression) {
-  return graph.add(expression).map([this](int node) { return (graph.tape()[node].reached & moving_kinds) == 0; });
 }
 
 void Recognition::restate_as_state(const SXElem& symbol, int index) {

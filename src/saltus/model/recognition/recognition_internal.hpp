@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "saltus/base/function_ref.hpp"
@@ -36,6 +37,12 @@ struct DeclaredFunction {
   std::string name;
   SharedFunction function;
   std::string alias_of;  ///< empty unless the function had a declared name before
+};
+
+/// Holds an expression with both values of a two-valued state put in.
+struct BothValues {
+  int function = 0;  ///< its selection is the state
+  SXElem at_one, at_zero;
 };
 
 /// Largest number of smooth branches a chain of nested nonsmooth terms may unfold into.
@@ -81,6 +88,14 @@ class Recognition {
 
   /// Makes a symbol, of time or a discrete state, that of a state; its functions are moving ones from now on.
   void restate_as_state(const SXElem& symbol, int index);
+  /// Takes a state as 0 or 1: what is compared with it is worked out for both from now on, and blended.
+  void take_as_two_valued(const SXElem& symbol);
+  /// Returns what an expression is for both values of a two-valued state in it; nothing if there is none.
+  [[nodiscard]] Expected<std::optional<BothValues>> both_values(const SXElem& e);
+  /// Returns selections made before their states became two-valued, each with what it is now.
+  [[nodiscard]] Expected<std::vector<std::pair<SXElem, SXElem>>> restated_selections();
+  /// Returns the selection of a surface as it is, also where two-valued states are between 0 and 1.
+  [[nodiscard]] Expected<SXElem> surface(const SXElem& e, const std::string& name);
 
   /// Notes a decision; one without parameters, or noted before, is left out.
   /// @param text  of Decision
@@ -102,7 +117,13 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> choose(const SXElem& difference, const std::string& name, const SXElem& a,
                                         const SXElem& b);
   [[nodiscard]] SXElem value(const Selection& selection);
+  using MakeSelection = FunctionRef<Expected<SXElem>(const SXElem&, const std::string&)>;
+  /// Returns what is made of e, or of e with every value of the two-valued states in it, blended.
+  [[nodiscard]] Expected<SXElem> blended(const SXElem& e, const std::string& name, MakeSelection make);
+  [[nodiscard]] std::string text_at(const std::string& name, const BothValues& both, int value) const;
   [[nodiscard]] Expected<Truth> comparison_truth(TruthDiagram& diagram, const Comparison& comparison);
+  [[nodiscard]] Expected<Truth> truth_at_both(TruthDiagram& diagram, const Comparison& comparison,
+                                              const BothValues& both);
   [[nodiscard]] std::optional<SharedFunction> find(int psi_node, std::optional<double> at_zero);
   int append(const std::string& name, const SXElem& psi, int psi_node, std::optional<double> at_zero);
   [[nodiscard]] Expected<SXElem> whole_part(const SXElem& e, const SXElem& written, const std::string& name);
@@ -112,6 +133,7 @@ class Recognition {
 
   bool whole_parts_of_all_ = false;
   std::vector<MetFunction> functions_;
+  std::vector<int> two_valued_;  ///< functions whose selections are states
   SharingIndex index_;
   std::vector<Decision> decisions_;
   std::set<std::tuple<Decision::Kind, int, int, std::string>> known_decisions_;

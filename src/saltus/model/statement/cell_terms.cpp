@@ -57,11 +57,12 @@ std::optional<SXElem> Recognition::lookup_corners(const std::shared_ptr<const Ce
 
 Expected<SXElem> Recognition::lookup(const std::shared_ptr<const CellTable>& table, const SXElem& e,
                                      const std::string& name) {
-  if (const auto added = graph.add(e); !added) return tl::unexpected(added.error());
-  int corners = 0;
-  auto value = lookup_corners(table, e, name, corners);
-  if (!value) return tl::unexpected(chain_too_long(name));
-  return *value;
+  return blended(e, name, [&](const SXElem& one, const std::string& its_name) -> Expected<SXElem> {
+    int corners = 0;
+    auto value = lookup_corners(table, one, its_name, corners);
+    if (!value) return tl::unexpected(chain_too_long(its_name));
+    return *value;
+  });
 }
 
 /// @param written  the argument as the user wrote it, for messages

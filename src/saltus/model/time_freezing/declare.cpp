@@ -116,6 +116,7 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
   }
   for (const auto& entry : description.hysteresis) {
     plan.made.hysteresis.push_back({entry.name, declare_state(recognition, statement, entry.name, entry.location)});
+    recognition.take_as_two_valued(statement.states.back().symbol);
   }
   std::vector<ContactToFreeze> contacts;
   for (const auto& contact : description.contacts) {

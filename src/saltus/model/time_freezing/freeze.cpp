@@ -28,7 +28,7 @@ std::optional<Error> freeze_hysteresis(Recognition& recognition, Statement& stat
   for (const auto& [psi, name] :
        {std::pair{side * (SX(input) - thresholds.on), "on"}, std::pair{side * (thresholds.off - SX(input)), "off"},
         std::pair{w - 1.0, "one"}, std::pair{w, "zero"}}) {
-    const auto alpha = recognition.step(SX::densify(psi).scalar(), fmt::format("{}.{}", thresholds.name, name));
+    const auto alpha = recognition.surface(SX::densify(psi).scalar(), fmt::format("{}.{}", thresholds.name, name));
     if (!alpha) return with_location(alpha.error(), thresholds.location);
     alphas.emplace_back(*alpha);
   }
@@ -69,7 +69,7 @@ class ContactFreezing {
 
  private:
   Expected<SX> selection(const SX& psi, const std::string& name, FrozenSelection& found) {
-    const auto alpha = recognition_.step(SX::densify(psi).scalar(), name);
+    const auto alpha = recognition_.surface(SX::densify(psi).scalar(), name);
     if (!alpha) return tl::unexpected(alpha.error());
     plan_.selections.emplace_back(*alpha, &found);
     return SX(*alpha);
@@ -140,7 +140,7 @@ class ContactFreezing {
     const auto i = static_cast<casadi_int>(k);
     const SX value = system_.velocity(i), square = value * value;
     const SX same_surface = value * (1.0 + square / (1.0 + square));
-    const auto other = recognition_.step(SX::densify(same_surface).scalar(), plan_.made.contacts[k].name + ".held");
+    const auto other = recognition_.surface(SX::densify(same_surface).scalar(), plan_.made.contacts[k].name + ".held");
     if (!other) return other.error();
     const SX inverse_mass = SX::mtimes(system_.rows(i, casadi::Slice()), response(i));
     add_to(system_.positions, plan_.numbers.correction * (rate - SX(*other)) * response(i) / inverse_mass);

@@ -28,8 +28,11 @@ class PhysicalTime {
   PhysicalTime(const model::System& system, double standing, result::Result& run)
       : system_(system), freezing_(*system.freezing), run_(run), clock_(at(freezing_.clock)), standing_(standing) {
     std::set<int> added;
+    std::set<std::string> frozen;
+    for (const auto& hysteresis : freezing_.hysteresis) frozen.insert(hysteresis.name);
     for (const auto& contact : freezing_.contacts) {
       for (const auto& one : {contact.gap, contact.normal, contact.tangent}) added.insert(one.function);
+      frozen.insert(contact.name);
     }
     for (const auto& group : system.mode_groups) {
       shows_regions_ = shows_regions_ && group.name.find('.') == std::string::npos;
@@ -37,7 +40,10 @@ class PhysicalTime {
     for (std::size_t c = 0; c < system.columns.size(); ++c) {
       const auto& column = system.columns[c];
       const auto& function = system.switching[at(column.function)];
-      const bool is_hidden = function.name.find('.') != std::string::npos && !function.named;
+      // Names of what freezing adds begin with the name of what is frozen and a point: "ground.gap"; "18.5-x" does not.
+      const auto point = function.name.find('.');
+      const bool is_hidden =
+          point != std::string::npos && frozen.contains(function.name.substr(0, point)) && !function.named;
       if (!(is_hidden || (added.contains(column.function) && !function.named))) kept_.push_back(c);
     }
   }
