@@ -114,10 +114,19 @@ double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
   return largest;
 }
 
+template <class Tableau>
+bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
+  const bool known = trial.jacobian != nullptr && (*trial.jacobian)(trial.t, start_.data(), systems_.entries());
+  if (!known && !take_differences(trial)) return false;
+  jacobian_known_ = jacobian_here_ = true;
+  factors_.known = false;
+  return true;
+}
+
 /// Takes forward differences, each into the direction in which the solution goes: a domain that ends at the start is
 /// not left.
 template <class Tableau>
-bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
+bool RadauSteps<Tableau>::take_differences(const RadauTrial& trial) {
   largest_ = start_.cwiseAbs().maxCoeff();
   const auto either_way = [&](const std::vector<std::size_t>& columns) {
     return difference(trial, columns, +1.0) || difference(trial, columns, -1.0);
@@ -126,11 +135,9 @@ bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
     if (!either_way(columns)) return false;
   }
   for (Eigen::Index j = 0; !systems_.is_sparse() && j < n_; ++j) {
-    one_column_.assign(1, static_cast<std::size_t>(j));
+    one_column_.front() = static_cast<std::size_t>(j);
     if (!either_way(one_column_)) return false;
   }
-  jacobian_known_ = jacobian_here_ = true;
-  factors_.known = false;
   return true;
 }
 

@@ -19,9 +19,9 @@ namespace saltus::ode {
 /// are those that split it into real and complex systems of size n.
 ///
 /// The iteration ends at rounding level, not at a share of the tolerance: steps of different lengths from one start
-/// then end on one smooth curve, on which events are located. The Jacobian (forward differences) belongs to the start
-/// of this or an earlier step; it is kept over steps while the iteration converges fast, and for all lengths of a
-/// retaken step. Where its pattern is known, columns without a common row are differenced together.
+/// then end on one smooth curve, on which events are located. The Jacobian belongs to the start of this or an
+/// earlier step; it is kept over steps while the iteration converges fast, and for all lengths of a retaken step. Where
+/// it has to be differenced, columns without a common row are differenced together if its pattern is known.
 template <class Tableau>
 class RadauSteps final : public Radau {
  public:
@@ -49,6 +49,7 @@ class RadauSteps final : public Radau {
   void solve_systems(double h);
   double correct(const RadauTrial& trial);
   bool differentiate(const RadauTrial& trial);
+  bool take_differences(const RadauTrial& trial);
   [[nodiscard]] double increment(const RadauTrial& trial, Eigen::Index column, double largest) const;
   bool difference(const RadauTrial& trial, const std::vector<std::size_t>& columns, double direction);
   double estimate(const RadauTrial& trial, const double* x_new);
