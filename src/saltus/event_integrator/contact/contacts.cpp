@@ -19,6 +19,13 @@ using Eigen::VectorXd;
 constexpr double small_velocity =
     1e-9;  ///< relative size of velocities that count as none at an event: location and projection
 
+/// Of velocities behind an impact, from the size of those before it.
+void drop_roundings(double size, ContactPoint& point) {
+  for (double& velocity : point.velocity) {
+    if (std::abs(velocity) <= 64.0 * rounding_unit * size) velocity = 0.0;
+  }
+}
+
 }  // namespace
 
 Contacts::Contacts(const evaluation::ModelKernel& kernel, const model::System& system)
@@ -124,31 +131,33 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
 
 std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                              std::vector<double>& x) {
+  determined_ = true;
   ContactPoint point = point_at(moment.t, moment.alpha, x);
   if (!ended.empty() &&
       std::all_of(ended.begin(), ended.end(), [&](int i) { return reaches_a_speed(moment, i, point, x); })) {
     bound_speeds(moment, x);
     return std::nullopt;
   }
-  const auto slowly = [&](int i) {
-    return mode_of(i, x) == ContactMode::slip && point.along(point.velocity, i).isZero(0.0);
-  };
   clean(moment, point, x, ended);
   std::vector<int> touching;
-  std::vector<std::vector<ContactMode>> excluded(contacts_.size());
   for (int i = 0; i < point.contacts(); ++i) {
-    if (!touches(i, x, ended)) continue;
-    touching.push_back(i);
-    if (contains(ended, i) && !slowly(i) && !reaches_a_speed(moment, i, point, x))
-      excluded[at(i)].push_back(mode_of(i, x));
+    if (touches(i, x, ended)) touching.push_back(i);
   }
+  auto excluded = modes_that_end(moment, point, ended, x);
   const bool closing =
       std::any_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) < 0.0; });
   if (closing) {
+    // No faster than velocities are known: they touch without an impact.
+    const double none = rests_below * slowest(moment, point, x);
+    const bool touch_only =
+        std::all_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) >= -none; });
+    if (touch_only) point.restitution.assign(contacts_.size(), 0.0);
+    const auto before = x;
     if (!collide(moment, touching, std::nullopt, point, x)) {
       return fmt::format("the impact of {} at t = {:.17g} has no end: bodies jam, or normals depend on each other",
                          names(touching), moment.t);
     }
+    if (touch_only) copy_impulses(before, x);
     excluded.assign(contacts_.size(), {});
   }
   return find_modes(moment, touching, std::move(excluded), point, x);
@@ -170,7 +179,7 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
   ContactPoint point = point_at(moment.t, moment.alpha, x);
   clean(moment, point, x, {});
   // The limit is extrapolated, to the tolerances.
-  const double none = 64.0 * slowest(moment, point, x);
+  const double none = rests_below * slowest(moment, point, x);
   for (const int i : touching) {
     if (point.along(point.velocity, i).norm() > none) continue;
     for (int k = 0; k < point.tangents[at(i)]; ++k) point.velocity(point.tangent_row(i, k)) = 0.0;
@@ -205,10 +214,7 @@ bool Contacts::push(const ContactMoment& moment, const std::vector<int>& touchin
   }
   const double size = point.velocity.cwiseAbs().maxCoeff();
   point = point_at(moment.t, moment.alpha, x);
-  for (Eigen::Index row = 0; row < point.velocity.size(); ++row) {
-    if (std::abs(point.velocity(row)) <= small_velocity * small_velocity * size + 64.0 * rounding_unit * size)
-      point.velocity(row) = 0.0;
-  }
+  drop_roundings(size, point);
   return true;
 }
 
@@ -231,8 +237,20 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
     }
   }
   // Without restitution it rises by what the others do to it, and their speeds are that small, too.
+  std::vector<int> still;
+  RowBasis basis(values_.rows);
   for (const int i : touching) {
-    if (rises_by_nothing(moment, i, point, x)) point.velocity(i) = 0.0;
+    if (point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
+    if (basis.takes(i)) still.push_back(i);
+  }
+  if (!still.empty()) {
+    for (const int i : touching) {
+      if (point.velocity(i) == 0.0 && basis.takes(i)) still.push_back(i);
+    }
+    change_velocities(still, -values_.velocity(still), x);
+    point = point_at(moment.t, moment.alpha, x);
+    point.velocity(still).setZero();
+    drop_roundings(fastest, point);
   }
   constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
   for (int i = 0; i < point.contacts(); ++i) {
@@ -273,6 +291,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
         names(touching), moment.t);
   }
   const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, resting, found, x);
+  determined_ = have_one_motion(point, resting, found, chosen);
   enter(moment, point, found[chosen], x);
   static_cast<void>(project(moment.t, moment.alpha, x, touching));
   bound_speeds(moment, x);
@@ -324,14 +343,15 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
     const auto& contact = contacts_[at(i)];
     const bool closed = found.modes[at(i)] != ContactMode::open;
     x[at(contact.closed)] = closed ? 1.0 : 0.0;
-    x[at(contact.active)] = closed && basis.takes(i) ? 1.0 : 0.0;
+    x[at(contact.active)] = closed && !contains(found.idle, i) && basis.takes(i) ? 1.0 : 0.0;
     std::fill(x.begin() + contact.stick, x.begin() + contact.force_unit, 0.0);
     set_units(moment, point, i, x);
   }
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
     const double limit = point.friction[at(i)] * found.forces(i);
-    for (int k = 0; found.modes[at(i)] == ContactMode::stick && k < contact.tangents(); ++k) {
+    const bool holds = found.modes[at(i)] == ContactMode::stick && !contains(found.idle, i);
+    for (int k = 0; holds && k < contact.tangents(); ++k) {
       const int row = point.tangent_row(i, k);
       if (basis.takes(row)) {
         x[at(contact.stick + k)] = 1.0;
@@ -404,15 +424,21 @@ std::optional<std::string> Contacts::jam(const ContactMoment& moment, const std:
       names(closed), moment.t);
 }
 
+void Contacts::copy_impulses(const std::vector<double>& from, std::vector<double>& x) const {
+  for (const auto& contact : contacts_) {
+    std::copy_n(from.begin() + contact.impulse, 1 + contact.tangents(), x.begin() + contact.impulse);
+  }
+}
+
 void Contacts::forget_impulses(std::vector<double>& x) const {
   for (const auto& contact : contacts_) {
     std::fill_n(x.begin() + contact.impulse, 1 + contact.tangents(), 0.0);
   }
 }
 
-std::optional<int> Contacts::jump_with_impulse(const std::vector<double>& x) const {
+std::optional<int> Contacts::jump_to_tell(const std::vector<double>& x) const {
   for (const auto& contact : contacts_) {
-    if (x[at(contact.impulse)] != 0.0) return contact.jump;
+    if (x[at(contact.impulse)] != 0.0 || (!determined_ && x[at(contact.closed)] != 0.0)) return contact.jump;
   }
   return std::nullopt;
 }

@@ -32,7 +32,7 @@ double Contacts::pull_on(int contact, const ContactPoint& point, const std::vect
   }
   double acceleration = point.acceleration(contact);
   Eigen::VectorXd forces;
-  if (!rows.held.empty() && rows.solve(point.influence, point.acceleration, forces))
+  if (!rows.held.empty() && rows.solve(point.influence, point.acceleration, forces) != HeldRows::Solution::none)
     acceleration = std::min(acceleration, acceleration + point.influence.row(contact).dot(forces));
   return std::max(0.0, -acceleration);
 }
@@ -53,7 +53,7 @@ bool Contacts::comes_to_rest(const ContactMoment& moment, int contact, const Con
                              const std::vector<double>& x) const {
   const auto& [rtol, atol] = moment.tolerances;
   return std::abs(values_.gap(contact)) <= atol + rtol * gap_terms(contact, x) &&
-         (std::abs(point.normal_velocity(contact)) <= 64.0 * slowest(moment, point, x) ||
+         (std::abs(point.normal_velocity(contact)) <= rests_below * slowest(moment, point, x) ||
           rises_by_nothing(moment, contact, point, x));
 }
 
