@@ -98,6 +98,17 @@ class Figure(tool.ToolTest):
         self.run_tool("simulate", "temperature-control", "--out", "t.json", "--quiet", code=0)
         self.assertEqual(self.thresholds("t.json", "y"), {"heating on": 18, "heating off": 20})
 
+    def test_thresholds_of_jumps_that_turn_a_state_are_told_apart(self):
+        """Whoever wrote them, in whatever order; other jumps keep their names."""
+        model = ("[model]\nname = 'm'\n[states]\nT = 15\n{0} = 1\n[dynamics]\nT = '10*{0} - T'\n{0} = '0'\n[[jumps]]\nname = '{1}'\n"
+                 "when = 'T < 8 and {0} < 0.5 or {0} > 0.5 and T > 9'\nset = {{ {0} = '{2}' }}\n[simulate]\nuntil = 5\n")
+        for state, jump, value, expected in (("heat", "heat", "1 - heat", {"heat on": 8, "heat off": 9}),
+                                             ("heat", "turn", "1 - heat", {"turn": 9}),
+                                             ("heat", "heat", "2 - heat", {"heat": 9})):
+            self.write("m.toml", model.format(state, jump, value))
+            self.run_tool("simulate", "m.toml", "--out", "m.json", "--quiet", code=0)
+            self.assertEqual(self.thresholds("m.json", "T"), expected)
+
     def thresholds(self, name, state):
         """Of every surface of this state alone where it lies."""
         surfaces = json.loads((self.folder / name).read_text())["surfaces"]

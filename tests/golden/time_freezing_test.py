@@ -276,9 +276,7 @@ terminal_constraints = ["vx == 0"]
 
     def test_a_body_stopped_by_a_wall_at_the_end(self):
         """A block is pushed into a wall that takes its speed: the impact is the last thing that happens."""
-        result = self.optimised("""[model]
-name = "wall"
-[states]
+        result = self.optimised(HEAD + """[states]
 q = 0
 v = 0
 [controls]

@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -92,7 +93,7 @@ class Workshop {
       if (!made) return tl::unexpected(made.error());
       stated.emplace(std::move(*made));
       // Under the same lock: other threads note theirs.
-      for (const auto& warning : stated->system.warnings) warned_[warning].push_back(options_.before + i + 1);
+      for (const auto& warning : stated->system.warnings) warned_[warning].insert(options_.before + i + 1);
     }
     if (options_.keep != Keep::trajectory) leave_out_rows(stated->system, stated->options);
     auto result = simulate(stated->system, stated->options, watch_, &kernels_);
@@ -121,12 +122,7 @@ class Workshop {
   /// In the order of their first runs, however the threads were.
   [[nodiscard]] std::vector<SweepWarning> warnings() const {
     std::vector<SweepWarning> warnings;
-    for (const auto& [text, runs] : warned_) {
-      warnings.push_back({text, runs});
-      auto& numbers = warnings.back().runs;
-      std::sort(numbers.begin(), numbers.end());
-      numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
-    }
+    for (const auto& [text, runs] : warned_) warnings.push_back({text, {runs.begin(), runs.end()}});
     std::stable_sort(warnings.begin(), warnings.end(),
                      [](const auto& a, const auto& b) { return a.runs.front() < b.runs.front(); });
     return warnings;
@@ -145,7 +141,7 @@ class Workshop {
   StateRun state_;
   const SweepObservers& observers_;
   std::vector<SweepRun> runs_;
-  std::map<std::string, std::vector<std::size_t>> warned_;  ///< numbers of runs, by warning
+  std::map<std::string, std::set<std::size_t>> warned_;  ///< numbers of runs, by warning
   KernelStore kernels_;
   Observers watch_;
   std::atomic<std::size_t> next_ = 0;

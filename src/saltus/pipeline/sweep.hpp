@@ -27,15 +27,15 @@ struct SweepOptions {
 
 /// Holds one run: a system with its values, and the options.
 struct StatedRun {
-  model::System system;
-  SimulateOptions options;
+  model::System system{};
+  SimulateOptions options{};
 };
 /// States run number i, from 0. Called by all threads, one at a time, under the symbolic lock.
 using StateRun = FunctionRef<Expected<StatedRun>(std::size_t run)>;
 
 struct SweepObservers {
-  std::function<void(std::size_t done)> on_run;  ///< after every run, by any thread, one at a time; may be empty
-  std::function<bool()> is_interrupted;          ///< after every step, by all threads; may be empty
+  std::function<void(std::size_t done)> on_run{};  ///< after every run, by any thread, one at a time; may be empty
+  std::function<bool()> is_interrupted{};          ///< after every step, by all threads; may be empty
 };
 
 struct SweepRun {

@@ -2,6 +2,7 @@
 #include <cstddef>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/optimization_words_internal.hpp"
@@ -149,9 +150,10 @@ std::vector<Finding> certificate_findings(const result::Certificate& certificate
 std::vector<Finding> certificate_findings(const result::Result& result) {
   auto findings = certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
   if (const auto times = result::impacts_at_nodes(result); !times.empty()) {
-    findings.push_back({Tone::bad, fmt::format("Not looked at: impacts at t = {} lie at ends of control intervals, and "
-                                               "on the other side there may be a better optimum.",
-                                               times)});
+    findings.push_back(
+        {Tone::bad, fmt::format("Not looked at: impacts at t = {:.6g} lie at ends of control intervals, and "
+                                "on the other side there may be a better optimum.",
+                                fmt::join(times, ", "))});
   }
   return findings;
 }

@@ -59,9 +59,6 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// As in archives of results.
-double number_of(std::optional<bool> unique) { return !unique ? -1.0 : *unique ? 1.0 : 0.0; }
-
 /// What all tables begin with: the number of the run, its values, its status, whether its solution is unique.
 class Beginning {
  public:
@@ -96,7 +93,8 @@ class Beginning {
         table << values_[i][k];
       }
     }
-    table << std::string(result::name(run.result.status.termination)) << number_of(run.unique);
+    table << std::string(result::name(run.result.status.termination))
+          << static_cast<double>(result::unique_number(run.unique));
   }
 
  private:

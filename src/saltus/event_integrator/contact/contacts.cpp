@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/event_integrator/contact/impact.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -18,13 +17,6 @@ using Eigen::VectorXd;
 
 constexpr double small_velocity =
     1e-9;  ///< relative size of velocities that count as none at an event: location and projection
-
-/// Of velocities behind an impact, from the size of those before it.
-void drop_roundings(double size, ContactPoint& point) {
-  for (double& velocity : point.velocity) {
-    if (std::abs(velocity) <= 64.0 * rounding_unit * size) velocity = 0.0;
-  }
-}
 
 }  // namespace
 
@@ -133,6 +125,7 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
                                              std::vector<double>& x) {
   determined_ = true;
   ContactPoint point = point_at(moment.t, moment.alpha, x);
+  last_bounces_.clear();
   if (!ended.empty() &&
       std::all_of(ended.begin(), ended.end(), [&](int i) { return reaches_a_speed(moment, i, point, x); })) {
     bound_speeds(moment, x);
@@ -146,21 +139,23 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   auto excluded = modes_that_end(moment, point, ended, x);
   const bool closing =
       std::any_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) < 0.0; });
+  const bool touch_only = closing && std::all_of(touching.begin(), touching.end(), [&](int i) {
+                            return point.normal_velocity(i) >= 0.0 || closes_flatly(moment, i, point, x);
+                          });
+  if (touch_only) point.restitution.assign(contacts_.size(), 0.0);
+  const ContactPoint before = closing ? point : ContactPoint{};
   if (closing) {
-    // No faster than velocities are known: they touch without an impact.
-    const double none = rests_below * slowest(moment, point, x);
-    const bool touch_only =
-        std::all_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) >= -none; });
-    if (touch_only) point.restitution.assign(contacts_.size(), 0.0);
-    const auto before = x;
+    const auto x_before = x;
     if (!collide(moment, touching, std::nullopt, point, x)) {
       return fmt::format("the impact of {} at t = {:.17g} has no end: bodies jam, or normals depend on each other",
                          names(touching), moment.t);
     }
-    if (touch_only) copy_impulses(before, x);
+    if (touch_only) copy_impulses(x_before, x);
     excluded.assign(contacts_.size(), {});
   }
-  return find_modes(moment, touching, std::move(excluded), point, x);
+  auto problem = find_modes(moment, touching, std::move(excluded), point, x);
+  if (closing) note_last_bounces(moment, touching, before, x);
+  return problem;
 }
 
 std::optional<std::string> Contacts::settle(const ContactMoment& moment, const std::vector<int>& jumps,
@@ -195,69 +190,6 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
   if (std::none_of(touching.begin(), touching.end(), moves)) return std::nullopt;
   return fmt::format("the gaps of {} close at t = {:.17g} and cannot stay closed together: bodies jam", names(touching),
                      moment.t);
-}
-
-/// The impulses, and the velocities behind them; false where there are none.
-bool Contacts::push(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
-                    ContactPoint& point, std::vector<double>& x) {
-  const auto impulses = impact(point, touching, pushed);
-  if (!impulses) return false;
-  const int m = point.contacts();
-  const VectorXd change = values_.responses * *impulses;
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    x[at(system_.velocities[k])] += change(static_cast<Eigen::Index>(k));
-  }
-  for (int i = 0; i < m; ++i) {
-    const auto& contact = contacts_[at(i)];
-    x[at(contact.impulse)] += (*impulses)(i);
-    for (int k = 0; k < contact.tangents(); ++k) x[at(contact.impulse) + 1 + at(k)] += (*impulses)(m * (1 + k) + i);
-  }
-  const double size = point.velocity.cwiseAbs().maxCoeff();
-  point = point_at(moment.t, moment.alpha, x);
-  drop_roundings(size, point);
-  return true;
-}
-
-/// An impact. What would rise by nothing has no restitution: its impulses, too, are those of bodies that come to rest.
-bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
-                       ContactPoint& point, std::vector<double>& x) {
-  const double fastest = point.velocity.cwiseAbs().maxCoeff();
-  const auto x_before = x;
-  auto before = point;
-  for (bool again = true; again;) {
-    x = x_before;
-    point = before;
-    if (!push(moment, touching, pushed, point, x)) return false;
-    again = false;
-    for (const int i : touching) {
-      double& restitution = before.restitution[at(i)];
-      if (restitution == 0.0 || point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
-      restitution = 0.0;
-      again = true;
-    }
-  }
-  // Without restitution it rises by what the others do to it, and their speeds are that small, too.
-  std::vector<int> still;
-  RowBasis basis(values_.rows);
-  for (const int i : touching) {
-    if (point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
-    if (basis.takes(i)) still.push_back(i);
-  }
-  if (!still.empty()) {
-    for (const int i : touching) {
-      if (point.velocity(i) == 0.0 && basis.takes(i)) still.push_back(i);
-    }
-    change_velocities(still, -values_.velocity(still), x);
-    point = point_at(moment.t, moment.alpha, x);
-    point.velocity(still).setZero();
-    drop_roundings(fastest, point);
-  }
-  constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
-  for (int i = 0; i < point.contacts(); ++i) {
-    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * fastest) continue;
-    for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
-  }
-  return true;
 }
 
 std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, const std::vector<int>& touching,
@@ -298,20 +230,24 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
   return std::nullopt;
 }
 
+void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<double>& x) const {
+  std::vector<double> rate(x.size());
+  kernel_.field(moment.t, x.data(), moment.alpha.data(), rate.data());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * rate[i];
+}
+
 /// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin.
 std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<int>& resting,
                                  const std::vector<ContactForces>& found, const std::vector<double>& x) {
   std::size_t best = 0;
   double largest = -std::numeric_limits<double>::infinity();
-  const double h = 1e-3 * moment.time_scale;
+  const double h = ahead_by * moment.time_scale;
   constexpr double clear = 1e-4;
   for (std::size_t k = 0; k < found.size(); ++k) {
     auto ahead = x;
     const ContactPoint here = point_at(moment.t, moment.alpha, x);
     enter(moment, here, found[k], ahead);
-    std::vector<double> rate(x.size());
-    kernel_.field(moment.t, ahead.data(), moment.alpha.data(), rate.data());
-    for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += h * rate[i];
+    move_ahead(moment, h, ahead);
     ContactPoint later = point_at(moment.t + h, moment.alpha, ahead);
     for (const int i : resting) {
       // The sign of the slip is that of the mode.
@@ -422,12 +358,6 @@ std::optional<std::string> Contacts::jam(const ContactMoment& moment, const std:
       "the normal force of {} grows without bound at t = {:.17g}: its own friction presses it on "
       "(Painleve's paradox)",
       names(closed), moment.t);
-}
-
-void Contacts::copy_impulses(const std::vector<double>& from, std::vector<double>& x) const {
-  for (const auto& contact : contacts_) {
-    std::copy_n(from.begin() + contact.impulse, 1 + contact.tangents(), x.begin() + contact.impulse);
-  }
 }
 
 void Contacts::forget_impulses(std::vector<double>& x) const {

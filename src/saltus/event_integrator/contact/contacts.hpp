@@ -63,6 +63,8 @@ class Contacts {
                                                    std::vector<double>& x);
   /// Returns whether only one motion follows what was last resolved or settled.
   [[nodiscard]] bool is_determined() const { return determined_; }
+  /// Returns, by their jumps, the contacts whose bounces the last impact has ended: the next one would be nothing.
+  [[nodiscard]] const std::vector<int>& last_bounces() const { return last_bounces_; }
   /// Ends the bounces of these contacts (by their jumps): their gaps close without an impact.
   [[nodiscard]] std::optional<std::string> settle(const ContactMoment& moment, const std::vector<int>& jumps,
                                                   std::vector<double>& x);
@@ -84,9 +86,10 @@ class Contacts {
   /// Of the slowest speed, below which a slip in a plane is none: at twice its tolerance a step runs through the rest
   /// unseen, and comes out on the other side as fast as before.
   static constexpr double none_below = 3.0;
-  /// Of the slowest speed: what a limit that is extrapolated may leave, and an approach whose acceleration is 0, too,
-  /// as the rounding of the gap leaves its time open.
+  /// Of the slowest speed: what a limit that is extrapolated may leave, and an approach whose acceleration is 0, too.
   static constexpr double rests_below = 64.0;
+  /// Of the time scale: where the motion a little later is asked for.
+  static constexpr double ahead_by = 1e-3;
   /// Of gaps, which are lengths: as at a start.
   static constexpr double none_at_start = 1e-12;
 
@@ -113,6 +116,11 @@ class Contacts {
   [[nodiscard]] double pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const;
   [[nodiscard]] bool rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
                                       const std::vector<double>& x) const;
+  [[nodiscard]] bool closes_flatly(const ContactMoment& moment, int contact, const ContactPoint& point,
+                                   const std::vector<double>& x) const;
+  void move_ahead(const ContactMoment& moment, double h, std::vector<double>& x) const;
+  void note_last_bounces(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint before,
+                         const std::vector<double>& x);
   [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
                                    const std::vector<double>& x) const;
   void set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const;
@@ -153,6 +161,7 @@ class Contacts {
   std::vector<bool> guards_;  ///< by event function; empty without contacts
   evaluation::ContactValues values_;
   bool determined_ = true;
+  std::vector<int> last_bounces_;
 };
 
 }  // namespace saltus::event_integrator

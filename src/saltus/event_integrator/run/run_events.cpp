@@ -70,8 +70,8 @@ bool Run::too_many_events() {
                      cycles.empty() ? "raise simulate.max_events if they are meant, or " + advice : cycles));
     return true;
   }
-  // Jumps have their own limits.
-  if (event_.jumped || !switches_.series().too_dense(here_.t)) return false;
+  // Jumps have their own limits, and what is listed only has none.
+  if (event_.jumped || event_.listed_only || !switches_.series().too_dense(here_.t)) return false;
   if (!follow_dense_cycles()) accumulates();
   return true;
 }
@@ -231,7 +231,8 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
   if (!here_.state.sliding.empty() && is_finite(field_.alpha())) here_.state.alpha = field_.alpha();
   event_.before = here_.state;
   event_.x_before = here_.x;
-  event_.jumped = false;
+  event_.jumped = event_.listed_only = false;
+  event_.last_bounces.clear();
   event_.cells_before = cells_.indices();
   event_.cell_change = CellChange::none;
   rows_.arrive(row);
@@ -253,6 +254,8 @@ Run::Step Run::handle(const Located& located) {
   if (choices_.families().watches() && here_.t > t_begin) choices_.look(t_begin, steps_);
   // A step that ended exactly here has written the row before the event.
   const Arrival arrival = arrive(ended_here ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
+  event_.listed_only = std::all_of(located.functions.begin(), located.functions.end(),
+                                   [&](std::size_t function) { return search_.is_listed_only(function); });
   flip_user_functions(located);
   jumps_.update(jump_point());
   if (jumps_have_problem()) return depart(arrival);

@@ -17,8 +17,6 @@ namespace saltus::model {
 namespace {
 
 using expression::NodePtr;
-/// Speed of time beside contacts and hysteresis, unless bounds are stated.
-constexpr double default_fastest = 100.0;
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 NodePtr subtracted(const NodePtr& left, const NodePtr& right) {
@@ -390,7 +388,7 @@ class OcpBuild {
     OcpClock clock;
     if (ocp_.system.freezing) {
       clock.state = ocp_.system.freezing->clock;
-      clock.speed_upper = default_fastest;
+      clock.speed_upper = FreezingNumbers{}.speed_upper;
       ocp_.system.initial_state[at(clock.state)] = ocp_.from;
     } else {
       const auto& stated = *description().clock;

@@ -6,12 +6,14 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/base/at.hpp"
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/model/decisions.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
@@ -204,10 +206,10 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
 void warn_of_impacts_at_nodes(const result::Result& run, const OptimizeObservers& observers) {
   const auto times = result::impacts_at_nodes(run);
   if (times.empty()) return;
-  observers.on_warning(
-      fmt::format("impacts at t = {} lie at ends of control intervals, and an optimum may have them on the other side; "
-                  "compare with one interval more or less",
-                  times));
+  observers.on_warning(fmt::format(
+      "impacts at t = {:.6g} lie at ends of control intervals, and an optimum may have them on the other side; "
+      "compare with one interval more or less",
+      fmt::join(times, ", ")));
 }
 
 void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
@@ -236,6 +238,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
                                   const OptimizeObservers& observers) {
   const SymbolicLock lock;  // problems are made, and dropped, while it runs
   const Stopwatch whole;
+  if (auto error = model::find_stale(ocp.system)) return tl::unexpected(*error);
   auto stated = state_problem(ocp, options);
   if (!stated) return tl::unexpected(stated.error());
   for (const auto& warning : stated->warnings) observers.on_warning(warning);

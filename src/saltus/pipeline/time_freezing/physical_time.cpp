@@ -19,7 +19,8 @@ using result::Event;
 using result::EventKind;
 using result::Mode;
 
-/// Relative to the fastest one of the run: velocities that differ less are the same at an impact without known impulses.
+/// Relative to the fastest one of the run: velocities that differ less are the same at an impact without known
+/// impulses.
 constexpr double same_velocity = 1e-7;
 
 class PhysicalTime {
@@ -63,8 +64,8 @@ class PhysicalTime {
       const std::size_t before = run_.events.size();
       if (!here.empty()) take_events(here, t);
       const bool is_event = run_.events.size() > before;
-      const bool is_doubled = is_event || std::vector<double>(raw.u[r]) != std::vector<double>(raw.u[last]);
-      if (is_doubled && last > r) add_row(raw, r, t);
+      if (last > r && (is_event || std::vector<double>(raw.u[r]) != std::vector<double>(raw.u[last])))
+        add_row(raw, r, t);
       const auto impulse = is_event ? run_.events[before].impulse : std::nullopt;
       add_row(raw, last, t, impulse.value_or(std::vector<std::vector<double>>()));
       r = last + 1;

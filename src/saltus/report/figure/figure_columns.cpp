@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/report/axis_title.hpp"
 #include "saltus/report/figure/figure_columns_internal.hpp"
 
@@ -35,7 +35,7 @@ void append_extremes(const std::vector<double>& y, std::size_t begin, std::size_
 /// Where there are several gaps in a pixel nobody sees them.
 /// @param is_gap  whether the curve does not go on from a row to the next
 std::vector<std::size_t> rows_of_pixels(const std::vector<double>& t, const std::vector<double>& y, double pixel,
-                                        const std::function<bool(std::size_t)>& is_gap) {
+                                        FunctionRef<bool(std::size_t)> is_gap) {
   std::vector<std::size_t> rows, ends;
   for (std::size_t i = 0; i < t.size();) {
     ends.clear();
