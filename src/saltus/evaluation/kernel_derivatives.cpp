@@ -80,11 +80,11 @@ const LinearFieldFunction& CompiledModel::linear(CompiledMotion& motion) {
   return *motion.linear;
 }
 
-/// Differences of a field that is larger cost less than what making its derivatives would.
+/// What a larger field would win is not worth making its derivatives.
 const ModelFunction& CompiledModel::jacobian(CompiledMotion& motion, const ode::JacobianPattern* pattern) {
   if (motion.jacobian) return *motion.jacobian;
   motion.jacobian.emplace();
-  constexpr double most_operations = 1e6;
+  constexpr double most_operations = 1e5;
   const auto n = x.numel();
   const auto directions = pattern != nullptr ? ode::column_groups(*pattern).size() : at(n);
   const auto operations = motion.field.operations() + motion.constants.operations();

@@ -18,7 +18,7 @@ struct RadauTrial {
   const double* slope;
   Tolerances tolerances;
   const JacobianPattern* pattern;    ///< null: dense
-  const JacobianFunction* jacobian;  ///< null: differences
+  const JacobianFunction* jacobian;  ///< null: differences only
 };
 
 /// Takes one step of one of the methods: new value, error estimate, collocation polynomial.

@@ -22,6 +22,8 @@ inline constexpr double keep_rate = 1e-3;
 /// With a Jacobian of an earlier step: slower than this, a new one is cheaper than the iterations.
 inline constexpr double renew_rate = 0.1;
 inline constexpr int most_iterations = 30;
+/// With differences, from one start: a step that is only too long fails less often.
+inline constexpr int most_failures = 3;
 /// Lengths of two steps that share their factors: the rate of convergence is changed by as much.
 inline constexpr double same_length = 0x1p-20;
 
@@ -116,8 +118,9 @@ double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
 
 template <class Tableau>
 bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
-  const bool known = trial.jacobian != nullptr && (*trial.jacobian)(trial.t, start_.data(), systems_.entries());
-  if (!known && !take_differences(trial)) return false;
+  const bool is_known = failures_ >= most_failures && trial.jacobian != nullptr &&
+                        (*trial.jacobian)(trial.t, start_.data(), systems_.entries());
+  if (!is_known && !take_differences(trial)) return false;
   jacobian_known_ = jacobian_here_ = true;
   factors_.known = false;
   return true;

@@ -24,7 +24,7 @@ using JacobianFunction = FunctionRef<bool(double t, const double* x, double* ent
 
 /// Holds what is known of a right-hand side beside its values: its stages, with their data, and its linear part if it
 /// is affine. Used by Radau methods only: the pattern of its Jacobian, where that has few entries, for as long as it
-/// has the same address; the Jacobian itself, which is differenced otherwise.
+/// has the same address; the Jacobian itself, for where differences fail.
 struct RightHandSideStages {
   StagesFunctions functions;
   const void* data = nullptr;

@@ -156,7 +156,6 @@ TEST(Radau5, AKnownJacobianServesWhereDifferencesSeeNothing) {
     xdot[0] = 1.0 + std::sin(t) - friction(x);
     xdot[1] = friction(x);
   };
-  long evaluations[2];
   for (const bool is_known : {false, true}) {
     const auto derivatives = [&](double, const double* x, double* entries) {
       const double slope = (1.0 - friction(x) * friction(x)) / layer;
@@ -170,16 +169,18 @@ TEST(Radau5, AKnownJacobianServesWhereDifferencesSeeNothing) {
     const double x[] = {1.0 + layer * std::atanh(0.5), 1.0};
     double slope[2];
     f(0.0, x, slope);
-    const auto outcome =
-        stepper.attempt(f, 0.0, x, slope, 1e-3, {1e-8, 1e-10}, {.functions = {}, .jacobian = &jacobian});
-    evaluations[is_known ? 1 : 0] = stepper.evaluations();
+    double h = 4e-3;
+    auto outcome = Attempt::undefined;
+    for (int length = 0; length < 5 && outcome == Attempt::undefined; ++length) {
+      h *= 0.5;
+      outcome = stepper.attempt(f, 0.0, x, slope, h, {1e-8, 1e-10}, {.functions = {}, .jacobian = &jacobian});
+    }
+    ASSERT_EQ(outcome, is_known ? Attempt::finite : Attempt::undefined);
     if (!is_known) continue;
-    ASSERT_EQ(outcome, Attempt::finite);
     EXPECT_LE(stepper.error_norm(), 1.0);
-    const double common = 0.5 * (1e-3 + 1.0 - std::cos(1e-3));
+    const double common = 0.5 * (h + 1.0 - std::cos(h));
     EXPECT_NEAR(stepper.x_new()[1], 1.0 + common, 1e-9);
   }
-  EXPECT_LT(2 * evaluations[1], evaluations[0]);
 }
 
 // L-stable: a perturbation is gone after one step that is long against its time.

@@ -71,15 +71,14 @@ void Contacts::correct_velocities(const VectorXd& velocity, std::vector<double>&
   for (std::size_t r = held; r < rows.size(); ++r) change(static_cast<Eigen::Index>(r)) += velocity(rows[r]);
   const auto before = x;
   change_velocities(rows, change, x);
-  const Eigen::MatrixXd normal = values_.rows(rows, Eigen::all);
   // A velocity that is held by itself is 0, not its rounding.
   for (std::size_t r = 0; r < held; ++r) {
-    const auto row = static_cast<Eigen::Index>(r);
-    if ((normal.row(row).array() != 0.0).count() != 1) continue;
+    const auto row = values_.rows.row(rows[r]);
+    if ((row.array() != 0.0).count() != 1) continue;
     Eigen::Index only = 0;
-    static_cast<void>(normal.row(row).cwiseAbs().maxCoeff(&only));
+    static_cast<void>(row.cwiseAbs().maxCoeff(&only));
     const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
-    const double own = normal(row, only) * before[k], moving = values_.velocity(rows[r]) - own;
+    const double own = row(only) * before[k], moving = values_.velocity(rows[r]) - own;
     if (std::abs(moving) <= 4.0 * rounding_unit * std::abs(own)) x[k] = 0.0;
   }
 }
