@@ -64,7 +64,7 @@ void Contacts::change_velocities(const std::vector<int>& rows, const VectorXd& c
 ///                  more would another velocity turn them, and forces with them.
 void Contacts::correct_velocities(const VectorXd& velocity, std::vector<double>& x) const {
   auto rows = held_rows(x);
-  if (rows.empty()) return;
+  if (values_.velocity(rows).isZero(0.0) && values_.velocity == velocity) return;
   const std::size_t held = rows.size();
   keep_slips(x, rows);
   VectorXd change = -values_.velocity(rows);
