@@ -1,6 +1,7 @@
 // Derivatives of single event functions, made when first asked for, the rows of affine ones, the linear part of f.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -77,6 +78,50 @@ const AffineRowFunction& CompiledModel::lie_row(CompiledMotion& motion, int func
 const LinearFieldFunction& CompiledModel::linear(CompiledMotion& motion) {
   if (!motion.linear) motion.linear.emplace(motion.f, symbols());
   return *motion.linear;
+}
+
+/// What a larger field would win is not worth making its derivatives.
+const ModelFunction& CompiledModel::jacobian(CompiledMotion& motion, const ode::JacobianPattern* pattern) {
+  if (motion.jacobian) return *motion.jacobian;
+  motion.jacobian.emplace();
+  constexpr double most_operations = 1e5;
+  const auto n = x.numel();
+  const auto directions = pattern != nullptr ? ode::column_groups(*pattern).size() : at(n);
+  const auto operations = motion.field.operations() + motion.constants.operations();
+  if (static_cast<double>(directions) * static_cast<double>(operations) > most_operations) return *motion.jacobian;
+  std::vector<casadi_int> moving;
+  for (casadi_int i = 0; i < n; ++i) {
+    if (!discrete[at(i)]) moving.push_back(i);
+  }
+  const SX columns = SX::jacobian(motion.f, x(moving));
+  std::vector<casadi_int> column_start{0};
+  for (casadi_int i = 0, k = 0; i < n; ++i) {
+    column_start.push_back(columns.sparsity().colind()[discrete[at(i)] ? k : ++k]);
+  }
+  SX entries(casadi::Sparsity(n, n, column_start, columns.sparsity().get_row()), columns.nonzeros());
+  if (pattern != nullptr) {
+    const auto integers = [](const std::vector<std::size_t>& list) {
+      return std::vector<casadi_int>(list.begin(), list.end());
+    };
+    entries = SX::project(entries, casadi::Sparsity(n, n, integers(pattern->start), integers(pattern->row)));
+    entries = SX(entries.nonzeros());
+  }
+  return motion.jacobian.emplace("field_jacobian", std::vector<SX>{t, x, p, alpha}, std::vector<SX>{entries});
+}
+
+bool ModelKernel::field_jacobian(double t, const double* x, const double* alpha, double* entries) const {
+  auto& self = *implementation_;
+  auto& motion = *self.motion;
+  if (!motion.jacobian) {
+    const auto* pattern = jacobian_pattern();
+    const SymbolicLock lock;
+    motion.jacobian = self.compiled->jacobian(*motion.compiled, pattern);
+  }
+  auto& jacobian = *motion.jacobian;
+  if (jacobian.is_null()) return false;
+  jacobian(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{entries});
+  const auto count = jacobian.function().numel_out(0);
+  return std::all_of(entries, entries + count, [](double entry) { return std::isfinite(entry); });
 }
 
 int ModelKernel::with_limited_roots(int function) const {

@@ -38,6 +38,7 @@ struct CompiledMotion {
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives, lie_gradients;
   std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
   std::optional<LinearFieldFunction> linear;
+  std::optional<ModelFunction> jacobian;  ///< null where it is too large
 };
 
 /// Holds a motion of one kernel: the functions that it has called, with its own work space.
@@ -54,6 +55,7 @@ struct Motion {
   std::map<std::pair<int, int>, AffineRowFunction> lie_rows;
   std::optional<LinearFieldFunction> linear;
   std::optional<ode::LinearField> linear_always;  ///< if it is the same in all modes
+  std::optional<ModelFunction> jacobian;          ///< null where it is too large
 };
 
 /// Returns on which of the variables each row of an expression depends, ascending.
@@ -124,6 +126,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   [[nodiscard]] const LinearFieldFunction& linear(CompiledMotion& motion);
   [[nodiscard]] const LimitedFunction& limited(int function, const std::vector<double>& fixed_values);
   [[nodiscard]] const std::optional<ode::JacobianPattern>& jacobian_pattern();
+  [[nodiscard]] const ModelFunction& jacobian(CompiledMotion& motion, const ode::JacobianPattern* pattern);
   [[nodiscard]] Expected<CompiledMotion*> held(const std::vector<int>& guards);
 
   KernelFunctions functions;

@@ -148,6 +148,10 @@ class ModelKernel {
   /// matrix is as good, with guards held and with regions by `indicator`. Stays where it is. Cost: the first call finds
   /// it.
   [[nodiscard]] const ode::JacobianPattern* jacobian_pattern() const;
+  /// Evaluates d f / d x with selections held, in the order of jacobian_pattern() or column by column; discrete states,
+  /// which do not move, have columns of 0. False where it is not finite, or too large for an expression. Cost: the
+  /// first call makes the expression.
+  [[nodiscard]] bool field_jacobian(double t, const double* x, const double* alpha, double* entries) const;
   /// Evaluates all event functions.
   void functions(double t, const double* x, const double* alpha, double* values) const;
   /// Evaluates magnitudes from which rounding and tolerances of event functions follow, each over all event functions:

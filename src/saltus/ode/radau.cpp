@@ -23,6 +23,7 @@ RadauSteps<Tableau>::RadauSteps(int n)
       start_(n),
       previous_{false, 0.0, std::vector<double>(stages * static_cast<std::size_t>(n))},
       systems_(n, stages / 2),
+      one_column_(1),
       z_(n, last + 1),
       w_(n, last + 1),
       slopes_(n, last + 1),
@@ -32,6 +33,7 @@ RadauSteps<Tableau>::RadauSteps(int n)
 template <class Tableau>
 void RadauSteps<Tableau>::restart() {
   started_ = converged_ = previous_.known = jacobian_known_ = factors_.known = false;
+  failures_ = 0;
   rate_ = 0.0;
 }
 
@@ -66,6 +68,7 @@ void RadauSteps<Tableau>::begin(const RadauTrial& trial) {
   }
   if (rate_ > keep_rate || !follows) jacobian_known_ = false;
   jacobian_here_ = false;
+  if (failures_ < most_failures) failures_ = 0;
   started_ = true;
   t_ = trial.t;
   start_ = Eigen::Map<const Vector>(trial.x, n_);
@@ -81,6 +84,13 @@ auto RadauSteps<Tableau>::solve(const RadauTrial& trial) -> Outcome {
     // What came from earlier steps did not help: once more without it.
     if (!jacobian_here_ && !differentiate(trial)) return Outcome::undefined;
     if (!factorize(trial.h)) return Outcome::undefined;
+    z_.setZero();
+    w_.setZero();
+    outcome = iterate(trial);
+  }
+  if (outcome == Outcome::failed && trial.jacobian != nullptr && ++failures_ == most_failures) {
+    // Differences see nothing of what changes within the rounding of a state.
+    if (!differentiate(trial) || !factorize(trial.h)) return Outcome::undefined;
     z_.setZero();
     w_.setZero();
     outcome = iterate(trial);

@@ -17,7 +17,8 @@ struct RadauTrial {
   const double* x;
   const double* slope;
   Tolerances tolerances;
-  const JacobianPattern* pattern;  ///< null: dense
+  const JacobianPattern* pattern;    ///< null: dense
+  const JacobianFunction* jacobian;  ///< null: differences only
 };
 
 /// Takes one step of one of the methods: new value, error estimate, collocation polynomial.

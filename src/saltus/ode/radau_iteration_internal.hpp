@@ -22,6 +22,8 @@ inline constexpr double keep_rate = 1e-3;
 /// With a Jacobian of an earlier step: slower than this, a new one is cheaper than the iterations.
 inline constexpr double renew_rate = 0.1;
 inline constexpr int most_iterations = 30;
+/// With differences, from one start: a step that is only too long fails less often.
+inline constexpr int most_failures = 3;
 /// Lengths of two steps that share their factors: the rate of convergence is changed by as much.
 inline constexpr double same_length = 0x1p-20;
 
@@ -114,10 +116,20 @@ double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
   return largest;
 }
 
+template <class Tableau>
+bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
+  const bool is_known = failures_ >= most_failures && trial.jacobian != nullptr &&
+                        (*trial.jacobian)(trial.t, start_.data(), systems_.entries());
+  if (!is_known && !take_differences(trial)) return false;
+  jacobian_known_ = jacobian_here_ = true;
+  factors_.known = false;
+  return true;
+}
+
 /// Takes forward differences, each into the direction in which the solution goes: a domain that ends at the start is
 /// not left.
 template <class Tableau>
-bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
+bool RadauSteps<Tableau>::take_differences(const RadauTrial& trial) {
   largest_ = start_.cwiseAbs().maxCoeff();
   const auto either_way = [&](const std::vector<std::size_t>& columns) {
     return difference(trial, columns, +1.0) || difference(trial, columns, -1.0);
@@ -126,11 +138,9 @@ bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
     if (!either_way(columns)) return false;
   }
   for (Eigen::Index j = 0; !systems_.is_sparse() && j < n_; ++j) {
-    one_column_.assign(1, static_cast<std::size_t>(j));
+    one_column_.front() = static_cast<std::size_t>(j);
     if (!either_way(one_column_)) return false;
   }
-  jacobian_known_ = jacobian_here_ = true;
-  factors_.known = false;
   return true;
 }
 

@@ -19,9 +19,10 @@ namespace saltus::ode {
 /// are those that split it into real and complex systems of size n.
 ///
 /// The iteration ends at rounding level, not at a share of the tolerance: steps of different lengths from one start
-/// then end on one smooth curve, on which events are located. The Jacobian (forward differences) belongs to the start
-/// of this or an earlier step; it is kept over steps while the iteration converges fast, and for all lengths of a
-/// retaken step. Where its pattern is known, columns without a common row are differenced together.
+/// then end on one smooth curve, on which events are located. The Jacobian belongs to the start of this or an
+/// earlier step; it is kept over steps while the iteration converges fast, and for all lengths of a retaken step. Its
+/// columns are differences, together those without a common row if the pattern is known. Where the iteration fails with
+/// them at several lengths, the Jacobian itself is asked for.
 template <class Tableau>
 class RadauSteps final : public Radau {
  public:
@@ -49,6 +50,7 @@ class RadauSteps final : public Radau {
   void solve_systems(double h);
   double correct(const RadauTrial& trial);
   bool differentiate(const RadauTrial& trial);
+  bool take_differences(const RadauTrial& trial);
   [[nodiscard]] double increment(const RadauTrial& trial, Eigen::Index column, double largest) const;
   bool difference(const RadauTrial& trial, const std::vector<std::size_t>& columns, double direction);
   double estimate(const RadauTrial& trial, const double* x_new);
@@ -76,6 +78,7 @@ class RadauSteps final : public Radau {
   // Jacobian and factors.
   bool jacobian_known_ = false;
   bool jacobian_here_ = false;  ///< it belongs to start_
+  int failures_ = 0;            ///< of differences, from this start or, if there were too many, one since restart()
   struct Factors {
     bool known = false;
     double h = 0.0;

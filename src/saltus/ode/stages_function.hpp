@@ -1,6 +1,7 @@
 // The stages of an explicit step by one function, made for one right-hand side: nothing is called between them.
 #pragma once
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/ode/linear_field.hpp"
 #include "saltus/ode/sparse/jacobian_pattern.hpp"
 
@@ -17,14 +18,19 @@ struct StagesFunctions {
   StagesFunction dop853 = nullptr;
 };
 
+/// Evaluates the Jacobian at (t, x): entries in the order of the pattern, or all of them column by column without one.
+/// @return false where it is not known, or not finite
+using JacobianFunction = FunctionRef<bool(double t, const double* x, double* entries)>;
+
 /// Holds what is known of a right-hand side beside its values: its stages, with their data, and its linear part if it
-/// is affine. The pattern of its Jacobian, where that has few entries: used by radau5 only, for as long as it has the
-/// same address.
+/// is affine. Used by Radau methods only: the pattern of its Jacobian, where that has few entries, for as long as it
+/// has the same address; the Jacobian itself, for where differences fail.
 struct RightHandSideStages {
   StagesFunctions functions;
   const void* data = nullptr;
   const LinearField* linear = nullptr;
   const JacobianPattern* pattern = nullptr;
+  const JacobianFunction* jacobian = nullptr;
 };
 
 }  // namespace saltus::ode

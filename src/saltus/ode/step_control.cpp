@@ -163,7 +163,11 @@ bool StiffnessWatch::looks_stiff(const Stepper& stepper) {
   constexpr int enough = 15;
   constexpr int acquitted = 6;
   if (suspicions_ == 0 && ++steps_ % interval != 0) return false;
-  if (stepper.stability_ratio() > 1.0) {
+  // What turns to and fro below the tolerances, as dry friction does, keeps the ratio below 1 and the state in its
+  // place.
+  constexpr double turns = 0.25, stays = 1e-6;
+  const double ratio = stepper.stability_ratio();
+  if (ratio > 1.0 || (ratio > turns && stepper.relative_change() < stays)) {
     innocent_ = 0;
     return ++suspicions_ == enough;
   }

@@ -40,7 +40,7 @@ class StepControl {
 
 /// Tells whether stability limits the accepted steps of an explicit method: 15 suspicious ones, and not six others in a
 /// row between them (codes DOPRI5 and DOP853 of Hairer & Wanner; here one step of 16 is looked at while there is no
-/// suspicion).
+/// suspicion). So are steps nearly as long that leave the state where it is.
 class StiffnessWatch {
  public:
   /// Is asked after every accepted step; true once, when the suspicion is enough.

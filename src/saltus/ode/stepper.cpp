@@ -137,7 +137,7 @@ Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const doubl
     const ExplicitStep step{t, h, n, start_.data(), x_new_.data(), stages_.data()};
     if (!explicit_->take(step, work, tolerances, error_norm_)) return Attempt::undefined;
   } else if (radau_) {
-    const RadauTrial trial{f, t, h, start_.data(), stages_.data(), tolerances, stages.pattern};
+    const RadauTrial trial{f, t, h, start_.data(), stages_.data(), tolerances, stages.pattern, stages.jacobian};
     const Attempt outcome = radau_->attempt(trial, x_new_.data(), stages_.data() + n, evaluations_);
     if (outcome == Attempt::undefined) return outcome;
     error_norm_ = radau_->error_norm();
@@ -180,6 +180,15 @@ double Stepper::stability_ratio() const {
   if (known_ != nullptr) return 0.0;
   if (took_series_) return series_->stability_ratio();
   return explicit_ != nullptr ? explicit_->stability_ratio(explicit_step()) : 0.0;
+}
+
+double Stepper::relative_change() const {
+  double way = 0.0, size = 0.0;  // squares
+  for (std::size_t i = 0; i < start_.size(); ++i) {
+    way += (x_new_[i] - start_[i]) * (x_new_[i] - start_[i]);
+    size += x_new_[i] * x_new_[i];
+  }
+  return size > 0.0 ? std::sqrt(way / size) : 1.0;
 }
 
 bool Stepper::bounds(double* low, double* high) const {

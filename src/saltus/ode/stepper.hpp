@@ -159,6 +159,9 @@ class Stepper {
   /// Radau methods.
   [[nodiscard]] double stability_ratio() const;
 
+  /// Returns the way of the last attempt, which was finite, over the size of its end, both Euclidean.
+  [[nodiscard]] double relative_change() const;
+
   [[nodiscard]] long evaluations() const { return evaluations_; }  ///< of f, since construction
 
  private:

@@ -203,6 +203,53 @@ TEST(ContactsInPlane, AForceThatGrowsOvercomesFriction) {
   }
 }
 
+/// A block lies on a plate, both move, and the force on the block grows and turns. From s = t - 1 = 0 on it slips with
+/// the velocity s^2 e(3 s), e(a) = (cos a, sin a), for which slip begins as slowly as it can: friction has a direction
+/// where the velocity is a difference of speeds of 1 that has lost all its digits to them.
+TEST(ContactsInPlane, ASlipThatBeginsUnderATurningForceTakesFewSteps) {
+  constexpr double limit = 0.4 * gravity;
+  model::Builder model("block on a plate");
+  const std::vector<std::string> names{"x", "y", "z", "X", "Y"};
+  std::vector<std::string> rates;
+  SX z;
+  for (const auto& name : names) {
+    const SX state = model.state(name, {0.0});
+    if (name == "z") z = state;
+  }
+  for (const auto& name : names) {
+    rates.push_back("v" + name);
+    static_cast<void>(model.state(rates.back(), {name == "z" ? 0.0 : 1.0}));
+  }
+  const SX s = model.time() - 1.0;
+  const std::array<SX, 2> e{cos(3.0 * s), sin(3.0 * s)}, across{-e[1], e[0]};
+  std::map<std::string, SX> force{{"vz", SX(-gravity)}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    force[rates[i]] = 2.0 * s * e[i] + 3.0 * s * s * across[i] + limit * e[i];
+    force[rates[i + 3]] = -limit * e[i];
+  }
+  model.mechanics({.positions = names, .velocities = rates, .force = force});
+  model.contact("plate", z,
+                {.tangent = {{"x", 1.0}, {"X", -1.0}}, .friction = 0.4, .second_tangent = {{"y", 1.0}, {"Y", -1.0}}});
+  for (const auto method : {ode::Method::radau5, ode::Method::radau9, ode::Method::radau13}) {
+    SCOPED_TRACE(static_cast<int>(method));
+    IntegrationOptions options;
+    options.method = method;
+    options.until = 2.5;
+    options.max_steps = 2000;
+    const auto run = run_model(model, options);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_EQ(kinds_of(run), std::vector<EventKind>{EventKind::slip});
+    EXPECT_NEAR(run.events[0].t, 1.0, 1e-8);
+    // Before, both have had half of the force: its integral is s^2 e(3 s), too.
+    const double plate[] = {1.0 - 0.5 * std::cos(3.0), 1.0 + 0.5 * std::sin(3.0)};
+    const double slip[] = {2.25 * std::cos(4.5), 2.25 * std::sin(4.5)};
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(run.final.x[5 + i], plate[i] + slip[i], 1e-6);
+      EXPECT_NEAR(run.final.x[8 + i], plate[i], 1e-6);
+    }
+  }
+}
+
 /// dv/dp = M^-1 (n - mu T v_t/|v_t|) by 10^6 steps of the classical method; slip that ends would stick.
 Eigen::Vector3d behind_impact(const Eigen::Matrix3d& mass, Eigen::Vector3d v, double friction, double restitution) {
   const Eigen::Matrix3d inverse = mass.inverse();

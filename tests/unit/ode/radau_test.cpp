@@ -147,6 +147,42 @@ TEST(Radau5, stiff_linear_problem_takes_steps_of_the_smooth_solution) {
   EXPECT_LT(steps[1], 200);
 }
 
+/// Two masses at speeds of 1 rub on each other at a speed of 1e-9: differences of the size of rounding of the speeds
+/// see the other end of the law of friction.
+TEST(Radau5, AKnownJacobianServesWhereDifferencesSeeNothing) {
+  constexpr double layer = 1e-9;
+  const auto friction = [](const double* x) { return std::tanh((x[0] - x[1]) / layer); };
+  const auto f = [&](double t, const double* x, double* xdot) {
+    xdot[0] = 1.0 + std::sin(t) - friction(x);
+    xdot[1] = friction(x);
+  };
+  for (const bool is_known : {false, true}) {
+    const auto derivatives = [&](double, const double* x, double* entries) {
+      const double slope = (1.0 - friction(x) * friction(x)) / layer;
+      entries[0] = entries[3] = -slope;
+      entries[1] = entries[2] = slope;
+      return is_known;
+    };
+    const JacobianFunction jacobian(derivatives);
+    Stepper stepper(Method::radau5, 2);
+    // Both accelerate alike.
+    const double x[] = {1.0 + layer * std::atanh(0.5), 1.0};
+    double slope[2];
+    f(0.0, x, slope);
+    double h = 4e-3;
+    auto outcome = Attempt::undefined;
+    for (int length = 0; length < 5 && outcome == Attempt::undefined; ++length) {
+      h *= 0.5;
+      outcome = stepper.attempt(f, 0.0, x, slope, h, {1e-8, 1e-10}, {.functions = {}, .jacobian = &jacobian});
+    }
+    ASSERT_EQ(outcome, is_known ? Attempt::finite : Attempt::undefined);
+    if (!is_known) continue;
+    EXPECT_LE(stepper.error_norm(), 1.0);
+    const double common = 0.5 * (h + 1.0 - std::cos(h));
+    EXPECT_NEAR(stepper.x_new()[1], 1.0 + common, 1e-9);
+  }
+}
+
 // L-stable: a perturbation is gone after one step that is long against its time.
 TEST_P(EachRadauMethod, DampsStiffComponentsInOneStep) {
   const auto f = [](double t, const double* x, double* xdot) { *xdot = -1e8 * (*x - std::cos(t)) - std::sin(t); };
@@ -318,6 +354,24 @@ TEST(StiffnessWatch, tells_stability_from_accuracy) {
     EXPECT_EQ(stiff_after(method, f, {1.0, 1.0}, 100, 0.9 * limit / 1000.0), -1);
   }
   EXPECT_EQ(stiff_after(Method::radau5, VanDerPol{}, {2.0, -0.66}, 100, 1e-3), -1);
+}
+
+/// Dry friction, stronger than the drive, on a mass at a speed of 1 turns to and fro below the tolerances; an
+/// oscillator has steps as long for its time.
+TEST(StiffnessWatch, SeesForcesThatTurnBelowTheTolerances) {
+  const auto friction = [](double t, const double* x, double* xdot) {
+    const double vx = x[0] - 1.0, vy = x[1] - 1.0, speed = std::hypot(vx, vy);
+    xdot[0] = 0.9 * std::cos(t) - vx / speed;
+    xdot[1] = 0.9 * std::sin(t) - vy / speed;
+  };
+  const auto oscillator = [](double, const double* x, double* xdot) {
+    xdot[0] = x[1];
+    xdot[1] = -x[0];
+  };
+  for (const Method method : explicit_methods) {
+    EXPECT_NE(stiff_after(method, friction, {1.0 + 1e-9, 1.0}, 1000, 1e-7), -1);
+    EXPECT_EQ(stiff_after(method, oscillator, {1.0, 0.0}, 1000, 1.5), -1);
+  }
 }
 
 }  // namespace

@@ -2,7 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
+
+#include <Eigen/QR>
+
+#include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -44,21 +51,24 @@ double margin_of(const ContactPoint& point, const std::vector<int>& resting, con
       note(found.acceleration(i), largest);
       continue;
     }
-    note(found.forces(i), force);
-    if (mode == ContactMode::stick) note(mu * found.forces(i) - point.along(found.forces, i).norm(), force);
-    if (slips(mode) && point.along(point.velocity, i).isZero(0.0)) {
-      note(found.directions[static_cast<std::size_t>(i)].dot(point.along(found.acceleration, i)), largest);
-    }
+    const bool is_idle = contains(found.idle, i);
+    if (!is_idle) note(found.forces(i), force);
+    if (!is_idle && mode == ContactMode::stick) note(mu * found.forces(i) - point.along(found.forces, i).norm(), force);
+    if (!slips(mode)) continue;
+    const Vector2d& direction = found.directions[static_cast<std::size_t>(i)];
+    const Vector2d velocity = point.along(point.velocity, i);
+    velocity.isZero(0.0) ? note(direction.dot(point.along(found.acceleration, i)), largest)
+                         : note(direction.dot(velocity), velocity.norm());
   }
   return least;
 }
 
-bool solve_forces(const ContactPoint& point, const std::vector<int>& resting, ContactForces& result) {
+HeldRows held_rows(const ContactPoint& point, const std::vector<int>& resting, const ContactForces& result) {
   HeldRows rows(point.velocity.size());
   for (const int i : resting) {
     const auto k = static_cast<std::size_t>(i);
     const auto mode = result.modes[k];
-    if (mode == ContactMode::open) continue;
+    if (mode == ContactMode::open || contains(result.idle, i)) continue;
     const bool given = !point.has_gap[k];
     if (given) rows.given(i) = 1.0;
     const int normal = given ? -1 : rows.hold(i);
@@ -68,9 +78,79 @@ bool solve_forces(const ContactPoint& point, const std::vector<int>& resting, Co
       if (mode == ContactMode::stick) rows.hold(row);
     }
   }
-  if (!rows.solve(point.influence, point.acceleration, result.forces)) return false;
+  return rows;
+}
+
+bool solve_forces(const ContactPoint& point, const std::vector<int>& resting, ContactForces& result) {
+  const auto solution = held_rows(point, resting, result).solve(point.influence, point.acceleration, result.forces);
+  if (solution == HeldRows::Solution::none) return false;
+  result.is_open = solution == HeldRows::Solution::open;
   result.acceleration = point.acceleration + point.influence * result.forces;
   return true;
+}
+
+/// Whether rows that are held hold others, too.
+bool hold(const ContactPoint& point, const std::vector<int>& held, const std::vector<int>& rows) {
+  const Eigen::MatrixXd between = point.influence(held, rows);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+  factors.setThreshold(HeldRows::dependent);
+  factors.compute(point.influence(held, held));
+  const Eigen::MatrixXd left = point.influence(rows, rows) - between.transpose() * factors.solve(between);
+  return left.diagonal().cwiseAbs().maxCoeff() <= 1e-9 * point.influence(rows, rows).diagonal().maxCoeff();
+}
+
+/// Whether the normal forces of others keep a contact closed, and all of their forces keep it at rest if it sticks.
+bool is_kept(const ContactPoint& point, const std::vector<int>& held, const ContactForces& found, int i) {
+  std::vector<int> normals, tangents;
+  std::copy_if(held.begin(), held.end(), std::back_inserter(normals), [&](int row) { return row < point.contacts(); });
+  const bool sticks = found.modes[static_cast<std::size_t>(i)] == ContactMode::stick;
+  for (int k = 0; sticks && k < point.tangents[static_cast<std::size_t>(i)]; ++k) {
+    tangents.push_back(point.tangent_row(i, k));
+  }
+  return !normals.empty() && hold(point, normals, {i}) && (tangents.empty() || hold(point, held, tangents));
+}
+
+/// Where normal forces are open: without those of contacts that need none, so that the margin is the largest.
+void drop_idle(const ContactPoint& point, const std::vector<int>& resting, ContactForces& result) {
+  if (!result.is_open) return;
+  std::optional<ContactForces> best;
+  for (auto i = resting.rbegin(); i != resting.rend(); ++i) {
+    if (result.modes[static_cast<std::size_t>(*i)] == ContactMode::open || contains(result.idle, *i)) continue;
+    ContactForces without = result;
+    without.idle.push_back(*i);
+    if (!is_kept(point, held_rows(point, resting, without).held, without, *i)) continue;
+    if (!solve_forces(point, resting, without)) continue;
+    without.margin = margin_of(point, resting, without);
+    if (!best || without.margin > best->margin) best = std::move(without);
+  }
+  if (!best) return;
+  result = std::move(*best);
+  drop_idle(point, resting, result);
+}
+
+/// Of forces that do not change the motion those that hold best: the margin is a concave function of them.
+void take_best(const ContactPoint& point, const std::vector<int>& resting, ContactForces& result) {
+  if (!result.is_open) return;
+  const Eigen::MatrixXd open = held_rows(point, resting, result).open(point.influence);
+  constexpr double moved = 1e-9, widest = 1e6, golden = 0.6180339887498949;
+  constexpr int refinements = 60;
+  for (Eigen::Index k = 0; k < open.cols(); ++k) {
+    const VectorXd way = open.col(k) * (result.forces.cwiseAbs().maxCoeff() / open.col(k).cwiseAbs().maxCoeff());
+    if (!((point.influence * way).cwiseAbs().maxCoeff() <= moved * point.terms)) continue;
+    const ContactForces start = result;
+    const auto margin_at = [&](double length) {
+      result.forces = start.forces + length * way;
+      return result.margin = margin_of(point, resting, result);
+    };
+    double low = -1.0, high = 1.0;
+    while (high < widest && margin_at(high) > margin_at(0.5 * high)) high *= 2.0;
+    while (low > -widest && margin_at(low) > margin_at(0.5 * low)) low *= 2.0;
+    for (int step = 0; step < refinements; ++step) {
+      const double right = low + golden * (high - low), left = high - golden * (high - low);
+      (margin_at(left) < margin_at(right) ? low : high) = margin_at(left) < margin_at(right) ? left : right;
+    }
+    if (!(margin_at(0.5 * (low + high)) > start.margin)) result = start;
+  }
 }
 
 /// Against the forces that would keep these contacts from slipping.
@@ -85,12 +165,35 @@ void guess_directions(const ContactPoint& point, const std::vector<int>& resting
   }
 }
 
+/// Whether the motion is the same whatever forces are taken of those that these modes leave open.
+bool is_determined(const ContactPoint& point, const std::vector<int>& resting, const ContactForces& found) {
+  ContactForces base = found;
+  base.idle.clear();
+  if (!found.is_open && found.idle.empty()) return true;
+  const Eigen::MatrixXd open = held_rows(point, resting, base).open(point.influence);
+  const double response = point.influence.cwiseAbs().maxCoeff();
+  constexpr double small = 1e-6, moved = 1e-12, holds = -1e-8;
+  for (Eigen::Index k = 0; k < open.cols(); ++k) {
+    const Eigen::VectorXd forces = open.col(k) * (small * point.terms / (response * open.col(k).cwiseAbs().maxCoeff()));
+    const Eigen::VectorXd change = point.influence * forces;
+    if (!(change.cwiseAbs().maxCoeff() > moved * point.terms)) continue;
+    for (const double sign : {1.0, -1.0}) {
+      ContactForces other = base;
+      other.forces += sign * forces;
+      other.acceleration += sign * change;
+      if (margin_of(point, resting, other) >= holds) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 bool forces_in(const ContactPoint& point, const std::vector<int>& resting, const std::vector<ContactMode>& modes,
                ContactForces& result) {
   result.modes = modes;
   result.directions.assign(modes.size(), Vector2d::Zero());
+  result.idle.clear();
   std::vector<int> free;
   for (const int i : resting) {
     const auto mode = modes[static_cast<std::size_t>(i)];
@@ -112,6 +215,8 @@ bool forces_in(const ContactPoint& point, const std::vector<int>& resting, const
                           : find_directions(point, free, result.directions, result.forces, result.acceleration, solve);
   if (!solved) return false;
   result.margin = margin_of(point, resting, result);
+  drop_idle(point, resting, result);
+  take_best(point, resting, result);
   return true;
 }
 
@@ -141,6 +246,15 @@ std::vector<ContactForces> admissible_forces(const ContactPoint& point, const st
     if (result.size() > 16) break;
   }
   return result;
+}
+
+bool have_one_motion(const ContactPoint& point, const std::vector<int>& resting,
+                     const std::vector<ContactForces>& found, std::size_t chosen) {
+  constexpr double rounded = 1e-6;
+  const auto moves_alike = [&](const ContactForces& other) {
+    return (other.acceleration - found[chosen].acceleration).cwiseAbs().maxCoeff() <= rounded * point.terms;
+  };
+  return std::all_of(found.begin(), found.end(), moves_alike) && is_determined(point, resting, found[chosen]);
 }
 
 }  // namespace saltus::event_integrator

@@ -23,8 +23,12 @@ enum class ContactMode {
 struct ContactForces {
   std::vector<ContactMode> modes;
   std::vector<Eigen::Vector2d> directions;  ///< by contact, of slip: unit vectors over its tangents; 0 without
-  Eigen::VectorXd forces;                   ///< r
-  Eigen::VectorXd acceleration;             ///< r, with them
+  /// Closed contacts that others keep closed: of forces that the motion leaves open those are taken that need the
+  /// fewest contacts.
+  std::vector<int> idle;
+  bool is_open = false;          ///< other forces would do, those of idle contacts aside
+  Eigen::VectorXd forces;        ///< r
+  Eigen::VectorXd acceleration;  ///< r, with them
   /// What is left until the first of the modes ends, relative to its terms: a normal force or acceleration, the
   /// distance to the edge of a friction cone. Negative: a mode does not hold.
   double margin = 0.0;
@@ -41,5 +45,10 @@ struct ContactForces {
 /// @param excluded  by contact: a mode that is known to end here; open contacts have no say
 [[nodiscard]] std::vector<ContactForces> admissible_forces(const ContactPoint& point, const std::vector<int>& resting,
                                                            const std::vector<std::vector<ContactMode>>& excluded);
+
+/// Returns whether all modes that were found give one motion, whatever forces are taken of those that the chosen one
+/// leaves open.
+[[nodiscard]] bool have_one_motion(const ContactPoint& point, const std::vector<int>& resting,
+                                   const std::vector<ContactForces>& found, std::size_t chosen);
 
 }  // namespace saltus::event_integrator

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <Eigen/LU>
 #include <Eigen/QR>
 
 namespace saltus::event_integrator {
@@ -13,31 +14,40 @@ int HeldRows::hold(int row) {
   return unknown;
 }
 
-bool HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start, Eigen::VectorXd& forces) const {
+auto HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start, Eigen::VectorXd& forces) const
+    -> Solution {
   forces = given;
-  if (held.empty()) return true;
+  if (held.empty()) return Solution::one;
   const Eigen::VectorXd before = start + influence * given;
   const auto n = static_cast<Eigen::Index>(held.size());
   if (n == 1) {
     const double row = influence.row(held.front()).dot(columns.col(0)), right = -before(held.front());
     if (row != 0.0) forces += columns.col(0) * (right / row);
-    return row != 0.0 || right == 0.0;
+    return row != 0.0 || right == 0.0 ? Solution::one : Solution::none;
   }
-  const Eigen::MatrixXd response = influence * columns.leftCols(n);
-  Eigen::MatrixXd rows(n, n);
-  Eigen::VectorXd right(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
-    rows.row(k) = response.row(held[static_cast<std::size_t>(k)]);
-    right(k) = -before(held[static_cast<std::size_t>(k)]);
-  }
+  const Eigen::MatrixXd rows = rows_of(influence);
+  const Eigen::VectorXd right = -before(held);
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
-  factors.setThreshold(1e-11);  // rows that depend on each other to rounding
+  factors.setThreshold(dependent);
   factors.compute(rows);
   const Eigen::VectorXd unknowns = factors.solve(right);
   const double size = rows.cwiseAbs().maxCoeff() * unknowns.cwiseAbs().maxCoeff() + right.cwiseAbs().maxCoeff();
-  if (!((rows * unknowns - right).cwiseAbs().maxCoeff() <= 1e-8 * size)) return false;
+  if (!((rows * unknowns - right).cwiseAbs().maxCoeff() <= 1e-8 * size)) return Solution::none;
   forces += columns.leftCols(n) * unknowns;
-  return true;
+  return factors.rank() < n ? Solution::open : Solution::one;
+}
+
+Eigen::MatrixXd HeldRows::rows_of(const Eigen::MatrixXd& influence) const {
+  return influence(held, Eigen::all) * columns.leftCols(static_cast<Eigen::Index>(held.size()));
+}
+
+Eigen::MatrixXd HeldRows::open(const Eigen::MatrixXd& influence) const {
+  const auto n = static_cast<Eigen::Index>(held.size());
+  Eigen::FullPivLU<Eigen::MatrixXd> factors;
+  factors.setThreshold(dependent);
+  if (n > 0) factors.compute(rows_of(influence));
+  if (n == 0 || factors.rank() == n) return Eigen::MatrixXd(columns.rows(), 0);
+  return columns.leftCols(n) * factors.kernel();
 }
 
 bool find_directions(const ContactPoint& point, const std::vector<int>& free, std::vector<Eigen::Vector2d>& directions,

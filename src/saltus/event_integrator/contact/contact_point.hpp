@@ -43,9 +43,17 @@ struct HeldRows {
       : given(Eigen::VectorXd::Zero(rows)), columns(Eigen::MatrixXd::Zero(rows, rows)) {}
   /// Adds one more unknown and its row; returns its number.
   int hold(int row);
-  /// Finds the forces; nothing where the rows contradict each other.
-  [[nodiscard]] bool solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start,
-                           Eigen::VectorXd& forces) const;
+  enum class Solution { none, one, open };
+  /// Finds the forces; none where the rows contradict each other, one of many where they depend on each other.
+  [[nodiscard]] Solution solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start,
+                               Eigen::VectorXd& forces) const;
+  /// Returns, as columns, forces that leave the held rows as they are.
+  [[nodiscard]] Eigen::MatrixXd open(const Eigen::MatrixXd& influence) const;
+
+  static constexpr double dependent = 1e-11;  ///< rows that depend on each other to rounding
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd rows_of(const Eigen::MatrixXd& influence) const;
 };
 
 /// Finds the directions in which contacts begin to slip from rest: along the rates of their tangential velocities,

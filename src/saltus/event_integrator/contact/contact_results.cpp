@@ -76,6 +76,7 @@ class Shown {
       sticks = sticks || after[i] == result::ContactMode::stick;
     }
     if (event.surfaces.empty()) return false;
+    const bool is_determined = event.unique != false;
     event.kind = hit      ? EventKind::impact
                  : closes ? EventKind::contact
                  : opens  ? EventKind::lift_off
@@ -86,6 +87,7 @@ class Shown {
                    : opens  ? "the normal force ends"
                    : sticks ? "friction holds what has come to rest"
                             : "the tangential force reaches the edge of the friction cone, or the slip turns around";
+    if (!is_determined) event.reason += "; the forces of what touches leave more than one motion open";
     if (hit) event.impulse = std::move(impulse);
     return true;
   }
@@ -108,6 +110,7 @@ void show_contacts(const model::System& system, result::Final& final, result::Ev
       result::Event first = told.back();
       told.pop_back();
       std::tie(first.mode_after, first.alpha_after) = std::tie(event.mode_after, event.alpha_after);
+      if (event.unique == false) first.unique = false;
       told.push_back(std::move(first));
     }
     if (empty) continue;

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/event_integrator/contact/impact.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -124,6 +123,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
 
 std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                              std::vector<double>& x) {
+  determined_ = true;
   ContactPoint point = point_at(moment.t, moment.alpha, x);
   last_bounces_.clear();
   if (!ended.empty() &&
@@ -131,26 +131,26 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
     bound_speeds(moment, x);
     return std::nullopt;
   }
-  const auto slowly = [&](int i) {
-    return mode_of(i, x) == ContactMode::slip && point.along(point.velocity, i).isZero(0.0);
-  };
   clean(moment, point, x, ended);
   std::vector<int> touching;
-  std::vector<std::vector<ContactMode>> excluded(contacts_.size());
   for (int i = 0; i < point.contacts(); ++i) {
-    if (!touches(i, x, ended)) continue;
-    touching.push_back(i);
-    if (contains(ended, i) && !slowly(i) && !reaches_a_speed(moment, i, point, x))
-      excluded[at(i)].push_back(mode_of(i, x));
+    if (touches(i, x, ended)) touching.push_back(i);
   }
+  auto excluded = modes_that_end(moment, point, ended, x);
   const bool closing =
       std::any_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) < 0.0; });
+  const bool touch_only = closing && std::all_of(touching.begin(), touching.end(), [&](int i) {
+                            return point.normal_velocity(i) >= 0.0 || closes_flatly(moment, i, point, x);
+                          });
+  if (touch_only) point.restitution.assign(contacts_.size(), 0.0);
   const ContactPoint before = closing ? point : ContactPoint{};
   if (closing) {
+    const auto x_before = x;
     if (!collide(moment, touching, std::nullopt, point, x)) {
       return fmt::format("the impact of {} at t = {:.17g} has no end: bodies jam, or normals depend on each other",
                          names(touching), moment.t);
     }
+    if (touch_only) copy_impulses(x_before, x);
     excluded.assign(contacts_.size(), {});
   }
   auto problem = find_modes(moment, touching, std::move(excluded), point, x);
@@ -174,7 +174,7 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
   ContactPoint point = point_at(moment.t, moment.alpha, x);
   clean(moment, point, x, {});
   // The limit is extrapolated, to the tolerances.
-  const double none = 64.0 * slowest(moment, point, x);
+  const double none = rests_below * slowest(moment, point, x);
   for (const int i : touching) {
     if (point.along(point.velocity, i).norm() > none) continue;
     for (int k = 0; k < point.tangents[at(i)]; ++k) point.velocity(point.tangent_row(i, k)) = 0.0;
@@ -190,60 +190,6 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
   if (std::none_of(touching.begin(), touching.end(), moves)) return std::nullopt;
   return fmt::format("the gaps of {} close at t = {:.17g} and cannot stay closed together: bodies jam", names(touching),
                      moment.t);
-}
-
-/// The impulses, and the velocities behind them; false where there are none.
-bool Contacts::push(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
-                    ContactPoint& point, std::vector<double>& x) {
-  const auto impulses = impact(point, touching, pushed);
-  if (!impulses) return false;
-  const int m = point.contacts();
-  const VectorXd change = values_.responses * *impulses;
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    x[at(system_.velocities[k])] += change(static_cast<Eigen::Index>(k));
-  }
-  for (int i = 0; i < m; ++i) {
-    const auto& contact = contacts_[at(i)];
-    x[at(contact.impulse)] += (*impulses)(i);
-    for (int k = 0; k < contact.tangents(); ++k) x[at(contact.impulse) + 1 + at(k)] += (*impulses)(m * (1 + k) + i);
-  }
-  const double size = point.velocity.cwiseAbs().maxCoeff();
-  point = point_at(moment.t, moment.alpha, x);
-  for (Eigen::Index row = 0; row < point.velocity.size(); ++row) {
-    if (std::abs(point.velocity(row)) <= small_velocity * small_velocity * size + 64.0 * rounding_unit * size)
-      point.velocity(row) = 0.0;
-  }
-  return true;
-}
-
-/// An impact. What would rise by nothing has no restitution: its impulses, too, are those of bodies that come to rest.
-bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
-                       ContactPoint& point, std::vector<double>& x) {
-  const double fastest = point.velocity.cwiseAbs().maxCoeff();
-  const auto x_before = x;
-  auto before = point;
-  for (bool again = true; again;) {
-    x = x_before;
-    point = before;
-    if (!push(moment, touching, pushed, point, x)) return false;
-    again = false;
-    for (const int i : touching) {
-      double& restitution = before.restitution[at(i)];
-      if (restitution == 0.0 || point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
-      restitution = 0.0;
-      again = true;
-    }
-  }
-  // Without restitution it rises by what the others do to it, and their speeds are that small, too.
-  for (const int i : touching) {
-    if (rises_by_nothing(moment, i, point, x)) point.velocity(i) = 0.0;
-  }
-  constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
-  for (int i = 0; i < point.contacts(); ++i) {
-    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * fastest) continue;
-    for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
-  }
-  return true;
 }
 
 std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, const std::vector<int>& touching,
@@ -277,10 +223,17 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
         names(touching), moment.t);
   }
   const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, resting, found, x);
+  determined_ = have_one_motion(point, resting, found, chosen);
   enter(moment, point, found[chosen], x);
   static_cast<void>(project(moment.t, moment.alpha, x, touching));
   bound_speeds(moment, x);
   return std::nullopt;
+}
+
+void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<double>& x) const {
+  std::vector<double> rate(x.size());
+  kernel_.field(moment.t, x.data(), moment.alpha.data(), rate.data());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * rate[i];
 }
 
 /// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin.
@@ -288,15 +241,13 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<
                                  const std::vector<ContactForces>& found, const std::vector<double>& x) {
   std::size_t best = 0;
   double largest = -std::numeric_limits<double>::infinity();
-  const double h = 1e-3 * moment.time_scale;
+  const double h = ahead_by * moment.time_scale;
   constexpr double clear = 1e-4;
   for (std::size_t k = 0; k < found.size(); ++k) {
     auto ahead = x;
     const ContactPoint here = point_at(moment.t, moment.alpha, x);
     enter(moment, here, found[k], ahead);
-    std::vector<double> rate(x.size());
-    kernel_.field(moment.t, ahead.data(), moment.alpha.data(), rate.data());
-    for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] += h * rate[i];
+    move_ahead(moment, h, ahead);
     ContactPoint later = point_at(moment.t + h, moment.alpha, ahead);
     for (const int i : resting) {
       // The sign of the slip is that of the mode.
@@ -328,14 +279,15 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
     const auto& contact = contacts_[at(i)];
     const bool closed = found.modes[at(i)] != ContactMode::open;
     x[at(contact.closed)] = closed ? 1.0 : 0.0;
-    x[at(contact.active)] = closed && basis.takes(i) ? 1.0 : 0.0;
+    x[at(contact.active)] = closed && !contains(found.idle, i) && basis.takes(i) ? 1.0 : 0.0;
     std::fill(x.begin() + contact.stick, x.begin() + contact.force_unit, 0.0);
     set_units(moment, point, i, x);
   }
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
     const double limit = point.friction[at(i)] * found.forces(i);
-    for (int k = 0; found.modes[at(i)] == ContactMode::stick && k < contact.tangents(); ++k) {
+    const bool holds = found.modes[at(i)] == ContactMode::stick && !contains(found.idle, i);
+    for (int k = 0; holds && k < contact.tangents(); ++k) {
       const int row = point.tangent_row(i, k);
       if (basis.takes(row)) {
         x[at(contact.stick + k)] = 1.0;
@@ -414,9 +366,9 @@ void Contacts::forget_impulses(std::vector<double>& x) const {
   }
 }
 
-std::optional<int> Contacts::jump_with_impulse(const std::vector<double>& x) const {
+std::optional<int> Contacts::jump_to_tell(const std::vector<double>& x) const {
   for (const auto& contact : contacts_) {
-    if (x[at(contact.impulse)] != 0.0) return contact.jump;
+    if (x[at(contact.impulse)] != 0.0 || (!determined_ && x[at(contact.closed)] != 0.0)) return contact.jump;
   }
   return std::nullopt;
 }

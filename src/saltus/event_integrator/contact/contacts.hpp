@@ -48,8 +48,8 @@ class Contacts {
     }
     return result;
   }
-  /// Returns the jump of the first contact with an impulse.
-  [[nodiscard]] std::optional<int> jump_with_impulse(const std::vector<double>& x) const;
+  /// Returns the jump of the first contact with an impulse, or of the first closed one if more than one motion follows.
+  [[nodiscard]] std::optional<int> jump_to_tell(const std::vector<double>& x) const;
   /// Gives the modes of another state.
   void copy_modes(const std::vector<double>& from, std::vector<double>& x) const;
 
@@ -61,6 +61,8 @@ class Contacts {
   /// mode ends here; x is at the zero of what ended it. Returns what is wrong if nothing follows.
   [[nodiscard]] std::optional<std::string> resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                                    std::vector<double>& x);
+  /// Returns whether only one motion follows what was last resolved or settled.
+  [[nodiscard]] bool is_determined() const { return determined_; }
   /// Returns, by their jumps, the contacts whose bounces the last impact has ended: the next one would be nothing.
   [[nodiscard]] const std::vector<int>& last_bounces() const { return last_bounces_; }
   /// Ends the bounces of these contacts (by their jumps): their gaps close without an impact.
@@ -84,6 +86,10 @@ class Contacts {
   /// Of the slowest speed, below which a slip in a plane is none: at twice its tolerance a step runs through the rest
   /// unseen, and comes out on the other side as fast as before.
   static constexpr double none_below = 3.0;
+  /// Of the slowest speed: what a limit that is extrapolated may leave, and an approach whose acceleration is 0, too.
+  static constexpr double rests_below = 64.0;
+  /// Of the time scale: where the motion a little later is asked for.
+  static constexpr double ahead_by = 1e-3;
   /// Of gaps, which are lengths: as at a start.
   static constexpr double none_at_start = 1e-12;
 
@@ -110,14 +116,24 @@ class Contacts {
   [[nodiscard]] double pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const;
   [[nodiscard]] bool rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
                                       const std::vector<double>& x) const;
+  [[nodiscard]] bool closes_flatly(const ContactMoment& moment, int contact, const ContactPoint& point,
+                                   const std::vector<double>& x) const;
+  void move_ahead(const ContactMoment& moment, double h, std::vector<double>& x) const;
   void note_last_bounces(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint before,
                          const std::vector<double>& x);
   [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
                                    const std::vector<double>& x) const;
   void set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const;
   void start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction, std::vector<double>& x);
+  void copy_impulses(const std::vector<double>& from, std::vector<double>& x) const;
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
              const std::vector<int>& ended) const;
+  [[nodiscard]] std::vector<std::vector<ContactMode>> modes_that_end(const ContactMoment& moment,
+                                                                     const ContactPoint& point,
+                                                                     const std::vector<int>& ended,
+                                                                     const std::vector<double>& x) const;
+  [[nodiscard]] std::optional<ContactMode> way_back(const ContactMoment& moment, int contact, bool ends,
+                                                    const std::vector<double>& x) const;
   [[nodiscard]] bool touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const;
   bool push(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
             ContactPoint& point, std::vector<double>& x);
@@ -134,7 +150,9 @@ class Contacts {
   void enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
                   bool is_free, std::vector<double>& x);
   void correct_positions(const std::vector<int>& touching, std::vector<double>& x) const;
-  void correct_velocities(std::vector<double>& x) const;
+  void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x) const;
+  void correct_velocities(const Eigen::VectorXd& velocity, std::vector<double>& x) const;
+  void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;
   [[nodiscard]] std::vector<int> held_rows(const std::vector<double>& x) const;
 
   const evaluation::ModelKernel& kernel_;
@@ -142,6 +160,7 @@ class Contacts {
   const std::vector<model::Contact>& contacts_;
   std::vector<bool> guards_;  ///< by event function; empty without contacts
   evaluation::ContactValues values_;
+  bool determined_ = true;
   std::vector<int> last_bounces_;
 };
 

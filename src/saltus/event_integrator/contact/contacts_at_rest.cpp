@@ -32,7 +32,7 @@ double Contacts::pull_on(int contact, const ContactPoint& point, const std::vect
   }
   double acceleration = point.acceleration(contact);
   Eigen::VectorXd forces;
-  if (!rows.held.empty() && rows.solve(point.influence, point.acceleration, forces))
+  if (!rows.held.empty() && rows.solve(point.influence, point.acceleration, forces) != HeldRows::Solution::none)
     acceleration = std::min(acceleration, acceleration + point.influence.row(contact).dot(forces));
   return std::max(0.0, -acceleration);
 }
@@ -46,6 +46,21 @@ bool Contacts::rises_by_nothing(const ContactMoment& moment, int contact, const 
   const double speed = std::abs(point.normal_velocity(contact)), pull = pull_on(contact, point, x);
   return speed * speed <= 2.0 * pull * roundings * gap_terms(contact, x) ||
          speed <= pull * roundings * std::abs(moment.t);
+}
+
+/// Whether a gap closes no faster than velocities are known, as its rate and acceleration vanish together: the rounding
+/// of a gap of (t_0 - t)^3 leaves the time open, and with it the speed v there, as large as a^2 = 2 v da/dt.
+bool Contacts::closes_flatly(const ContactMoment& moment, int contact, const ContactPoint& point,
+                             const std::vector<double>& x) const {
+  const double speed = std::abs(point.normal_velocity(contact)), acceleration = point.acceleration(contact);
+  if (speed > rests_below * slowest(moment, point, x)) return false;
+  auto ahead = x;
+  const double h = ahead_by * moment.time_scale;
+  move_ahead(moment, h, ahead);
+  evaluation::ContactValues later;
+  kernel_.contacts(moment.t + h, ahead.data(), moment.alpha.data(), later);
+  const double rate = std::abs(later.acceleration(contact) - acceleration) / h;
+  return acceleration * acceleration <= 4.0 * speed * rate;
 }
 
 /// Contacts that an impact has closed as slowly as nothing would be left to rise by.
@@ -65,7 +80,7 @@ bool Contacts::comes_to_rest(const ContactMoment& moment, int contact, const Con
                              const std::vector<double>& x) const {
   const auto& [rtol, atol] = moment.tolerances;
   return std::abs(values_.gap(contact)) <= atol + rtol * gap_terms(contact, x) &&
-         (std::abs(point.normal_velocity(contact)) <= 64.0 * slowest(moment, point, x) ||
+         (std::abs(point.normal_velocity(contact)) <= rests_below * slowest(moment, point, x) ||
           rises_by_nothing(moment, contact, point, x));
 }
 

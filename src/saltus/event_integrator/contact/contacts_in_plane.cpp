@@ -65,12 +65,7 @@ void Contacts::set_slip(const ContactPoint& point, int contact, const Eigen::Vec
     change.conservativeResize(3);
     change(2) = 0.0;
   }
-  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
-  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
-  const VectorXd velocities = response * influence.ldlt().solve(change - values_.velocity(rows));
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    x[at(system_.velocities[k])] += velocities(static_cast<Eigen::Index>(k));
-  }
+  change_velocities(rows, change - values_.velocity(rows), x);
 }
 
 /// At rest the force of a slip has no direction: it begins with a speed that is none, but one whose direction is known

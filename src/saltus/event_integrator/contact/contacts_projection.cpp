@@ -51,25 +51,52 @@ void Contacts::correct_positions(const std::vector<int>& touching, std::vector<d
   }
 }
 
-void Contacts::correct_velocities(std::vector<double>& x) const {
-  const auto rows = held_rows(x);
-  if (rows.empty()) return;
+/// The smallest change of velocities that changes these rows by so much; they do not depend on each other.
+void Contacts::change_velocities(const std::vector<int>& rows, const VectorXd& change, std::vector<double>& x) const {
   const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
-  const Eigen::MatrixXd normal = values_.rows(rows, Eigen::all);
-  const VectorXd change = response * (normal * response).ldlt().solve(values_.velocity(rows));
-  const auto before = x;
+  const VectorXd velocities = response * (values_.rows(rows, Eigen::all) * response).ldlt().solve(change);
   for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    x[at(system_.velocities[k])] -= change(static_cast<Eigen::Index>(k));
+    x[at(system_.velocities[k])] += velocities(static_cast<Eigen::Index>(k));
   }
+}
+
+/// @param velocity  before positions were corrected: slips in a plane stay what they were. The smaller they are, the
+///                  more would another velocity turn them, and forces with them.
+void Contacts::correct_velocities(const VectorXd& velocity, std::vector<double>& x) const {
+  auto rows = held_rows(x);
+  if (values_.velocity(rows).isZero(0.0) && values_.velocity == velocity) return;
+  const std::size_t held = rows.size();
+  keep_slips(x, rows);
+  VectorXd change = -values_.velocity(rows);
+  for (std::size_t r = held; r < rows.size(); ++r) change(static_cast<Eigen::Index>(r)) += velocity(rows[r]);
+  const auto before = x;
+  change_velocities(rows, change, x);
   // A velocity that is held by itself is 0, not its rounding.
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const auto row = static_cast<Eigen::Index>(r);
-    if ((normal.row(row).array() != 0.0).count() != 1) continue;
+  for (std::size_t r = 0; r < held; ++r) {
+    const auto row = values_.rows.row(rows[r]);
+    if ((row.array() != 0.0).count() != 1) continue;
     Eigen::Index only = 0;
-    static_cast<void>(normal.row(row).cwiseAbs().maxCoeff(&only));
+    static_cast<void>(row.cwiseAbs().maxCoeff(&only));
     const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
-    const double own = normal(row, only) * before[k], moving = values_.velocity(rows[r]) - own;
+    const double own = row(only) * before[k], moving = values_.velocity(rows[r]) - own;
     if (std::abs(moving) <= 4.0 * rounding_unit * std::abs(own)) x[k] = 0.0;
+  }
+}
+
+/// Adds the tangential rows of slips in a plane that do not depend on the ones that are there.
+void Contacts::keep_slips(const std::vector<double>& x, std::vector<int>& rows) const {
+  const auto m = static_cast<int>(contacts_.size());
+  std::optional<RowBasis> basis;
+  for (int i = 0; i < m; ++i) {
+    const auto& contact = contacts_[at(i)];
+    if (!contact.in_plane || x[at(contact.slip)] == 0.0) continue;
+    if (!basis) {
+      basis.emplace(values_.rows);
+      for (const int row : rows) basis->takes(row);
+    }
+    for (int k = 0; k < 2; ++k) {
+      if (basis->takes(m * (1 + k) + i)) rows.push_back(m * (1 + k) + i);
+    }
   }
 }
 
@@ -77,14 +104,16 @@ bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<d
                        const std::vector<int>& touching) {
   if (none() || held_rows(x).empty()) return false;
   const auto before = x;
+  VectorXd velocity;
   // The gap of a step is within its tolerances: two corrections leave rounding.
   for (int iteration = 0; iteration < 3; ++iteration) {
     kernel_.contacts(t, x.data(), alpha.data(), values_);
+    if (iteration == 0) velocity = values_.velocity;
     const auto x_before = x;
     correct_positions(touching, x);
     if (x == x_before) break;
   }
-  correct_velocities(x);
+  correct_velocities(velocity, x);
   return x != before;
 }
 

@@ -22,6 +22,7 @@ struct Branch {
 };
 
 constexpr double process_rounding = 1e-11;  ///< relative, of sums of products over many pieces
+constexpr double share_rounding = 1e-9;     ///< of rates of impulses, which are 1 where a contact closes
 constexpr double largest_impulse = 1e6;     ///< relative to that of one contact alone: bodies in a wedge jam
 
 class Process {
@@ -174,14 +175,15 @@ class Process {
         if (branch.sticks) rows.hold(row);
       }
     }
-    if (!rows.solve(point_.influence, VectorXd::Zero(velocity_.size()), rate_)) return false;
+    const VectorXd none = VectorXd::Zero(velocity_.size());
+    if (rows.solve(point_.influence, none, rate_) == HeldRows::Solution::none) return false;
     change_ = point_.influence * rate_;
     return true;
   }
 
   [[nodiscard]] bool admits(std::vector<Branch>& branches) {
     if (!rates(branches)) return false;
-    const double least = 1e-9, slow = least * strength_;
+    const double least = share_rounding, slow = least * strength_;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const auto& branch = branches[k];
@@ -192,7 +194,7 @@ class Process {
         if (at_rest && change_(i) < -slow) return false;
         continue;
       }
-      if (branch.normal == Branch::Normal::pushed && at_rest && change_(i) > -slow) return false;
+      if (branch.normal == Branch::Normal::pushed && at_rest && change_(i) > slow) return false;
       if (friction(i) == 0.0) continue;
       if (branch.sticks && point_.along(rate_, i).norm() > friction(i) * normal + least) return false;
       const bool from_rest = !branch.sticks && slip(i).isZero(0.0);
@@ -325,16 +327,22 @@ class Process {
     }
   }
 
-  /// What is above 0 as long as a piece in which slip turns goes on, in its branches.
-  [[nodiscard]] double left(const double* y) const {
+  /// What is above 0 as long as a piece in which slip turns goes on, in its branches: from states and their rates.
+  [[nodiscard]] double left(const double* y, const double* rate) const {
     double least = std::numeric_limits<double>::infinity();
     const auto n = velocity_.size();
+    const VectorXd impulses = Eigen::Map<const VectorXd>(rate + n, n);
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const auto note = [&](double now, double then) {
         if (now != 0.0) least = std::min(least, then / now);
       };
-      if (branches_[k].normal != Branch::Normal::held) note(velocity_(i), y[i]);
+      const bool is_held = branches_[k].normal == Branch::Normal::held;
+      if (!is_held) note(velocity_(i), y[i]);
+      if (is_held) least = std::min({least, impulses(i) + share_rounding, 1.0 + share_rounding - impulses(i)});
+      if (branches_[k].sticks) {
+        least = std::min(least, friction(i) * impulses(i) + share_rounding - point_.along(impulses, i).norm());
+      }
       if (releasing_[k]) note(stored_[k], y[2 * n + static_cast<Eigen::Index>(k)]);
       const bool slips = branches_[k].normal != Branch::Normal::open && tangents(i) == 1 && !branches_[k].sticks;
       if (slips) note(velocity_(m_ + i), y[m_ + i]);
@@ -360,12 +368,12 @@ class Process {
       return stepper.attempt(field, 0.0, y.data(), slope.data(), h, tolerances) == ode::Attempt::finite;
     };
     while (!try_length(length) || stepper.error_norm() > 1.0) length *= 0.5;
-    if (left(stepper.x_new()) < 0.0) {
+    if (left(stepper.x_new(), stepper.slope_new()) < 0.0) {
       double low = 0.0, high = length;
       for (int halving = 0; halving < 60; ++halving) {
         const double middle = 0.5 * (low + high);
         if (!try_length(middle)) break;
-        (left(stepper.x_new()) < 0.0 ? high : low) = middle;
+        (left(stepper.x_new(), stepper.slope_new()) < 0.0 ? high : low) = middle;
       }
       static_cast<void>(try_length(high));
       end_branches(stepper.x_new());

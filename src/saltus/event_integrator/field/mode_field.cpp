@@ -17,6 +17,7 @@ ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha
       exit_forms_(kernel) {
   const auto n_psi = at(kernel.switching_functions());
   for (auto& f : f_) f.resize(at(kernel.states()));
+  rows_.correction.resize(at(kernel.states()));
   for (auto& corner : corner_) corner.resize(n_psi);
   trial_.resize(n_psi);
   alpha_.resize(n_psi);
@@ -52,7 +53,14 @@ ode::Attempt ModeField::attempt(ode::Stepper& stepper, double t, const double* x
     if (stages.linear != nullptr) return stepper.attempt(f, t, x, slope, h, tolerances, stages);
   }
   if (stepper.wants_pattern() && solve_ != SlidingSolve::higher_order) {
-    return stepper.attempt(f, t, x, slope, h, tolerances, {.functions = {}, .pattern = kernel_.jacobian_pattern()});
+    const auto of_region = [this](double t_start, const double* x_start, double* entries) {
+      return kernel_.field_jacobian(t_start, x_start, constants_[0].alpha.data(), entries);
+    };
+    const ode::JacobianFunction jacobian(of_region);
+    return stepper.attempt(f, t, x, slope, h, tolerances,
+                           {.functions = {},
+                            .pattern = kernel_.jacobian_pattern(),
+                            .jacobian = solve_ == SlidingSolve::none ? &jacobian : nullptr});
   }
   if (stepper.stages_function(stages.functions) == nullptr) return stepper.attempt(f, t, x, slope, h, tolerances);
   const long before = stepper.evaluations();

@@ -331,6 +331,7 @@ void Recorder::jumped(double t, std::span<const ExecutedJump> jumps, const ModeS
     add_reason(entry, why_executed(system_.jumps[entry.entry]));
     if (k == 0 && before != nullptr) entry.mode = number(*before);
     if (k + 1 == jumps.size()) add_transition(entry, transition);
+    if (!jumps[k].unique) entry.unique = false;
   }
 }
 

@@ -48,6 +48,7 @@ struct SurfaceSwitch {
 struct ExecutedJump {
   int jump = 0;
   std::vector<double> x, x_after;
+  bool unique = true;
 };
 
 class Recorder {

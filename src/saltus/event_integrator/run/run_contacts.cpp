@@ -28,11 +28,12 @@ bool Run::begin_contacts() {
     fail(Termination::outside_class, std::move(*problem));
     return false;
   }
-  if (const auto jump = contacts_.jump_with_impulse(here_.x)) {
+  if (const auto jump = contacts_.jump_to_tell(here_.x)) {
     ExecutedJump& executed = cascade_.executed().append();
     executed.x = before;
     executed.jump = *jump;
     executed.x_after = here_.x;
+    executed.unique = contacts_.is_determined();
   }
   return true;
 }

@@ -34,6 +34,8 @@ class RadauSystems {
   /// Returns columns that one difference serves together; empty where the matrix is dense.
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& groups() const { return groups_; }
 
+  /// Returns the entries of J, in the order of the pattern or column by column.
+  [[nodiscard]] double* entries() { return pattern_ != nullptr ? entries_.data() : jacobian_.data(); }
   /// Sets column j of J from the difference of slopes that its group gives; false where an entry is not finite.
   [[nodiscard]] bool set_column(Eigen::Index column, const Vector& difference, double increment);
   /// Factorizes; returns false where a matrix is singular.

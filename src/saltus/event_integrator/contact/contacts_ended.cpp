@@ -1,0 +1,55 @@
+// Which modes of contacts end, and what cannot follow them.
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/base/at.hpp"
+#include "saltus/event_integrator/contact/contacts.hpp"
+#include "saltus/event_integrator/contact/row_basis_internal.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
+
+namespace saltus::event_integrator {
+
+/// By contact. Where others keep a gap closed, too, its force may end and the contact go on without it.
+std::vector<std::vector<ContactMode>> Contacts::modes_that_end(const ContactMoment& moment, const ContactPoint& point,
+                                                               const std::vector<int>& ended,
+                                                               const std::vector<double>& x) const {
+  std::vector<std::vector<ContactMode>> result(contacts_.size());
+  const auto is_shared = [&](int contact) {
+    RowBasis others(values_.rows);
+    for (int i = 0; i < point.contacts(); ++i) {
+      if (i != contact && mode_of(i, x) != ContactMode::open) others.takes(i);
+    }
+    return others.holds(contact);
+  };
+  for (int i = 0; i < point.contacts(); ++i) {
+    const auto mode = mode_of(i, x);
+    const bool slowly = mode == ContactMode::slip && point.along(point.velocity, i).isZero(0.0),
+               ends = contains(ended, i);
+    if (ends && !slowly && !is_shared(i) && !reaches_a_speed(moment, i, point, x)) result[at(i)].push_back(mode);
+    if (const auto back = way_back(moment, i, ends, x)) result[at(i)].push_back(*back);
+  }
+  return result;
+}
+
+/// The slip along the friction of a contact that sticks at the edge of its cone, or has just reached it.
+std::optional<ContactMode> Contacts::way_back(const ContactMoment& moment, int contact, bool ends,
+                                              const std::vector<double>& x) const {
+  const auto& entry = contacts_[at(contact)];
+  if (mode_of(contact, x) != ContactMode::stick || entry.in_plane) return std::nullopt;
+  const double share = x[at(entry.share)];
+  double friction = std::abs(share) == 1.0 ? -share : 0.0;
+  if (ends && x[at(entry.stick)] != 0.0) {
+    std::vector<double> values(guards_.size());
+    kernel_.functions(moment.t, x.data(), moment.alpha.data(), values.data());
+    // They are negative inside of the cone.
+    const int first = entry.has_gap ? 1 : 0;
+    const double below = -values[at(kernel_.jump_guard(entry.jump, first))],
+                 above = -values[at(kernel_.jump_guard(entry.jump, first + 1))];
+    constexpr double at_edge = 1e-6;
+    if (std::min(below, above) <= at_edge * std::max(below, above)) friction = above - below;
+  }
+  if (friction == 0.0) return std::nullopt;
+  return friction > 0.0 ? ContactMode::slip_up : ContactMode::slip_down;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,94 @@
+// Impacts of contacts, and what counts as one.
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
+#include "saltus/event_integrator/contact/contacts.hpp"
+#include "saltus/event_integrator/contact/impact.hpp"
+#include "saltus/event_integrator/contact/row_basis_internal.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Of velocities behind an impact, from the size of those before it.
+void drop_roundings(double size, ContactPoint& point) {
+  for (double& velocity : point.velocity) {
+    if (std::abs(velocity) <= 64.0 * rounding_unit * size) velocity = 0.0;
+  }
+}
+
+}  // namespace
+
+/// The impulses, and the velocities behind them; false where there are none.
+bool Contacts::push(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
+                    ContactPoint& point, std::vector<double>& x) {
+  const auto impulses = impact(point, touching, pushed);
+  if (!impulses) return false;
+  const int m = point.contacts();
+  const VectorXd change = values_.responses * *impulses;
+  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+    x[at(system_.velocities[k])] += change(static_cast<Eigen::Index>(k));
+  }
+  for (int i = 0; i < m; ++i) {
+    const auto& contact = contacts_[at(i)];
+    x[at(contact.impulse)] += (*impulses)(i);
+    for (int k = 0; k < contact.tangents(); ++k) x[at(contact.impulse) + 1 + at(k)] += (*impulses)(m * (1 + k) + i);
+  }
+  const double size = point.velocity.cwiseAbs().maxCoeff();
+  point = point_at(moment.t, moment.alpha, x);
+  drop_roundings(size, point);
+  return true;
+}
+
+/// An impact. What would rise by nothing has no restitution: its impulses, too, are those of bodies that come to rest.
+bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
+                       ContactPoint& point, std::vector<double>& x) {
+  const double fastest = point.velocity.cwiseAbs().maxCoeff();
+  const auto x_before = x;
+  auto before = point;
+  for (bool again = true; again;) {
+    x = x_before;
+    point = before;
+    if (!push(moment, touching, pushed, point, x)) return false;
+    again = false;
+    for (const int i : touching) {
+      double& restitution = before.restitution[at(i)];
+      if (restitution == 0.0 || point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
+      restitution = 0.0;
+      again = true;
+    }
+  }
+  // Without restitution it rises by what the others do to it, and their speeds are that small, too.
+  std::vector<int> still;
+  RowBasis basis(values_.rows);
+  for (const int i : touching) {
+    if (point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
+    if (basis.takes(i)) still.push_back(i);
+  }
+  if (!still.empty()) {
+    for (const int i : touching) {
+      if (point.velocity(i) == 0.0 && basis.takes(i)) still.push_back(i);
+    }
+    change_velocities(still, -values_.velocity(still), x);
+    point = point_at(moment.t, moment.alpha, x);
+    point.velocity(still).setZero();
+    drop_roundings(fastest, point);
+  }
+  constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
+  for (int i = 0; i < point.contacts(); ++i) {
+    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * fastest) continue;
+    for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
+  }
+  return true;
+}
+
+void Contacts::copy_impulses(const std::vector<double>& from, std::vector<double>& x) const {
+  for (const auto& contact : contacts_) {
+    std::copy_n(from.begin() + contact.impulse, 1 + contact.tangents(), x.begin() + contact.impulse);
+  }
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,129 @@
+// Contacts whose forces the motion does not determine, and motions that it leaves open with them.
+#include <cmath>
+#include <numbers>
+
+#include "run_model.hpp"
+
+namespace saltus::event_integrator::testing {
+namespace {
+
+using casadi::SX;
+using result::ContactMode;
+using result::EventKind;
+
+constexpr double weight = 10.0;
+const std::vector<std::string> in_plane{"x", "z"}, rates{"vx", "vz"};
+
+struct Foot {
+  const char* name;
+  double side, friction;
+};
+
+/// A block of height 2 h on two feet, pulled by t: both feet slip along the same direction.
+Integration pulled_on_feet(const std::vector<Foot>& feet) {
+  model::Builder model("block");
+  constexpr double h = 0.2;
+  static_cast<void>(model.state("x", {0.0}));
+  const SX z = model.state("z", {h}), a = model.state("a", {0.0});
+  for (const char* name : {"vx", "vz", "w"}) static_cast<void>(model.state(name, {0.0}));
+  model.mechanics({.positions = {"x", "z", "a"},
+                   .velocities = {"vx", "vz", "w"},
+                   .potential = weight * z,
+                   .force = {{"vx", model.time()}}});
+  for (const auto& [name, side, friction] : feet) {
+    model.contact(name, z + side * sin(a) - h * cos(a), {.tangent = {{"x", 1.0}, {"a", h}}, .friction = friction});
+  }
+  return run_tightly(model, 5.0);
+}
+
+/// The feet carry 5 -+ 0.2 F under a friction of F = 0.2 N_1 + 0.4 N_2 in all, of which each may have any part.
+TEST(ContactsWithOpenForces, TwoFeetSlipOnceBothAreAtTheirEdge) {
+  const Foot left{"left", -0.5, 0.2}, right{"right", 0.5, 0.4};
+  const double limit = 3.0 / (1.0 - 0.2 * (0.4 - 0.2));
+  for (const auto& feet : {std::vector{left, right}, std::vector{right, left}}) {
+    const auto run = pulled_on_feet(feet);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_EQ(run.events.size(), 1U);
+    EXPECT_EQ(run.events[0].kind, EventKind::slip);
+    EXPECT_NEAR(run.events[0].t, limit, 1e-8);
+    EXPECT_EQ(run.events[0].unique, true);
+    EXPECT_EQ(run.events[0].contact_modes_after, std::vector<ContactMode>(2, ContactMode::slip));
+    EXPECT_NEAR(run.final.x[3], 0.5 * (5.0 - limit) * (5.0 - limit), 1e-8);
+  }
+}
+
+/// Two contacts at one place: their normal forces are open, and if one of them has more friction, the motion is.
+Integration pulled_on_one_place(double first, double second) {
+  model::Builder model("block");
+  static_cast<void>(model.state("x", {0.0}));
+  const SX z = model.state("z", {0.0});
+  for (const auto& rate : rates) static_cast<void>(model.state(rate, {0.0}));
+  model.mechanics(
+      {.positions = in_plane, .velocities = rates, .potential = weight * z, .force = {{"vx", model.time()}}});
+  model.contact("one", z, {.tangent = {{"x", 1.0}}, .friction = first});
+  model.contact("two", z, {.tangent = {{"x", 1.0}}, .friction = second});
+  return run_tightly(model, 5.0);
+}
+
+TEST(ContactsWithOpenForces, OfTwoAtOnePlaceFrictionDecidesWhetherTheMotionIsOpen) {
+  const auto same = pulled_on_one_place(0.3, 0.3);
+  ASSERT_EQ(same.status.termination, result::Termination::completed) << same.status.message;
+  ASSERT_EQ(same.events.size(), 1U);
+  EXPECT_EQ(same.events[0].kind, EventKind::slip);
+  EXPECT_NEAR(same.events[0].t, 3.0, 1e-8);
+  EXPECT_EQ(same.events[0].unique, true);
+  EXPECT_NEAR(same.final.x[2], 2.0, 1e-8);
+  for (const auto& [first, second] : {std::pair{0.2, 0.4}, std::pair{0.4, 0.2}}) {
+    const auto run = pulled_on_one_place(first, second);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_FALSE(run.events.empty());
+    EXPECT_EQ(run.events.back().kind, EventKind::slip);
+    EXPECT_EQ(run.events.back().unique, false);
+    EXPECT_NE(run.events.back().reason.find("more than one motion"), std::string::npos);
+  }
+}
+
+/// Between two walls it falls, or any pressure holds it.
+TEST(ContactsWithOpenForces, ABlockInAViseMayFallOrNot) {
+  model::Builder model("block");
+  const SX x = model.state("x", {0.0}), z = model.state("z", {0.0});
+  for (const auto& rate : rates) static_cast<void>(model.state(rate, {0.0}));
+  model.mechanics({.positions = in_plane, .velocities = rates, .potential = weight * z});
+  model.contact("left", x, {.tangent = {{"z", 1.0}}, .friction = 0.5});
+  model.contact("right", -x, {.tangent = {{"z", 1.0}}, .friction = 0.5});
+  const auto run = run_tightly(model, 1.0);
+  ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+  ASSERT_EQ(run.events.size(), 1U);
+  EXPECT_EQ(run.events[0].t, 0.0);
+  EXPECT_EQ(run.events[0].unique, false);
+}
+
+/// A load goes around on a table with four legs, of which three suffice.
+TEST(ContactsWithOpenForces, ATableStandsOnAllItsLegs) {
+  model::Builder model("table");
+  const SX z = model.state("z", {0.0}), a = model.state("a", {0.0}), b = model.state("b", {0.0});
+  for (const char* name : {"vz", "va", "vb"}) static_cast<void>(model.state(name, {0.0}));
+  const SX t = model.time();
+  model.mechanics({.positions = {"z", "a", "b"},
+                   .velocities = {"vz", "va", "vb"},
+                   .force = {{"vz", SX(-weight)}, {"va", -0.8 * weight * cos(t)}, {"vb", -0.8 * weight * sin(t)}}});
+  int leg = 0;
+  for (const double along : {-1.0, 1.0}) {
+    for (const double across : {-1.0, 1.0}) model.contact("leg" + std::to_string(++leg), z + along * a + across * b);
+  }
+  const auto run = run_tightly(model, 4.0 * std::numbers::pi);
+  ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+  EXPECT_TRUE(run.events.empty());
+  EXPECT_EQ(run.final.contact_modes, std::vector<ContactMode>(4, ContactMode::closed));
+  for (const auto& outputs : run.trajectory.outputs) {
+    double carried = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_GE(outputs[3 * k + 1], -1e-9);
+      carried += outputs[3 * k + 1];
+    }
+    EXPECT_NEAR(carried, weight, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator::testing
