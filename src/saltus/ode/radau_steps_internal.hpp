@@ -29,7 +29,7 @@ class RadauSteps final : public Radau {
 
   Attempt attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) override;
   [[nodiscard]] double error_norm() const override { return error_norm_; }
-  void dense(double* coefficients) const override;
+  void dense(double* coefficients) override;
   void restart() override;
 
  private:
@@ -40,6 +40,7 @@ class RadauSteps final : public Radau {
   static constexpr auto last = static_cast<Eigen::Index>(stages) - 1;
 
   void begin(const RadauTrial& trial);
+  const std::vector<double>& polynomial();
   Outcome solve(const RadauTrial& trial);
   void start_values(double h);
   void transform_start();
@@ -65,13 +66,14 @@ class RadauSteps final : public Radau {
   double h_ = 0.0;
   Vector start_;
 
-  // The step before, whose polynomial gives starting values.
-  struct Previous {
+  /// As from dense().
+  struct Polynomial {
     bool known = false;
     double h = 0.0;
-    std::vector<double> polynomial;  ///< as from dense()
+    std::vector<double> coefficients;
   };
-  Previous previous_;
+  Polynomial previous_;  ///< of the step before: it gives starting values
+  Polynomial own_;       ///< of the last attempt
 
   // Jacobian and factors.
   bool jacobian_known_ = false;
@@ -82,17 +84,16 @@ class RadauSteps final : public Radau {
   };
   Factors factors_;
   double rate_ = 0.0;  ///< of convergence of the last iteration
-  RadauSystems systems_;
+  RadauSystems<stages / 2> systems_;
   double largest_ = 0.0;  ///< component of start_
   std::vector<std::size_t> one_column_;
 
   Matrix z_, w_, slopes_;  ///< n x stages: increments, transformed increments, f at the stages
   Matrix corrections_;     ///< of w_
   struct Work {
-    explicit Work(Eigen::Index n)
-        : argument(n), difference_slope(n), right(n), solution(n), complex_right(n), complex_solution(n) {}
+    explicit Work(Eigen::Index n) : argument(n), difference_slope(n), right(n), solution(n), all_right(n, last + 1) {}
     Vector argument, difference_slope, right, solution;
-    Eigen::VectorXcd complex_right, complex_solution;
+    Matrix all_right;
   };
   Work work_;
 };

@@ -105,6 +105,45 @@ TEST(LocalSteps, SmallerTolerancesGiveSmallerErrors) {
   EXPECT_LT(errors[1], errors[0] / 30.0);
 }
 
+/// Blocks on springs, q_i'' = q_(i-1) - 2.5 q_i + q_(i+1) - sign(q_i' - 0.2): they stick and slip. With `tilt` the
+/// surfaces are those of q_i' + tilt q_i, so that what is slid on is no state.
+Integration run_blocks(int blocks, double tilt, const IntegrationOptions& options) {
+  Builder b("blocks");
+  std::vector<SX> q, v;
+  for (int i = 1; i <= blocks; ++i) {
+    q.push_back(b.state("q" + std::to_string(i), {std::sin(1.7 * i)}));
+    v.push_back(b.state("v" + std::to_string(i), {0.5 * std::cos(2.3 * i)}));
+  }
+  for (std::size_t i = 0; i < q.size(); ++i) {
+    const std::string number = std::to_string(i + 1);
+    const SX friction = 2 * b.step(b.switching("s" + number, v[i] + tilt * q[i] - 0.2)) - 1;
+    SX force = -2.5 * q[i] - friction;
+    if (i > 0) force += q[i - 1];
+    if (i + 1 < q.size()) force += q[i + 1];
+    b.dynamics("q" + number, v[i]);
+    b.dynamics("v" + number, force);
+  }
+  return testing::run_model(b, options);
+}
+
+TEST(LocalSteps, OfBlocksThatStickHaveTheEventsOfAllTheirSteps) {
+  for (const double tilt : {0.0, 0.1}) {
+    const auto run = [&](ode::Method method, double rtol, bool local) {
+      auto options = with(method, rtol, local);
+      options.until = 12.0;
+      return run_blocks(100, tilt, options);
+    };
+    const auto exact = run(ode::Method::dop853, 1e-12, false);
+    int left = 0;
+    for (const auto& event : exact.events) left += event.kind == result::EventKind::leave_sliding ? 1 : 0;
+    EXPECT_GT(left, 30);
+    const auto all = run(ode::Method::dop853, 1e-8, false), local = run(ode::Method::dop853, 1e-8, true);
+    expect_same(local, exact, 2e-7);
+    EXPECT_LT(local.statistics.rhs_evaluations, all.statistics.rhs_evaluations / 2);
+    expect_same(run(ode::Method::dopri5, 1e-8, true), exact, 2e-7);
+  }
+}
+
 TEST(LocalSteps, SmallSystemsHaveTheSameBitsWithAndWithout) {
   const Network network{30, 0.3, 2};
   const auto all = run(network, with(ode::Method::dopri5, 1e-8, false));

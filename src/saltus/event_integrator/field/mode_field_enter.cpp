@@ -40,7 +40,7 @@ void ModeField::enter(const ModeState& state) {
   }
   single_ = is_single() ? sliding_.front() : -1;
   find_rooted_rows();
-  if (sliding_.size() != 1) return;
+  if (sliding_.size() != 1) return prepare_corners();
   between_.clear();
   for (std::size_t corner = 0; corner < 2; ++corner) {
     corner_[corner] = state.corner_alpha[corner];
@@ -54,6 +54,18 @@ void ModeField::enter(const ModeState& state) {
     }
   }
   if (same_rows) refer_to_constants();
+}
+
+/// Of several sliding surfaces: all selections at 0, and those at 1 that no other one influences.
+void ModeField::prepare_corners() {
+  for (auto& corner : corner_) {
+    corner = start_alpha_;
+    for (const int j : sliding_) corner[at(j)] = 0.0;
+  }
+  for (const std::size_t row : groups_.alone) corner_[1][at(sliding_[row])] = 1.0;
+  for (std::size_t corner = 0; corner < 2; ++corner) {
+    kernel_.prepare_field(corner_[corner].data(), constants_[corner]);
+  }
 }
 
 void ModeField::resize_rows() {

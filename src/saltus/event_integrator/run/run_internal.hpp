@@ -102,8 +102,10 @@ class Run {
   bool leave(const Located& located, const EventFunction& exit);
   void go_on_behind(const Located& located, const std::vector<double>& x, const SurfaceSwitch& change);
   void begin_search(const SurfaceSwitch& change);
+  void keep_step(int surface);
   Arrival arrive(OutputRows::Arrival row);
   void follow_change_of_mode();
+  void row_behind();
   void write_rows_behind(const Arrival& arrival, bool event);
   Step depart(const Arrival& arrival);
   [[nodiscard]] bool selections_jumped() const;
@@ -212,6 +214,7 @@ class Run {
     std::vector<long> cells_before;
     CellChange cell_change = CellChange::none;
     bool jumped = false;
+    bool evaluated = false;  ///< the field of the mode behind it, where that begins, and nothing since
     std::vector<int> freed;  ///< surfaces that a guard has kept at zero, which it has released
     SwitchingPoint switching_point;
     Transition transition;

@@ -201,7 +201,8 @@ Run::Step Run::reject(double error) {
 /// The first event of the last attempt, which ends at t_new; nullopt if there is none.
 std::optional<Run::Step> Run::first_event(double t_new) {
   // Events must not depend on the rows: where nothing can vanish there is no search, with and without a dense output.
-  const bool may_vanish = search_.may_vanish(steps_.stepper());
+  // A search is as fast where that is there already.
+  const bool may_vanish = steps_.stepper().follows() || search_.may_vanish(steps_.stepper());
   if (!may_vanish && !rows_.any_before(t_new)) return std::nullopt;
   zeros_.forget();  // the search finds the roundings of functions anew
   if (!steps_.make_dense()) {

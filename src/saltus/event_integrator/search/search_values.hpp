@@ -56,6 +56,13 @@ struct FunctionLevels {
   void set(std::size_t function, double rounding, double wanted);
 };
 
+/// Holds surfaces whose mode is another one than before, ascending, and by surface which exits may have changed with
+/// them.
+struct TurnedSurfaces {
+  std::vector<std::size_t> surfaces;
+  std::vector<bool> beside;
+};
+
 /// Holds bounds of the states over a step.
 struct StepRange {
   std::vector<double> low, high;
