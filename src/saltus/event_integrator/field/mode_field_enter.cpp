@@ -88,6 +88,20 @@ void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& oth
   constants_[0] = other;
 }
 
+void ModeField::cross(std::size_t surface, double alpha) {
+  linear_motion_.forget();
+  known_ = nullptr;
+  start_alpha_[surface] = alpha_[surface] = constants_[0].alpha[surface] = alpha;
+  constants_[0].motion = nullptr;
+  constants_[0].direct = nullptr;
+}
+
+bool ModeField::prepare() {
+  if (constants_[0].motion != nullptr || constants_[0].alpha.empty()) return false;
+  kernel_.prepare_field(alpha_.data(), constants_[0]);
+  return true;
+}
+
 void ModeField::slide_from_region(std::size_t surface, double selection, Region side,
                                   const evaluation::FieldConstants& other) {
   linear_motion_.forget();

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "saltus/base/without_repeats.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
@@ -123,9 +122,9 @@ bool Run::collect_surfaces(const Located& located) {
     }
     if (function.kind == FunctionKind::instability) switching_point.destabilised.push_back(function.index);
     if (function.kind == FunctionKind::nested && jumps_while_sliding(function.index)) return false;
-    const auto place = std::lower_bound(switching_point.at_zero.begin(), switching_point.at_zero.end(), function.index);
-    if (place == switching_point.at_zero.end() || *place != function.index)
-      switching_point.at_zero.insert(place, function.index);
+    auto& at_zero = switching_point.at_zero;
+    const auto behind = std::lower_bound(at_zero.begin(), at_zero.end(), function.index);
+    if (behind == at_zero.end() || *behind != function.index) at_zero.insert(behind, function.index);
     switching_point.touched.push_back(function.index);
   }
   return true;

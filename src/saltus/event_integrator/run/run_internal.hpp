@@ -93,6 +93,7 @@ class Run {
   [[nodiscard]] bool is_ordinary(const Located& located) const;
   bool switch_fast(const Located& located);
   bool meet(const Located& located, int surface);
+  bool cross_locally(const Located& located, int surface);
   bool pass(const Located& located, int surface);
   bool pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha);
   void pass_field(int surface, double alpha, double selection);

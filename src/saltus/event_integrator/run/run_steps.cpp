@@ -131,6 +131,7 @@ Run::Step Run::accept(double t_new) {
   steps_.accepted(h);
   const bool projected = field_.project(here_.t, here_.x.data());
   const bool follows = steps_.stepper().follows();
+  if (follows) field_.prepare();
   if (holding_.project(here_.t, here_.state.alpha, here_.x) || projected || follows) {
     field_(here_.t, here_.x.data(), here_.slope.data());
   } else {
@@ -211,7 +212,8 @@ std::optional<Run::Step> Run::first_event(double t_new) {
   }
   if (!may_vanish) return std::nullopt;
   Hit hit;
-  const auto outcome = search_.search(steps_.dense(), hit);
+  const auto location = steps_.stepper().follows() ? EventSearch::Location::along : EventSearch::Location::retaken;
+  const auto outcome = search_.search(steps_.dense(), location, hit);
   if (outcome == SearchOutcome::none) return std::nullopt;
   if (outcome == SearchOutcome::unresolved) return shorten_to(0.5);
   note_time_scale(t_new - here_.t);

@@ -268,7 +268,7 @@ void EventSearch::find_candidates() {
   if (candidates_.size() > 1) std::sort(candidates_.begin(), candidates_.end());
 }
 
-SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
+SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location, Hit& hit) {
   if (mode_.present == 0) return SearchOutcome::none;
   find_suspects(step);
   if (suspects_.empty()) return SearchOutcome::none;
@@ -287,7 +287,8 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
   }
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
   if (outcome == SearchOutcome::hit) {
-    if (suspects_.size() == mode_.present) {  // all of them, whatever the bounds
+    // All of them whatever the bounds, or within bounds that hold for the location.
+    if (suspects_.size() == mode_.present || location == Location::along) {
       candidates_ = suspects_;
       return outcome;
     }

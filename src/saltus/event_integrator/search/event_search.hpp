@@ -51,8 +51,10 @@ class EventSearch {
   [[nodiscard]] bool crosses() const { return mode_.plain && mode_.state.sliding.empty() && held_.guards.empty(); }
   /// Returns whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
   [[nodiscard]] bool may_vanish(const ode::Stepper& stepper);
+  /// Says how a hit is located: by steps of other lengths, or along this dense output.
+  enum class Location { retaken, along };
   /// Finds the first sign change in (0, 1] of any function.
-  SearchOutcome search(const ode::DenseStep& step, Hit& hit);
+  SearchOutcome search(const ode::DenseStep& step, Location location, Hit& hit);
   /// Returns, behind a hit, the functions that may vanish within the step, or close by; ascending.
   [[nodiscard]] const std::vector<std::size_t>& candidates() const { return candidates_; }
   /// Evaluates some functions at one point, less their offsets.

@@ -36,10 +36,9 @@ bool LocalField::is_known() {
 
 bool LocalField::begin(int surface, const ModeState& mode) {
   mode_ = &mode;
-  alpha_ = mode.alpha;
   for (const std::size_t row : rows_) inside_[row] = false;
   rows_.clear();
-  for (const std::size_t row : rows_of_selection(surface)) add(row);
+  for (const std::size_t row : structure_->rows_of_selection[at(surface)]) add(row);
   return complete();
 }
 
@@ -102,6 +101,11 @@ bool LocalField::find_selections() {
     }
   }
   drop_repeats(surfaces);
+  selections_ = mode_->alpha.data();
+  if (!surfaces.empty()) {
+    alpha_ = mode_->alpha;
+    selections_ = alpha_.data();
+  }
   selected_.clear();
   for (const std::size_t j : surfaces) {
     selected_.push_back(slid(j));
@@ -148,11 +152,11 @@ void LocalField::find_border() {
   }
 }
 
-/// grad psi . f + d psi/dt, for the selections in alpha_.
+/// grad psi . f + d psi/dt, for the selections in force.
 double LocalField::velocity(const Slid& surface, double t) const {
   double rate = gradients_.rate[surface.surface];
   for (std::size_t k = surface.begin; k < surface.end; ++k) {
-    rate += gradients_.coefficient[k] * kernel_.field_row(gradients_.column[k], t, x_.data(), alpha_.data());
+    rate += gradients_.coefficient[k] * kernel_.field_row(gradients_.column[k], t, x_.data(), selections_);
   }
   return rate;
 }
@@ -172,7 +176,7 @@ void LocalField::operator()(const ode::DenseStep& others, double t, const double
   for (const std::size_t input : inputs_) x_[input] = others.value(input, theta);
   for (std::size_t i = 0; i < rows_.size(); ++i) x_[rows_[i]] = y[i];
   select(t);
-  for (const std::size_t row : rows_) slope_[row] = kernel_.field_row(row, t, x_.data(), alpha_.data());
+  for (const std::size_t row : rows_) slope_[row] = kernel_.field_row(row, t, x_.data(), selections_);
   // What rounding has left of psi'.
   for (const auto& surface : held_) {
     double normal = gradients_.rate[surface.surface], square = 0.0;

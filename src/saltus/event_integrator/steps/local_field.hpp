@@ -20,8 +20,11 @@ class LocalField {
 
   /// Returns whether rows of f can be evaluated one by one. Cost: the first call finds its structure.
   [[nodiscard]] bool is_known();
-  [[nodiscard]] const std::vector<std::size_t>& rows_of_selection(int surface) const {
-    return structure_->rows_of_selection[static_cast<std::size_t>(surface)];
+  /// Calls visit(state) for the states that a surface is made of.
+  template <class Visit>
+  void each_state_of(int surface, Visit visit) const {
+    const auto [number, begin, end] = slid(static_cast<std::size_t>(surface));
+    for (std::size_t k = begin; k < end; ++k) visit(gradients_.column[k]);
   }
 
   /// Begins with the rows that hold a selection, in a mode. Returns false where that is no part for this, as grow()
@@ -59,7 +62,8 @@ class LocalField {
   evaluation::AffineRows gradients_;                ///< of the switching functions
   std::vector<std::vector<std::size_t>> of_state_;  ///< surfaces whose gradient has it
   const ModeState* mode_ = nullptr;
-  std::vector<double> alpha_;            ///< n_psi, of the mode and the last evaluation
+  std::vector<double> alpha_;            ///< n_psi, of the mode and the last evaluation, where something slides there
+  const double* selections_ = nullptr;   ///< these, or those of the mode
   std::vector<bool> inside_, is_input_;  ///< by state
   std::vector<std::size_t> rows_, inputs_, border_;
   std::vector<Slid> selected_;     ///< surfaces whose selections the rows hold

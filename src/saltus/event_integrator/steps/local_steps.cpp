@@ -32,14 +32,10 @@ LocalSteps::LocalSteps(const IntegrationOptions& options, const evaluation::Mode
 
 bool LocalSteps::applies() { return wanted_ && field_.is_known(); }
 
-bool LocalSteps::slope_behind(int surface, double t, const double* x, const std::vector<double>& alpha,
-                              const std::vector<double>& before, std::vector<double>& slope) {
-  if (!applies()) return false;
-  slope = before;
-  for (const std::size_t row : field_.rows_of_selection(surface)) {
-    slope[row] = kernel_.field_row(row, t, x, alpha.data());
-  }
-  return true;
+void LocalSteps::renew_slope(int surface, double t, const double* x, const std::vector<double>& alpha,
+                             std::vector<double>& slope) const {
+  field_.each_state_of(surface,
+                       [&](std::size_t state) { slope[state] = kernel_.field_row(state, t, x, alpha.data()); });
 }
 
 /// One step, from the beginning of what is known to its end, which is cut where the error asks for it.

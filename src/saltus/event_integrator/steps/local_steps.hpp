@@ -23,10 +23,11 @@ class LocalSteps {
   LocalSteps(const IntegrationOptions& options, const evaluation::ModelKernel& kernel,
              const StepTolerances& tolerances);
 
-  /// Finds the slope behind a surface that is crossed from that before it, where nothing slides: `alpha` are the
-  /// selections behind. False where few rows do not tell.
-  [[nodiscard]] bool slope_behind(int surface, double t, const double* x, const std::vector<double>& alpha,
-                                  const std::vector<double>& before, std::vector<double>& slope);
+  /// Returns whether there are such steps of this system. Cost: the first call finds its structure.
+  [[nodiscard]] bool applies();
+  /// Evaluates the slope at a point in the states that a surface is made of.
+  void renew_slope(int surface, double t, const double* x, const std::vector<double>& alpha,
+                   std::vector<double>& slope) const;
   /// Returns the solution behind the switch of a surface at (t, x), a point of the step, in the mode behind: to the end
   /// of the step, or to where the error of the part allows. `error` is that of the step of all states. Null where most
   /// of the states would have to be integrated, or surfaces there that are slid on influence each other. Stays as it is
@@ -37,7 +38,6 @@ class LocalSteps {
   [[nodiscard]] double next_length() const { return next_length_; }
 
  private:
-  [[nodiscard]] bool applies();
   bool integrate(const std::vector<double>& x);
   [[nodiscard]] bool is_felt() const;
 

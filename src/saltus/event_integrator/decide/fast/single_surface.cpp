@@ -110,22 +110,25 @@ double SingleSurface::terms_of(const SwitchingPoint& switching_point) const {
   return terms;
 }
 
-/// Whether rows of f tell what the surface does, the others being those of a field that is known, and finite.
-bool SingleSurface::has_rows(int surface, const Motion* known) const {
+bool SingleSurface::has_rows(int surface) const {
   constexpr int fewest_states = 64;  // of fewer all of f is evaluated as fast
   const auto& kernel = switching_context_.kernel;
-  return known != nullptr && kernel.states() >= fewest_states && between_.empty() && kernel.is_affine(surface) &&
-         kernel.inner(surface).empty() && kernel.field_structure() != nullptr && is_finite(known->slope);
+  return kernel.states() >= fewest_states && between_.empty() && kernel.is_affine(surface) &&
+         kernel.inner(surface).empty() && kernel.field_structure() != nullptr;
 }
 
-double SingleSurface::velocity_by_rows(const SwitchingPoint& switching_point, int surface, double selection) {
+/// Whether rows of f are enough: all of it is known, and finite.
+bool SingleSurface::by_rows(int surface, const Motion* known) const {
+  return known != nullptr && has_rows(surface) && is_finite(known->slope);
+}
+
+/// grad psi . f + d psi/dt, not finite where a row that holds this selection is not.
+double SingleSurface::velocity_by_rows(int surface, double t, const double* x, const std::vector<double>& alpha) const {
   const auto& kernel = switching_context_.kernel;
-  const auto& [t, x] = std::tie(switching_point.t, switching_point.x);
-  alpha_[at(surface)] = selection;
   for (const std::size_t row : kernel.field_structure()->rows_of_selection[at(surface)]) {
-    if (!std::isfinite(kernel.field_row(row, t, x, alpha_.data()))) return std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(kernel.field_row(row, t, x, alpha.data()))) return std::numeric_limits<double>::quiet_NaN();
   }
-  return kernel.rate(surface, t, x, alpha_.data());
+  return kernel.rate(surface, t, x, alpha.data());
 }
 
 /// Normal components of both fields at the touched surface. Outside of surfaces the side that the solution comes from
@@ -137,10 +140,13 @@ void SingleSurface::find_velocities(const ModeState& before, const SwitchingPoin
   for (const int i : between_) {
     if (before.mode[at(i)] != 0) alpha_[at(i)] = before.mode[at(i)] > 0 ? 1.0 : 0.0;
   }
-  if (has_rows(j, known)) {
-    switching_context_.kernel.gradient(j, switching_point.t, switching_point.x, alpha_.data(), row_.data(), &rate_);
-    situation.below.velocity = velocity_by_rows(switching_point, j, 0.0);
-    situation.above.velocity = velocity_by_rows(switching_point, j, 1.0);
+  if (by_rows(j, known)) {
+    const auto& [t, x] = std::tie(switching_point.t, switching_point.x);
+    switching_context_.kernel.gradient(j, t, x, alpha_.data(), row_.data(), &rate_);
+    alpha_[at(j)] = 0.0;
+    situation.below.velocity = velocity_by_rows(j, t, x, alpha_);
+    alpha_[at(j)] = 1.0;
+    situation.above.velocity = velocity_by_rows(j, t, x, alpha_);
     return;
   }
   const int from = known != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
@@ -160,7 +166,7 @@ void SingleSurface::find_tangent_drift(const SwitchingPoint& switching_point, in
   alpha_[at(j)] = exit > 0 ? 1.0 : 0.0;
   auto& tangent = exit > 0 ? situation.above : situation.below;
   const auto& other = exit > 0 ? situation.below : situation.above;
-  if (has_rows(j, known)) {
+  if (by_rows(j, known)) {
     if (const auto drift = drift_by_rows(switching_point, j)) {
       tangent = {0.0, *drift};
       return;
@@ -223,7 +229,7 @@ bool SingleSurface::decide(const ModeState& before, const SwitchingPoint& switch
 
 /// The selections of the other surfaces, which are those before where they have a closed form.
 bool SingleSurface::complete(const SwitchingPoint& switching_point, const Motion* known, ModeState& state) {
-  const bool same = has_rows(switching_point.touched.front(), known) && known->solve == SlidingSolve::decoupled;
+  const bool same = by_rows(switching_point.touched.front(), known) && known->solve == SlidingSolve::decoupled;
   return same ? are_within_bounds(state) : select_others(switching_point, state);
 }
 
@@ -236,11 +242,30 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
   switching_context_.kernel.gradient(surface, t, x, before.alpha.data(), row_.data(), &rate);
   situation.below.velocity = along_row(below, rate);
   situation.above.velocity = along_row(above, rate);
+  return decide_arrival(situation, surface, before.mode[at(surface)]);
+}
+
+std::optional<switching::SurfaceDecision> SingleSurface::decide_by_rows(ModeState& before, int surface, double t,
+                                                                        const double* x) {
+  switching::SurfaceSituation situation;
+  double& alpha = before.alpha[at(surface)];
+  const double own = alpha;
+  alpha = 0.0;
+  situation.below.velocity = velocity_by_rows(surface, t, x, before.alpha);
+  alpha = 1.0;
+  situation.above.velocity = velocity_by_rows(surface, t, x, before.alpha);
+  alpha = own;
+  return decide_arrival(situation, surface, before.mode[at(surface)]);
+}
+
+/// Velocities tell what a surface does that the solution meets from beside it; nullopt where that is not clear.
+std::optional<switching::SurfaceDecision> SingleSurface::decide_arrival(switching::SurfaceSituation& situation,
+                                                                        int surface, int mode) const {
   if (!find_drifts(situation)) return std::nullopt;
   if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return std::nullopt;
-  situation.arrival = arrival_from(before.mode[at(surface)]);
+  situation.arrival = arrival_from(mode);
   auto decision = switching::decide_surface(situation);
-  if (!is_plain(decision, before.mode[at(surface)])) return std::nullopt;
+  if (!is_plain(decision, mode)) return std::nullopt;
   if (decision.mode == 0 && switching_context_.system.switching[at(surface)].is_kink()) return std::nullopt;
   return decision;
 }

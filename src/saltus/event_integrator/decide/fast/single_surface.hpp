@@ -41,6 +41,12 @@ class SingleSurface {
   [[nodiscard]] std::optional<switching::SurfaceDecision> decide(const ModeState& before, int surface, double t,
                                                                  const double* x, const std::vector<double>& below,
                                                                  const std::vector<double>& above);
+  /// Returns whether decide_by_rows() knows the surface: it is affine, and the system large.
+  [[nodiscard]] bool has_rows(int surface) const;
+  /// Does the same where f is finite on both sides, but perhaps in rows that hold the selection; `before` is the same
+  /// behind it. Cost: few rows of f.
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_by_rows(ModeState& before, int surface, double t,
+                                                                         const double* x);
   /// Returns whether the selection of what was slid on lies within its bounds at an exit, to rounding: away from them
   /// it may have been lost in a two-fold point, where the full decision looks closer.
   [[nodiscard]] static bool is_within_bounds(double alpha) {
@@ -72,10 +78,12 @@ class SingleSurface {
   [[nodiscard]] double terms_of(const SwitchingPoint& switching_point) const;
   [[nodiscard]] static bool are_within_bounds(const ModeState& state);
   [[nodiscard]] bool applies(const ModeState& before, const SwitchingPoint& switching_point) const;
-  [[nodiscard]] bool has_rows(int surface, const Motion* known) const;
+  [[nodiscard]] bool by_rows(int surface, const Motion* known) const;
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_arrival(switching::SurfaceSituation& situation,
+                                                                         int surface, int mode) const;
   void find_velocities(const ModeState& before, const SwitchingPoint& switching_point, const Motion* known,
                        switching::SurfaceSituation& situation);
-  double velocity_by_rows(const SwitchingPoint& switching_point, int surface, double selection);
+  [[nodiscard]] double velocity_by_rows(int surface, double t, const double* x, const std::vector<double>& alpha) const;
   void find_tangent_drift(const SwitchingPoint& switching_point, int exit, const Motion* known,
                           switching::SurfaceSituation& situation);
   [[nodiscard]] std::optional<switching::Drift> drift_by_rows(const SwitchingPoint& switching_point, int surface);
