@@ -12,7 +12,7 @@ namespace {
 /// Of fewer states all are integrated as fast.
 constexpr std::size_t fewest_states = 64;
 /// Rings of states around those that a selection moves.
-constexpr int most_rings = 12;
+constexpr int most_rings = 8;
 
 /// Of models and options whose switches are ordinary (Run::has_ordinary_switches).
 bool is_wanted(const IntegrationOptions& options, const evaluation::ModelKernel& kernel) {
