@@ -14,7 +14,7 @@ install(TARGETS saltus_everything ${saltus_modules} EXPORT saltusTargets FILE_SE
 set(saltus_package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/saltus)
 install(EXPORT saltusTargets NAMESPACE saltus:: DESTINATION ${saltus_package_folder})
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/saltusConfig.cmake.in ${PROJECT_BINARY_DIR}/saltusConfig.cmake
-  INSTALL_DESTINATION ${saltus_package_folder})
+  INSTALL_DESTINATION ${saltus_package_folder} PATH_VARS CMAKE_INSTALL_LIBDIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/saltusConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/saltusConfig.cmake ${PROJECT_BINARY_DIR}/saltusConfigVersion.cmake
     ${CMAKE_CURRENT_LIST_DIR}/ipopt.cmake ${CMAKE_CURRENT_LIST_DIR}/highs.cmake

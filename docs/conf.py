@@ -2,9 +2,16 @@
 
 import os
 import re
+import sys
 from pathlib import Path
 
+import myst_nb.core.render
+
 root = Path(os.environ.get("SALTUS_SITE_ROOT", Path(__file__).resolve().parents[1]))
+sys.path.insert(0, str(root / "scripts/site"))
+import streams  # noqa: E402
+
+streams.mend(myst_nb.core.render)
 project = "Saltus"
 author = "The Saltus authors"
 copyright = author  # noqa: A001: the name is Sphinx's

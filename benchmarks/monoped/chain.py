@@ -1,12 +1,14 @@
 """The monoped over 3 m in 30 intervals: a short way is solved, and five of it are the start.
 
-python3 benchmarks/monoped/chain.py SALTUS [--by slide|hop] [--form step|stewart] [--finer 40 50 …] [--keep FOLDER]
-    [--stages KEY=VALUE,… …]
+python3 benchmarks/monoped/chain.py SALTUS [--by slide|hop] [--form step|stewart] [--finer 40 50 …] [--tracked 60 90 …]
+    [--keep FOLDER] [--stages KEY=VALUE,… …]
 
 slide: 0.25 m in 6 intervals (0.6 s) with two stages, then three, then the goal moved on to 0.4 m.
 hop: 0.25 m with three stages at once, with a cost of a foot that moves near the ground, from a guess that lifts it.
-The stages of the long problem are those of run.py.
+The stages of the long problem are those of run.py; each begins at the result of the one before, cut where intervals end, so that
+no element has length zero.
 --finer: other intervals begin at that result, cut where theirs end, each with the settings of FINER.
+--tracked: likewise with four stages, planned with less friction than the simulated robot has, and a feedback that tracks the plan.
 """
 
 import argparse
@@ -34,8 +36,9 @@ WAYS = {
     "hop": [{"optimize.stages": 3, "clear": 5}],
 }
 STAGES = {"slide": ["points=3,first=branch,sigma=0.001"],
-          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5", "goal=3"]}
+          "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5"]}
 FINER = "points=3,first=branch,sigma=0.001,clear=5,optimize.step_bounds=0.97"
+TRACKED = FINER.replace("points=3", "points=4") + ",friction=0.7,optimize.plant.mu=0.8,optimize.feedback=tracking"
 
 
 def way(arguments, folder):
@@ -62,12 +65,17 @@ def run(arguments, folder, intervals, start, *stages):
     return folder / f"{intervals}-{len(stages) - 1}.json"
 
 
+def cut(result, out, intervals):
+    subprocess.run([sys.executable, HERE / "hops.py", result, "--out", out, "--intervals", str(intervals)], check=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("saltus")
     parser.add_argument("--by", choices=list(WAYS), default="slide")
     parser.add_argument("--form", choices=["step", "stewart"], default="step")
     parser.add_argument("--finer", type=int, nargs="+", default=[])
+    parser.add_argument("--tracked", type=int, nargs="+", default=[])
     parser.add_argument("--seconds", default="400", help="of every problem")
     parser.add_argument("--keep", help="folder for models and results")
     parser.add_argument("--stages", nargs="+")
@@ -79,10 +87,16 @@ def main():
         subprocess.run([sys.executable, HERE / "hops.py", *[short] * 5, "--out", start], check=True)
         first, *others = arguments.stages or STAGES[arguments.by]
         long = run(arguments, folder, 30, start, f"form={arguments.form},{first}", *others)
+        if arguments.by == "hop" and not arguments.stages:
+            cut(long, start, 30)
+            long = run(arguments, folder, 30, start, f"form={arguments.form},{FINER}")
         for intervals in arguments.finer:
-            subprocess.run([sys.executable, HERE / "hops.py", long, "--out", start, "--intervals", str(intervals)],
-                           check=True)
+            cut(long, start, intervals)
             run(arguments, folder, intervals, start, FINER)
+        for intervals in arguments.tracked:
+            cut(long, start, intervals)
+            subprocess.run([sys.executable, HERE / "hops.py", start, "--out", start, "--points", "4"], check=True)
+            run(arguments, folder, intervals, start, TRACKED)
 
 
 if __name__ == "__main__":

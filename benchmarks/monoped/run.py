@@ -52,7 +52,8 @@ def model_text(arguments, intervals, stage, table):
     text = replaced(text, "control_intervals = 30", f"control_intervals = {intervals}")
     text = replaced(text, "weight = [0.01, 0.01]", f"weight = [{arguments.rho}, {arguments.rho}]")
     text = replaced(text, '"q_x - 3"', f'"q_x - {goal}"')
-    text = replaced(text, "friction = 0.8", f"friction = {stage.get('friction', 0.8)}")
+    friction = "mu" if arguments.positions == "foot" else "friction"
+    text = replaced(text, f"{friction} = 0.8", f"{friction} = {stage.get('friction', 0.8)}")
     freezing = {"a_n": stage.get("a_n", 200), "correction": stage.get("correction", 0.1),
                 "penetration": stage.get("penetration", 5e-4)}
     if "stabilisation" in stage:

@@ -7,29 +7,32 @@ import typing
 
 import numpy as np
 
-from ._shape import broken_at_jumps, sliding_spans, thinned
+from ._shape import as_drawn, broken_at_jumps, corners, is_stepwise, sliding_spans, thinned
 
 if typing.TYPE_CHECKING:
+    from ._events import Event
     from ._model import Model
     from ._result import Result
 
-WIDTH, HEIGHT, LEFT, GAP = 520, 56, 46, 8
+#: Of a picture, and of a panel of it, with room above for its caption.
+WIDTH, HEIGHT, LEFT, ABOVE = 520, 56, 46, 18
 MOST_ROWS = 6
 MOST_POINTS = 600
+#: Ticks of events are that far apart.
+LEAST_DISTANCE = 3
 MOST_EVENTS = 8
 MOST_EQUATIONS = 40
 
 
 def card(r: Result) -> str:
     """At most some tens of kilobytes of HTML."""
-    shown = [*r._run.states_in_rows, *r.controls][:MOST_ROWS]
     colour = "#1b7f4b" if r.status.done else "#b3261e"
     message = f"<div style='color:{colour}'>{html.escape(r.status.message)}</div>" if r.status.message else ""
     return (
         "<div style='font:13px/1.45 system-ui,sans-serif;max-width:580px'>"
         f"<b>{html.escape(r.model)}</b> &nbsp; {html.escape(r.method)} &nbsp; "
         f"<span style='color:{colour}'>{html.escape(str(r.status))}</span> at t = {r.status.time_reached:.6g} &nbsp; "
-        f"{r._counts}{message}{_picture(r, shown)}{_events(r)}</div>"
+        f"{r._counts}{message}{_picture(r)}{_events(r)}</div>"
     )
 
 
@@ -59,13 +62,23 @@ def _values(title: str, values: dict[str, float]) -> str:
     return f"<div>{title}: {shown}{more}</div>"
 
 
-def _picture(r: Result, names: list[str]) -> str:
+def _shown(r: Result) -> tuple[list[str], int]:
+    """The first columns, at least half of them outputs if there are so many, and how many others there are."""
+    moved, outputs = [*r._run.states_in_rows, *r.controls], r.output_names
+    room = max(MOST_ROWS // 2, MOST_ROWS - len(outputs))
+    shown = [*moved[:room], *outputs][:MOST_ROWS]
+    return shown, len(moved) + len(outputs) - len(shown)
+
+
+def _picture(r: Result) -> str:
+    names, left_out = _shown(r)
     if len(r.t) < 2 or not names:
         return ""
+    r = as_drawn(r)
     begin, end = float(r.t[0]), float(r.t[-1])
     if not end > begin:
         return ""
-    height = len(names) * (HEIGHT + GAP) + 16
+    height = len(names) * (HEIGHT + ABOVE) + 16
     parts = [
         f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {WIDTH} {height}' width='100%' "
         "style='font:10px system-ui,sans-serif' fill='currentColor' role='img'>"
@@ -74,45 +87,102 @@ def _picture(r: Result, names: list[str]) -> str:
     def across(t: typing.Any) -> typing.Any:
         return LEFT + (t - begin) / (end - begin) * (WIDTH - LEFT - 4)
 
+    ticks = _ticks([across(event.t) for event in r.events])
+    spans = _joined([(across(a), across(b)) for a, b in sliding_spans(r)])
     for number, name in enumerate(names):
-        top = number * (HEIGHT + GAP)
-        for a, b in sliding_spans(r)[:200]:
-            parts.append(
-                f"<rect x='{across(a):.1f}' y='{top}' width='{max(across(b) - across(a), 0.3):.1f}' height='{HEIGHT}' "
-                "fill='#d95f02' opacity='0.15'/>"
-            )
+        top = number * (HEIGHT + ABOVE) + ABOVE
+        if spans:
+            shaded = "".join(f"M{a:.1f} {top}H{b:.1f}v{HEIGHT}H{a:.1f}z" for a, b in spans)
+            parts.append(f"<path class='sliding' d='{shaded}' fill='#d95f02' opacity='0.15'/>")
+        if ticks:
+            marks = "".join(f"M{x:.1f} {top}v4" for x in ticks)
+            parts.append(f"<path class='events' d='{marks}' stroke='#888' fill='none'/>")
         parts.append(_curve(r, name, across, top))
     parts.append(f"<text x='{LEFT}' y='{height - 3}'>t = {begin:.4g}</text>")
+    if len(ticks) < len(r.events):
+        middle = (LEFT + WIDTH - 4) / 2
+        said = f"ticks: {len(ticks)} of {len(r.events)} events"
+        parts.append(f"<text x='{middle}' y='{height - 3}' text-anchor='middle' opacity='0.7'>{said}</text>")
     parts.append(f"<text x='{WIDTH - 4}' y='{height - 3}' text-anchor='end'>{end:.4g}</text></svg>")
+    if left_out:
+        parts.append(f"<div>and {left_out} more column{'s' * (left_out > 1)}: r.plot()</div>")
     return "".join(parts)
 
 
+def _ticks(places: list[float]) -> list[float]:
+    """Those that can be told apart, so that of many events some are there everywhere."""
+    chosen: list[float] = []
+    for place in places:
+        if not chosen or place - chosen[-1] >= LEAST_DISTANCE:
+            chosen.append(place)
+    return chosen
+
+
+def _joined(spans: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Spans on the paper, of which those that nobody sees apart are one."""
+    joined: list[tuple[float, float]] = []
+    for a, b in spans:
+        if joined and a - joined[-1][1] < 1:
+            joined[-1] = joined[-1][0], b
+        else:
+            joined.append((a, max(b, a + 0.3)))
+    return joined
+
+
 def _curve(r: Result, name: str, across: typing.Callable[[typing.Any], typing.Any], top: int) -> str:
-    t, y = broken_at_jumps(r, r.t, r[name])
-    t, y = thinned(t, y, MOST_POINTS)
+    stepwise = is_stepwise(r.t, r[name])
+    t, y = corners(r.t, r[name].astype(float)) if stepwise else broken_at_jumps(r, r.t, r[name])
+    t, y = thinned(t, y, MOST_POINTS * (1 + stepwise))
     finite = y[np.isfinite(y)]
     if len(finite) == 0:
         return ""
     low, high = float(finite.min()), float(finite.max())
     scale = (HEIGHT - 6) / (high - low) if high > low else 0.0
-    path: list[str] = []
-    pen = "M"
-    for x, v in zip(across(t), y):
-        if not np.isfinite(v):
-            pen = "M"
-            continue
-        path.append(f"{pen}{x:.1f} {top + HEIGHT - 3 - (v - low) * scale:.1f}")
-        pen = "L"
-    marks = "".join(
-        f"<line x1='{across(event.t):.1f}' x2='{across(event.t):.1f}' y1='{top}' y2='{top + 4}' stroke='#888'/>"
-        for event in r.events[:100]
-    )
+    path = _path([f"{x:.1f}" for x in across(t)], [_number(top + HEIGHT - 3 - (v - low) * scale) for v in y])
     return (
-        f"{marks}<path d='{''.join(path)}' fill='none' stroke='#1f77b4' stroke-width='1.3'/>"
-        f"<text x='0' y='{top + HEIGHT / 2:.0f}' font-weight='bold'>{html.escape(name[:12])}</text>"
+        f"<path class='curve' d='{path}' fill='none' stroke='#1f77b4' stroke-width='1.3' stroke-linecap='round'/>"
+        f"{_caption(r, name, top - 5)}"
         f"<text x='{LEFT - 3}' y='{top + 9}' text-anchor='end'>{high:.3g}</text>"
         f"<text x='{LEFT - 3}' y='{top + HEIGHT}' text-anchor='end'>{low:.3g}</text>"
     )
+
+
+def _number(value: float) -> str:
+    return f"{value:.1f}" if np.isfinite(value) else ""
+
+
+def _path(across: list[str], up: list[str]) -> str:
+    """Lines of SVG; none leads to a point without height."""
+    parts: list[str] = []
+    before = ("", "")
+    for x, y in zip(across, up):
+        if not y:
+            before = ("", "")
+        elif not before[1]:
+            # Of no length, so that a point between two gaps is seen by the round ends of its line.
+            parts.append(f"M{x} {y}h0")
+            before = (x, y)
+        else:
+            parts.append(f"H{x}" if y == before[1] else f"V{y}" if x == before[0] else f"L{x} {y}")
+            before = (x, y)
+    return "".join(parts)
+
+
+def _caption(r: Result, name: str, y: int) -> str:
+    """Above a panel: the name, and the unit and label that the model gives."""
+    caption = r._captions.get(name, {})
+    unit, label = caption.get("unit", ""), caption.get("label", "")
+    beside = f" [{unit}]" * bool(unit) + f" {label}" * bool(label)
+    return f"<text x='{LEFT}' y='{y}'><tspan font-weight='bold'>{_short(name)}</tspan>{_short(beside)}</text>"
+
+
+def _what(event: Event) -> str:
+    """Surfaces or name; of a hysteresis with what it turned to."""
+    return (", ".join(event.surfaces) or event.name or "") + f" {event.turned}" * bool(event.turned)
+
+
+def _short(text: str, most: int = 50) -> str:
+    return html.escape(text if len(text) <= most else text[: most - 1] + "…")
 
 
 def _events(r: Result) -> str:
@@ -120,7 +190,7 @@ def _events(r: Result) -> str:
         return ""
     rows = "".join(
         f"<tr><td style='text-align:right'>{event.t:.8g}</td><td style='text-align:left'>{html.escape(event.kind)}</td>"
-        f"<td style='text-align:left'>{html.escape(', '.join(event.surfaces) or event.name or '')}</td>"
+        f"<td style='text-align:left'>{html.escape(_what(event))}</td>"
         f"<td style='text-align:left'>{'not unique' if event.unique is False else ''}</td></tr>"
         for event in r.events[:MOST_EVENTS]
     )

@@ -8,11 +8,13 @@ from numpy.typing import NDArray
 version: str
 Floats = NDArray[np.float64]
 Option = tuple[str, str, str]
+SharedWarning = tuple[str, list[int]]
 
 class Alternative:
     mode: list[int]
     alpha: Floats
     regions: list[list[str]]
+    def __repr__(self) -> str: ...
 
 class Intersection:
     surfaces: list[str]
@@ -24,6 +26,7 @@ class Event:
     t: float
     kind: str
     name: str | None
+    turned: str | None
     surfaces: list[str]
     mode_before: list[int] | None
     mode_after: list[int] | None
@@ -72,6 +75,7 @@ class Run:
     final: dict[str, typing.Any]
     branches: list[Run]
     sensitivities: dict[str, typing.Any] | None
+    def drawn(self) -> Run | None: ...
     def facts(self) -> str: ...
     def table(self) -> str: ...
     def json(self, surfaces: bool) -> str: ...
@@ -138,8 +142,10 @@ class Model:
         jobs: int,
         share: tuple[int, int],
         progress: typing.Callable[[float, float], None] | None,
-        warnings: list[str],
+        warnings: list[SharedWarning],
     ) -> tuple[dict[str, typing.Any], list[Run], list[str]]: ...
+    @staticmethod
+    def told_with_runs(warnings: list[SharedWarning]) -> list[str]: ...
     def check(self, settings: list[str]) -> str: ...
 
 def run_tool(arguments: list[str]) -> int: ...

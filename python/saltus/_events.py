@@ -17,7 +17,8 @@ Json = dict[str, typing.Any]
 Event.__doc__ = """A change of mode, a jump, an impact, or an event of the user, at time ``t``.
 
 ``kind`` is "start", "crossing", "enter_sliding", "leave_sliding", "change_sliding", "jump", "impact", "accumulation",
-"contact", "lift_off", "stick", "slip" or "user"; ``name`` of a jump or an event, ``surfaces`` that changed. ``x`` and
+"contact", "lift_off", "stick", "slip" or "user"; ``name`` of a jump or an event, ``surfaces`` that changed. ``turned`` of
+the jump of a hysteresis is "on" or "off". ``x`` and
 ``x_after`` are the state on both sides, so are ``mode_before`` and ``mode_after``, ``alpha_…``, ``regions_…`` and
 ``contact_modes_…``; ``impulse`` of an impact by contact. ``unique`` says whether the solution goes on in one way only
 (None: not decided), ``alternatives`` how else, ``reason`` why it went on as it did; ``intersection`` what was decided at
@@ -32,8 +33,8 @@ where two surfaces that influence each other met.
 Alternative.__doc__ = """A continuation that was possible at an event: ``mode``, ``alpha`` and ``regions`` behind it.
 
 >>> event = saltus.catalogue("part-ways").simulate().events[0]
->>> event.unique, event.mode_after, event.alternatives[0].mode
-(False, [0, 0], [-1, 0])
+>>> event.unique, event.mode_after, event.alternatives[0]
+(False, [0, 0], <alternative: mode [-1, 0], alpha [0, 0.1875]>)
 """
 
 Intersection.__doc__ = """Where the modes of two ``surfaces`` that influence each other were decided together.
@@ -47,7 +48,7 @@ Intersection.__doc__ = """Where the modes of two ``surfaces`` that influence eac
 """
 
 _OF_EVENT = "t kind name surfaces mode_before mode_after alpha_before alpha_after x x_after unique reason".split()
-_IF_THERE = "regions_before regions_after contact_modes_before contact_modes_after impulse".split()
+_IF_THERE = "turned regions_before regions_after contact_modes_before contact_modes_after impulse".split()
 
 _OF_INTERSECTION = "surfaces velocities alpha_before alpha_after".split()
 
@@ -75,6 +76,7 @@ class Events(list[_core.Event]):
                 "t": [event.t for event in self],
                 "kind": [event.kind for event in self],
                 "name": [event.name for event in self],
+                "turned": [event.turned for event in self],
                 "surfaces": [", ".join(event.surfaces) for event in self],
                 "unique": [event.unique for event in self],
                 "reason": [event.reason for event in self],
@@ -152,6 +154,10 @@ def _result_with(event: Json) -> Json:
     columns = next((len(event[name]) for name in _OF_EVENT[4:8] if event[name] is not None), 0)
     contacts = event.get("contact_modes_after", [])
     states = [str(i) for i in range(len(event["x"]))]
+    if "turned" in event:  # what is told by the state of the event's name
+        sides = (0, 1) if event["turned"] == "on" else (1, 0)
+        both = [tuple(map(_side, values)) for values in zip(event["x"], event["x_after"])]
+        states[both.index(sides)] = event["name"]
     rows: Json = {name: [] for name in ("t", "x", "u", "alpha", "mode", "outputs")}
     final = {"t": 0.0, "x": [0.0] * len(states), "mode": [0] * columns, "alpha": [0.0] * columns, "outputs": []}
     result = {
@@ -179,6 +185,10 @@ def _result_with(event: Json) -> Json:
         final["regions"] = [group["modes"] for group in groups]
         final["theta"] = [0.0] * sum(len(group["modes"]) for group in groups)
     return result
+
+
+def _side(value: float | None) -> float | None:
+    return None if value is None else round(value, 5)
 
 
 def _region_groups(event: Json) -> list[Json]:

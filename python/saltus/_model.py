@@ -33,7 +33,7 @@ from ._settings import (
     simulate_options,
     sweep_name,
 )
-from ._sweep import Sweep, SweepArguments, sweep_by, with_results
+from ._sweep import Sweep, SweepArguments, Warned, sweep_by, warn_of_runs, with_results
 
 Settings = typing.Mapping[str, Value]
 
@@ -172,8 +172,9 @@ class Model:
         """Finds the controls, times and parameters that [optimize] of the file asks for, and verifies them.
 
         `options` are the keys of [optimize] (docs/optimal-control.md): ``control_intervals=20``, ``time_limit=60``,
-        ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file. ``optimization`` of the result
-        has costs, parameters, multipliers and what was verified.
+        ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file; or the word of the option of that
+        name, ``"neutral"`` or ``"simulated"``. ``optimization`` of the result has costs, parameters, multipliers and
+        what was verified.
 
         >>> m = saltus.Model.from_text('''
         ... [model]
@@ -195,6 +196,8 @@ class Model:
         2.0
         """
         names_no_keys(options, {**self.states, **self.parameters} if options else {})
+        if start in ("neutral", "simulated"):
+            options, start = {**options, "start": start}, None
         typed, chosen = optimize_options(options)
         warned: list[str] = []
         with _started_at(start) as file, own_results():
@@ -227,7 +230,8 @@ class Model:
         a list is the same (``mu=np.linspace(0.1, 0.5, 50)``). Several make a grid, with `zip` they go one by one.
         `sample` has distributions (``{"v": "normal(3, 0.1)"}``), of which every point of the grid gets `runs` samples;
         they depend on `seed` and the number of the run only. `keep` is what is left of the runs: "final", "events" or
-        "trajectory". A run that stops early is a row with its status. Nothing depends on the number of threads. More
+        "trajectory". A run that stops early is a row with its status, and one whose solution is not unique says so (of
+        whole runs ``branches="all"`` follows the others). Nothing depends on the number of threads. More
         than 10^7 runs need `yes`.
 
         `executor` is one of concurrent.futures, or of a library that has its interface (mpi4py.futures,
@@ -262,7 +266,7 @@ class Model:
         )
         if executor is not None:
             return Sweep(sweep_by(executor, self, arguments, jobs or 1), shape, len(sample or {}))
-        warned: list[str] = []
+        warned: list[Warned] = []
         with progress_of_runs(self.name, progress) as tell:
             try:
                 found = self._core.sweep(*arguments, jobs or 0, (1, 1), tell, warned)
@@ -271,7 +275,7 @@ class Model:
                     kept = with_results(stopped.result, self, arguments)  # type: ignore[attr-defined]
                     stopped.result = Sweep(kept, shape, len(sample or {}))  # type: ignore[attr-defined]
                 raise
-        warn(warned)
+        warn_of_runs(warned)
         return Sweep(with_results(found, self, arguments), shape, len(sample or {}))
 
     def _swept(self, over: Settings, set: Settings, options: dict[str, Value]) -> dict[str, Value]:

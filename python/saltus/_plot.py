@@ -8,7 +8,7 @@ import numpy as np
 
 from ._data import with_rows
 from ._expression import Expression
-from ._shape import broken_at_jumps, slides, sliding_spans
+from ._shape import as_drawn, broken_at_jumps, edges, is_alone, is_stepwise, slides, sliding_spans
 
 if typing.TYPE_CHECKING:
     from ._events import Event
@@ -19,6 +19,8 @@ SLIDING = "#d95f02"
 LINES = ("#1f5fa8", "#1b9e77", "#e7298a", "#66a61e", "#a6761d", "#7570b3")
 #: Marks a line as a result's.
 _OURS = "saltus"
+#: Of more events than this the marks hide the curves.
+MOST_MARKS = 100
 MARKS = {
     "crossing": ("|", "#555555"),
     "enter_sliding": (">", SLIDING),
@@ -43,11 +45,15 @@ def _matplotlib() -> typing.Any:
 
 
 def plot(
-    r: Result, names: typing.Sequence[str | Expression] | None, axes: typing.Any, label: str | None = None
+    r: Result,
+    names: typing.Sequence[str | Expression] | None,
+    axes: typing.Any,
+    label: str | None = None,
+    events: bool | None = None,
 ) -> typing.Any:
-    """A row of axes for every name; sliding is shaded, every event marked at its value."""
-    r = with_rows(r, 2)
-    pyplot = _matplotlib()
+    """A row of axes for every name; sliding is shaded, events are marked at their values."""
+    r = as_drawn(with_rows(r, 2))
+    pyplot, is_own = _matplotlib(), axes is None
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
     names = [names] if isinstance(names, (str, Expression)) else names
@@ -65,21 +71,29 @@ def plot(
     for axis, (name, column) in zip(axes, columns.items(), strict=True):
         for begin, end in sliding_spans(r):
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
-        _line(axis, broken_at_jumps(r, r.t, column), label)
-        _mark_events(axis, r, "t", name)
+        line = _line(axis, broken_at_jumps(r, r.t, column), label)
+        if is_stepwise(r.t, column):
+            axis.plot(*edges(r.t, column), color=line.get_color(), linewidth=0.6)
+        _mark_events(axis, r, "t", name, events)
         axis.set_ylabel(caption_of(r, name))
         axis.margins(x=0)
     axes[0].set_title(r.model)
     axes[-1].set_xlabel("t")
     _legend(axes[0])
+    if is_own:
+        # The room for labels is that of the ticks, which change with the height that the first layout gives.
+        axes[0].figure.get_layout_engine().execute(axes[0].figure)
     return axes
 
 
-def _line(axis: typing.Any, curve: list[typing.Any], label: str | None) -> None:
-    """Another result over one that is there has another colour."""
+def _line(axis: typing.Any, curve: list[typing.Any], label: str | None) -> typing.Any:
+    """Another result over one that is there has another colour; a value between two gaps is a dot."""
     before = sum(line.get_gid() == _OURS for line in axis.lines)
     named = {"label": label} if label is not None else {}
-    axis.plot(*curve, color=LINES[before % len(LINES)], linewidth=1.2, gid=_OURS, **named)
+    dots = np.flatnonzero(is_alone(curve[0] + curve[1])).tolist()
+    style = {"marker": ".", "markersize": 2.4, "markevery": dots} if dots else {}
+    (line,) = axis.plot(*curve, color=LINES[before % len(LINES)], linewidth=1.2, gid=_OURS, **style, **named)
+    return line
 
 
 def _legend(axis: typing.Any) -> None:
@@ -96,29 +110,38 @@ def caption_of(r: Result, name: str) -> str:
     return (caption.get("label") or name) + (f" [{unit}]" if unit else "")
 
 
-def _mark_events(axis: typing.Any, r: Result, x: str, y: str) -> None:
+def _mark_events(axis: typing.Any, r: Result, x: str, y: str, wanted: bool | None) -> None:
+    """By their kinds; of a column over time that is stepwise those that its edges do not show."""
+    if not (len(r.events) <= MOST_MARKS if wanted is None else wanted):
+        return
+    shown = set(edges(r.t, r[y])[0].tolist()) if x == "t" and is_stepwise(r.t, r[y]) else set()
     for kind, (mark, colour) in MARKS.items():
-        events = [event for event in r.events if event.kind == kind]
+        events = [event for event in r.events if event.kind == kind and event.t not in shown]
         if events:
             places = [[_at(r, name, event) for event in events] for name in (x, y)]
-            axis.plot(*places, mark, color=colour, markersize=5, linestyle="none", label=kind)
+            axis.plot(*places, mark, color=colour, markersize=3.5, linestyle="none", label=kind)
 
 
 def _at(r: Result, name: str, event: Event) -> float:
-    """A column before an event; of a result without rows at its events from the event itself."""
-    row = int(r.t.searchsorted(event.t, side="left"))
-    if row < len(r.t) and r.t[row] == event.t:
-        return float(r[name][row])
+    """A column before an event; NaN where neither the event nor a row has it."""
+    if name == "t":
+        return event.t
     if name in r.states:
         return float(event.x[r.states.index(name)])
-    return float(np.interp(event.t, r.t, r[name]))
+    row = int(r.t.searchsorted(event.t, side="left"))
+    return float(r[name][row]) if row < len(r.t) and r.t[row] == event.t else float("nan")
 
 
 def phase(
-    r: Result, x: str | Expression, y: str | Expression, axis: typing.Any, label: str | None = None
+    r: Result,
+    x: str | Expression,
+    y: str | Expression,
+    axis: typing.Any,
+    label: str | None = None,
+    events: bool | None = None,
 ) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
-    r = with_rows(r, 2)
+    r = as_drawn(with_rows(r, 2))
     pyplot = _matplotlib()
     x, y = str(x), str(y)
     if axis is None:
@@ -128,7 +151,7 @@ def phase(
     here, there = r[x].astype(float), r[y].astype(float)
     here[~held] = float("nan")
     axis.plot(*broken_at_jumps(r, here, there), color=SLIDING, linewidth=2.6, solid_capstyle="butt")
-    _mark_events(axis, r, x, y)
+    _mark_events(axis, r, x, y, events)
     axis.plot(r[x][0], r[y][0], "o", color="black", markersize=4)
     axis.set_xlabel(caption_of(r, x))
     axis.set_ylabel(caption_of(r, y))

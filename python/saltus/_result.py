@@ -303,27 +303,38 @@ class Result(Facts):
         axes: typing.Any = None,
         *,
         label: str | None = None,
+        events: bool | None = None,
     ) -> typing.Any:
         """Draws columns over time (matplotlib): all states, controls and outputs, or those of `names`.
 
-        Sliding is shaded, events are marked, the two sides of a jump are not joined. Returns the axes, one for every
-        name; `axes` of a figure of your own, or of another result, are drawn into. `label` names it in a legend.
+        Sliding is shaded, the two sides of a jump are not joined. What changes at events only, as discrete states, has
+        steps with thin edges. Events are marked if they are at most 100: `events` marks all (True) or none (False).
+        Returns the axes, one for every name; `axes` of a figure of your own, or of another result, are drawn into.
+        `label` names it in a legend.
 
         >>> axes = saltus.catalogue("stick-slip").simulate(until=10).plot(["v"])
         >>> axes[0].get_ylabel()
         'v'
         """
-        return _plot.plot(self, names, axes, label)
+        return _plot.plot(self, names, axes, label, events)
 
     def phase(
-        self, x: str | Expression, y: str | Expression, axis: typing.Any = None, *, label: str | None = None
+        self,
+        x: str | Expression,
+        y: str | Expression,
+        axis: typing.Any = None,
+        *,
+        label: str | None = None,
+        events: bool | None = None,
     ) -> typing.Any:
         """Draws one column over another (matplotlib); the line is thick where the solution slides. Returns the axes.
+
+        Events are marked as by :meth:`plot`.
 
         >>> saltus.catalogue("stick-slip").simulate(until=10).phase("q", "v").get_xlabel()
         'q'
         """
-        return _plot.phase(self, x, y, axis, label)
+        return _plot.phase(self, x, y, axis, label, events)
 
     def frame(self, grid: typing.Any = None) -> typing.Any:
         """A table of pandas, a row for every row of the result, with the time as its index.

@@ -28,6 +28,14 @@ _ELSEWHERE_IN_OPTIMIZE = {
     **dict.fromkeys(("until", "T", "t_end", "tf", "duration"), "horizon=2; where it is chosen the model states its bounds"),
     **dict.fromkeys(("objective", "cost"), "running_cost and terminal_cost in the model"),
 }
+#: How a Builder states entries of a table of the model.
+_STATED = {
+    "events": ": b.event(x - 1, name=…)",
+    "jumps": ": b.jump(x > 1, {x: 0})",
+    "hysteresis": ": b.hysteresis(name, x, on=…, off=…)",
+    "modes": ": b.mode(x > 0, {x: -1})",
+    "contacts": ": b.contact(name, gap=…)",
+}
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
 Option = tuple[str, str, str]
 _SIMULATE = frozenset(_core.simulate_keys())
@@ -56,6 +64,12 @@ def text_of(value: Value, name: str = "") -> str:
         return repr(float(value))
     if isinstance(value, np.ndarray) and value.ndim == 0:
         return text_of(value.item(), name)
+    if isinstance(value, (list, tuple)) and any(isinstance(entry, typing.Mapping) for entry in value):
+        table = f"[[{name}]]" if name in _STATED else "the table"
+        raise refuse(
+            f"{name}=[{{…}}]: a setting changes numbers of a model, it adds no tables",
+            f"write {table} into the text, saltus.Model.from_text(text), or use saltus.Builder{_STATED.get(name, '')}",
+        )
     if is_list(value) or isinstance(value, np.ndarray):
         return "[" + ", ".join(text_of(entry, name) for entry in value) + "]"
     if hasattr(value, "save"):
@@ -80,7 +94,7 @@ def _one_value(name: str, value: Value) -> Value:
     if value is None:
         raise refuse(f"{name}=None: that is no value", f"leave {name} out, or write a number or an expression")
     if "." not in name and not isinstance(value, str) and np.ndim(value) > 0:
-        shown = _shown(value) if np.size(value) < 10 else f"[… {np.size(value)} values]"
+        shown = _shown(value, name) if np.size(value) < 10 else f"[… {np.size(value)} values]"
         raise refuse(f"{name}={shown}: expected one value", f"many values are for a sweep: m.sweep({name}=[…])")
     return value
 
@@ -256,8 +270,8 @@ def names_no_keys(options: typing.Mapping[str, Value], known: typing.Container[s
             raise refuse(f"'{name}' is a name of the model, not an option", f'write set={{"{name}": {_shown(options[name])}}}')
 
 
-def _shown(value: Value) -> str:
-    return repr(value) if isinstance(value, str) else text_of(value)
+def _shown(value: Value, name: str = "") -> str:
+    return repr(value) if isinstance(value, str) else text_of(value, name)
 
 
 def check_path(value: typing.Any, what: str) -> None:

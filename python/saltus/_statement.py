@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import typing
 
 import numpy as np
@@ -49,7 +50,7 @@ class Statement:
         name = "decay"
         <BLANKLINE>
         [states]
-        x = "1"
+        x = 1
         <BLANKLINE>
         [dynamics]
         x = "-2*x"
@@ -150,9 +151,14 @@ def _key(name: typing.Any) -> str:
     return str(name) if str(name).isidentifier() and str(name).isascii() else json.dumps(str(name), ensure_ascii=False)
 
 
+#: An expression that is a number is written as one; a whole number up to those that TOML has.
+_NUMBER = re.compile(r"-?(?:0|[1-9]\d{0,17}|(?:0|[1-9]\d*)(?:\.\d+(?:[eE][+-]?\d+)?|[eE][+-]?\d+))")
+
+
 def _toml(value: typing.Any) -> str:
     if isinstance(value, Expression):
-        return json.dumps(value.text, ensure_ascii=False)
+        is_number = _NUMBER.fullmatch(value.text) is not None
+        return value.text if is_number else json.dumps(value.text, ensure_ascii=False)
     if isinstance(value, typing.Mapping):
         return "{ " + ", ".join(f"{_key(name)} = {_toml(entry)}" for name, entry in value.items()) + " }"
     if isinstance(value, (list, tuple)):

@@ -66,12 +66,15 @@ class Structure(Statement):
     ) -> Expression:
         """A name that is 0 or 1: it becomes 1 where `input` rises through `on`, and 0 where it falls through `off`.
 
+        With `on` below `off` it is the other way round: 1 where `input` falls through `on`, as a thermostat, and 0 where
+        it rises through `off`. Each change is an event "jump" of this name.
+
         >>> m = saltus.Builder("room")
         >>> T = m.state("T", 15)
-        >>> heats = m.hysteresis("heats", -T, on=-18, off=-20, initial=1)
+        >>> heats = m.hysteresis("heats", T, on=18, off=20, initial=1)
         >>> m.rate(T, 10*heats - 0.1*T)
-        >>> len(m.simulate(until=10).events) > 5
-        True
+        >>> m.simulate(until=10).events[0]
+        <jump of heats off at t = 0.606246218>
         """
         self._take(name)
         entry = given({"input": input, "on": on, "off": off, "initial": initial})

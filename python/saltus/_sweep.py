@@ -26,6 +26,8 @@ FoundRuns = tuple[dict[str, typing.Any], list[_core.Run], list[str]]
 SweepArguments = tuple[
     list[str], list[tuple[str, str, str]], list[str], bool, list[str], typing.Optional[int], int, str, bool
 ]
+#: A warning, and the numbers of the runs that it is about; none for all of them.
+Warned = tuple[str, list[int]]
 #: The place of ``keep`` among them.
 _KEEP = 7
 
@@ -115,11 +117,16 @@ def _text(value: typing.Any) -> str:
     return text_of(int(value) if whole else value)
 
 
+def warn_of_runs(warned: list[Warned]) -> None:
+    """Warns once of what several runs, or shares, have in common."""
+    warn(_core.Model.told_with_runs(warned))
+
+
 def share_of(
     model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]
-) -> tuple[Found, list[str]]:
+) -> tuple[Found, list[Warned]]:
     """One share of a sweep, in whatever process, and warnings. Results are made here: what they are made of stays."""
-    warned: list[str] = []
+    warned: list[Warned] = []
     found = model._core.sweep(*arguments, jobs, share, None, warned)
     return (found[0], list(Results(found, model, arguments, all_runs=False)), found[2]), warned
 
@@ -139,7 +146,7 @@ def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments,
         for future in futures:
             future.cancel()
         raise
-    warn(shares[0][1])
+    warn_of_runs([warning for _, warned in shares for warning in warned])
     found = [share for share, _ in shares]
     columns = max((part[0] for part in found), key=len)
     parts = [part for part in found if part[1]]
@@ -155,14 +162,15 @@ class Sweep:
     """All runs of a sweep: ``results[i]``, and one table of them.
 
     ``table`` has a column for the number of the run, for what was changed (``"v(0)"`` for the initial value of a state
-    v), for the status, for the number of events of the run, and what was kept: values at the end, events (a run without
-    one has a row whose ``event`` is 0), or rows of trajectories.
+    v), for the status, for whether the solution is unique (1; 0 if others are admissible; -1 if that was not decided),
+    for the number of events of the run, and what was kept: values at the end, events (a run without one has a row whose
+    ``event`` is 0), or rows of trajectories.
 
     >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)
     >>> s
     <saltus.Sweep of 2 runs over belt: 2 completed>
     >>> list(s.table)
-    ['run', 'belt', 'status', 't', 'q', 'v', 'events']
+    ['run', 'belt', 'status', 'unique', 't', 'q', 'v', 'events']
     >>> s.results[1]
     <saltus.Result 'stick-slip': completed at t = 5, events not kept; 2 happened>
     """
@@ -273,8 +281,9 @@ class Sweep:
     ) -> typing.Any:
         """Draws a bifurcation diagram (matplotlib): a column at events, over what was swept, a point for each of them.
 
-        `event` is the name or the kind of the events, without it all are drawn; `after` is the time from which on, as
-        transients are no part of it. Needs ``keep="events"``.
+        `event` is the name of the events, their kind, or both the kind and the surface ("crossing slip"); without it
+        all are drawn, each sort in its colour. `after` is the time from which on, as transients are no part of it. Needs
+        ``keep="events"``.
 
         >>> m = saltus.catalogue("stick-slip")
         >>> s = m.sweep(belt=np.linspace(0.1, 0.3, 5), until=40, keep="events")
@@ -287,15 +296,17 @@ class Sweep:
         counts: dict[str, int] = {}
         for run in self._runs:
             counts[run.termination] = counts.get(run.termination, 0) + 1
-        return f"<saltus.Sweep of {len(self)} runs over {', '.join(self.names)}: " + ", ".join(
-            f"{count} {status}" for status, count in sorted(counts.items())
-        ) + ">"
+        statuses = ", ".join(f"{count} {status}" for status, count in sorted(counts.items()))
+        of_runs = dict(zip(self._columns["run"], self._columns["unique"]))
+        others = sum(value == 0 for value in of_runs.values())
+        doubt = f"; {others} not unique" if others else ""
+        return f"<saltus.Sweep of {len(self)} runs over {', '.join(self.names)}: {statuses}{doubt}>"
 
 
 def _column(name: str, values: typing.Any) -> Array:
-    """Numbers of runs, of events and of modes are whole."""
+    """Numbers of runs, of events and of modes are whole, and so is whether a solution is unique."""
     column = np.asarray(values)
-    counts = name in ("run", "event", "events") or name.startswith("mode(")
+    counts = name in ("run", "event", "events", "unique") or name.startswith("mode(")
     if counts and column.dtype == float and np.all(np.mod(column, 1) == 0):
         return column.astype(np.int64)
     return column

@@ -6,11 +6,13 @@ import typing
 
 import numpy as np
 
+from ._errors import warn
 from ._outcome import unknown
-from ._plot import caption_of
+from ._plot import LINES, caption_of
 from ._result import needed
 
 if typing.TYPE_CHECKING:
+    from ._shape import Array
     from ._sweep import Sweep
 
 
@@ -59,20 +61,60 @@ def plot_all(s: Sweep, over: str | None, axes: typing.Any) -> typing.Any:
 
 
 def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str | None, axis: typing.Any) -> typing.Any:
-    """Points: a column at events over what was swept."""
+    """Points: a column at events over what was swept; events of each sort in a colour of their own."""
     if "kind" not in s.table:
         raise ValueError('a bifurcation diagram is made of events: sweep(…, keep="events")')
-    chosen = s["t"] > after
-    if event is not None:
-        chosen &= (s["name"] == event) | (s["kind"] == event)
-        if not np.any((s["name"] == event) | (s["kind"] == event)):
-            raise unknown(event, sorted({*s["name"].tolist(), *s["kind"].tolist()} - {""}), "the list of events")
+    sorts, sort_of_row = _sorts_of_events(s)
+    wanted = [i for i, sort in enumerate(sorts) if event is None or event in _names_of(sort)]
+    if event is not None and not wanted:
+        raise unknown(event, sorted({name for sort in sorts for name in _names_of(sort)}), "the list of events")
     x, _ = _axes(s, over)
-    axis = _axis(axis)
-    axis.plot(s[x][chosen], s[name][chosen], ".", markersize=2.5, color="#1f5fa8")
+    axis, is_own = _axis(axis), axis is None
+    late = s["t"] > after
+    drawn = [(sorts[i], late & (sort_of_row == i)) for i in wanted]
+    drawn = [(sort, rows) for sort, rows in drawn if rows.any()]
+    if not drawn:
+        _warn_of_nothing(s["t"][np.isin(sort_of_row, wanted)], event, after)
+    for sort, rows in drawn:
+        style = {"color": LINES[0]} if len(drawn) == 1 else {"label": _names_of(sort)[0]}
+        axis.plot(s[x][rows], s[name][rows], ".", markersize=2.5, **style)
+    if 1 < len(drawn) <= 12:
+        axis.legend(markerscale=3, **({"loc": "upper left", "bbox_to_anchor": (1, 1)} if is_own else {}))
+    # All that was swept is along the axis, also where no event is left.
+    axis.dataLim.update_from_data_x(s[x], ignore=False)
+    axis.autoscale_view()
     axis.set_xlabel(_caption(s, x))
     axis.set_ylabel(_caption(s, name) + (f" at {event}" if event is not None else ""))
     return axis
+
+
+#: Kind, name and surfaces of an event, as in the table.
+Sort = tuple[str, str, str]
+
+
+def _sorts_of_events(s: Sweep) -> tuple[list[Sort], Array]:
+    """All that there are, and of every row which it is; -1 of a run without events."""
+    words, numbers = zip(*(np.unique(s[column], return_inverse=True) for column in ("kind", "name", "surfaces")))
+    shape = tuple(len(part) for part in words)
+    found, sort_of_row = np.unique(np.ravel_multi_index(numbers, shape), return_inverse=True)
+    places = np.unravel_index(found, shape)
+    kinds, names, surfaces = (part[place].tolist() for part, place in zip(words, places))
+    return list(zip(kinds, names, surfaces)), np.where(s["event"] > 0, sort_of_row, -1)
+
+
+def _names_of(sort: Sort) -> list[str]:
+    """What an event may be called, first as the page of a sweep does: its name, or the kind with its surfaces."""
+    kind, name, surfaces = sort
+    with_surfaces = [f"{kind} {surface}" for surface in (surfaces, *surfaces.split())]
+    return list(dict.fromkeys(filter(None, [name, *(with_surfaces if surfaces else []), kind, *surfaces.split()])))
+
+
+def _warn_of_nothing(times: Array, event: str | None, after: float) -> None:
+    what = f'events "{event}"' if event is not None else "events"
+    if len(times) == 0:
+        warn([f"nothing is drawn: no run has {what}"])
+    else:
+        warn([f"nothing is drawn: the last of the {what} is at t = {times.max():.6g}, and after={after:g} leaves none"])
 
 
 def _axes(s: Sweep, over: str | None) -> tuple[str, list[str]]:

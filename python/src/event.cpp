@@ -15,10 +15,16 @@ namespace nb = nanobind;
 namespace saltus::python {
 namespace {
 
-using result::Event;
-
 nb::object array_if_there(const std::optional<std::vector<double>>& values) {
   return values ? owned_array(*values) : nb::none();
+}
+
+/// With what its event tells: the mode behind it, the selections there, active regions.
+std::string alternative_text(const result::Alternative& self) {
+  std::string regions;
+  for (const auto& active : self.regions) regions += fmt::format(", regions {}", fmt::join(active, "+"));
+  return fmt::format("<alternative: mode [{}], alpha [{:.6g}]{}>", fmt::join(self.mode, ", "),
+                     fmt::join(self.alpha, ", "), regions);
 }
 
 }  // namespace
@@ -27,16 +33,19 @@ void add_event(nb::module_& module) {
   nb::class_<result::Alternative>(module, "Alternative", "A continuation that was possible at an event.")
       .def_ro("mode", &result::Alternative::mode)
       .def_prop_ro("alpha", [](const result::Alternative& self) { return owned_array(self.alpha); })
-      .def_ro("regions", &result::Alternative::regions);
+      .def_ro("regions", &result::Alternative::regions)
+      .def("__repr__", alternative_text);
   nb::class_<result::Intersection>(module, "Intersection", "Where the modes of two surfaces were decided together.")
       .def_ro("surfaces", &result::Intersection::surfaces)
       .def_ro("velocities", &result::Intersection::velocities)
       .def_ro("alpha_before", &result::Intersection::alpha_before)
       .def_ro("alpha_after", &result::Intersection::alpha_after);
+  using Event = RunEvent;
   nb::class_<Event>(module, "Event", "A change of mode, a jump, or an event of the user.")
       .def_ro("t", &Event::t)
       .def_prop_ro("kind", [](const Event& self) { return std::string(name(self.kind)); })
       .def_ro("name", &Event::name)
+      .def_ro("turned", &Event::turned)
       .def_ro("surfaces", &Event::surfaces)
       .def_ro("mode_before", &Event::mode_before)
       .def_ro("mode_after", &Event::mode_after)
@@ -54,7 +63,8 @@ void add_event(nb::module_& module) {
       .def_ro("reason", &Event::reason)
       .def_ro("intersection", &Event::intersection)
       .def("__repr__", [](const Event& self) {
-        const auto what = self.name ? *self.name : fmt::format("{}", fmt::join(self.surfaces, ", "));
+        auto what = self.name ? *self.name : fmt::format("{}", fmt::join(self.surfaces, ", "));
+        if (self.turned) what += " " + *self.turned;
         return fmt::format("<{} of {} at t = {:.9g}>", name(self.kind), what.empty() ? "the model" : what, self.t);
       });
 }

@@ -24,7 +24,9 @@
 #include "saltus/report/html.hpp"
 #include "saltus/report/table.hpp"
 #include "saltus/result/difference.hpp"
+#include "saltus/result/drawn.hpp"
 #include "saltus/result/kept_columns.hpp"
+#include "saltus/result/turned.hpp"
 
 namespace nb = nanobind;
 
@@ -133,6 +135,13 @@ nb::list contact_modes(const Run& run) {
     rows.append(std::move(words));
   }
   return rows;
+}
+
+/// What pictures show of it; none if that is the run itself.
+std::optional<Run> drawn(const Run& run) {
+  auto result = result::as_drawn(*run.result);
+  if (!result) return std::nullopt;
+  return Run{std::make_shared<result::Result>(std::move(*result)), nullptr, {}, {}, {}};
 }
 
 /// The stored form of what is no row and no event.
@@ -267,15 +276,20 @@ void add_result(nb::module_& module) {
                                             : result::region_labels(run.result->region_groups).size();
                      return block_array(run.theta, run.result->trajectory.theta, width, self);
                    })
-      .def_prop_ro("events",
-                   [](const Run& self) {
-                     nb::list list;
-                     for (result::Event event : self.result->events) list.append(nb::cast(std::move(event)));
-                     return list;
-                   })
+      .def_prop_ro(
+          "events",
+          [](const Run& self) {
+            nb::list list;
+            for (result::Event event : self.result->events) {
+              const auto word = turned(event, *self.result);
+              list.append(nb::cast(RunEvent{std::move(event), word ? std::optional(text_of(*word)) : std::nullopt}));
+            }
+            return list;
+          })
       .def_prop_ro("final", final_of)
       .def_prop_ro("branches", branches)
       .def_prop_ro("sensitivities", sensitivities)
+      .def("drawn", drawn)
       .def("facts", facts)
       .def("table", [](const Run& self) { return report::to_table(*self.result); })
       .def("json",

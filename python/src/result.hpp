@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nanobind/nanobind.h>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,11 @@ struct Run {
   std::shared_ptr<const model::System> system;  ///< null for one that was loaded, and for branches
   Block<double> alpha, theta;
   Block<int> mode;
+};
+
+/// An event, and what only its result tells: which way a hysteresis turned.
+struct RunEvent : result::Event {
+  std::optional<std::string> turned;
 };
 
 /// An array of Python with its own numbers.

@@ -15,6 +15,7 @@
 #include "saltus/cli/sweep/share.hpp"
 #include "saltus/cli/sweep/sweep_input.hpp"
 #include "saltus/cli/sweep/sweep_table.hpp"
+#include "saltus/cli/sweep/sweep_warnings.hpp"
 #include "watch.hpp"
 
 namespace nb = nanobind;
@@ -58,12 +59,27 @@ struct Sweep {
   cli::Share share;
 };
 
+/// What a warning is until those of all shares are told together.
+using SharedWarning = std::pair<std::string, std::vector<std::size_t>>;
+
+void note(nb::list& warnings, const pipeline::SweepWarning& warning) {
+  warnings.append(nb::cast(SharedWarning(warning.text, warning.runs)));
+}
+
+std::vector<std::string> told_with_runs(std::vector<SharedWarning> warnings) {
+  std::vector<pipeline::SweepWarning> all;
+  for (auto& [text, runs] : warnings) all.push_back({std::move(text), std::move(runs)});
+  return cli::told_with_runs(all);
+}
+
 nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::object progress, nb::list warnings) {
   const auto plan = value_or_raise(cli::SweepPlan::make(what.request));
   const auto keep = keep_named(what.keep);
   const auto input = model.stated(asked);
   const auto first = value_or_raise(cli::input_of_run(input, plan, 0));
-  append(warnings, cli::options_without_effect(first.file));
+  // Results that are kept whole have their branches.
+  if (keep != pipeline::Keep::trajectory) value_or_raise(cli::check_branches(first, plan));
+  for (const auto& warning : cli::options_without_effect(first.file)) note(warnings, {warning, {}});
   Watch watch{nb::none()};
   std::atomic<bool> stopped = false;
   const auto caller = std::this_thread::get_id();
@@ -80,20 +96,22 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
       if (std::this_thread::get_id() == caller) watch.tell(progress, static_cast<double>(done), total);
     };
   }
-  auto runs = [&] {
+  auto outcome = [&] {
     const nb::gil_scoped_release released;
     return pipeline::sweep(
         {count, keep, what.jobs, begin}, [&](std::size_t run) { return cli::state_run(input, plan, begin + run); },
         observers);
   }();
-  if (!runs) raise(io::located(runs.error(), input.file));
+  if (!outcome) raise(io::located(outcome.error(), input.file));
+  for (const auto& warning : outcome->warnings) note(warnings, warning);
+  auto& runs = outcome->runs;
   nb::dict columns;
-  for (auto& column : cli::sweep_table(plan, *runs, keep, begin)) {
+  for (auto& column : cli::sweep_table(plan, runs, keep, begin)) {
     columns[nb::str(column.name.c_str())] = column_of(std::move(column.values));
   }
   nb::list results;
   nb::object not_begun;  // one for all of them: they are alike
-  for (auto& run : *runs) {
+  for (auto& run : runs) {
     const bool begun = !run.result.states.empty();
     if (!begun && not_begun.is_valid()) {
       results.append(not_begun);
@@ -112,6 +130,7 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
 }  // namespace
 
 void add_sweep(nb::class_<Model>& type) {
+  type.def_static("told_with_runs", told_with_runs, nb::arg("warnings"));
   type.def(
       "sweep",
       [](Model& model, std::vector<std::string> settings, std::vector<Option> options, std::vector<std::string> over,

@@ -245,6 +245,21 @@ def test_friction_in_a_plane():
     assert (r.final["u"], r.final["v"]) == (0, 0)
 
 
+def test_numbers_are_numbers_of_toml():
+    m = saltus.Builder("m")
+    numbers = [6, -2.5, 1e-7, 1e22, 0.1, np.float64(3), 2**70]
+    for place, value in enumerate(numbers):
+        m.parameter(f"p{place}", value, unit="V")
+    x = m.state("x", -1)
+    m.rate(x, -m.parameter("k", 2) * x)
+    text = m.to_toml()
+    for line in ("p0 = { initial = 6, unit", "p1 = { initial = -2.5,", "p2 = { initial = 1e-7,", "\nx = -1\n", "\nk = 2\n", '\nx = "-k*x"\n'):
+        assert line in text
+    # A whole number that TOML does not have.
+    assert f'p6 = {{ initial = "{2**70}",' in text
+    assert [m.model().parameters[f"p{place}"] for place in range(7)] == numbers
+
+
 def test_hysteresis_switches_at_its_thresholds():
     m = saltus.Builder("room")
     T = m.state("T", 15)
@@ -252,6 +267,9 @@ def test_hysteresis_switches_at_its_thresholds():
     m.rate(T, 10 * heats - 0.1 * T)
     r = m.simulate(until=10)
     assert {round(float(e.x[0]), 9) for e in r.events} == {18.0, 20.0}
+    m.rate(m.state("clock", 0), 1)
+    with pytest.raises(saltus.ModelError, match=r"a state with the name 'clock' beside \[\[hysteresis\]\]"):
+        m.simulate(until=10)
 
 
 def test_a_builder_is_a_model_in_all_it_does():

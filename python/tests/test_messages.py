@@ -69,6 +69,8 @@ def said_by(call, kind=ValueError):
         ({"set": {"simulate.rtol": -1}}, "rtol=…: expected a finite number > 0"),
         ({"set": {"": 1}}, "'' is no name"),
         ({"set": {3: 1}}, "3 is no name"),
+        ({"set": {"events": [{"when": "q"}]}}, "write [[events]] into the text, saltus.Model.from_text(text), or use saltus.Builder: b.event("),
+        ({"jumps": [{"when": "q > 0"}]}, "jumps=[{…}]: a setting changes numbers of a model, it adds no tables"),
     ],
 )
 def test_options_and_settings(slip, options, told):

@@ -9,7 +9,7 @@ import pytest
 import saltus
 
 PARTS = (
-    "t kind name surfaces mode_before mode_after alpha_before alpha_after regions_before regions_after contact_modes_before "
+    "t kind name turned surfaces mode_before mode_after alpha_before alpha_after regions_before regions_after contact_modes_before "
     "contact_modes_after impulse x x_after unique reason"
 ).split()
 
@@ -28,7 +28,7 @@ def parts(event):
 
 
 #: Sliding, jumps, impulses of contacts, regions, alternatives, names, accumulations.
-NAMES = ["stick-slip", "bouncing-ball", "sliding-ball", "stay-or-leave", "thermostat", "two-belts", "quadrants", "frozen-hysteresis", "three-windings",
+NAMES = ["stick-slip", "bouncing-ball", "sliding-ball", "stay-or-leave", "thermostat", "two-belts", "quadrants", "frozen-hysteresis", "temperature-control", "three-windings",
          "slide-and-hide"]
 
 

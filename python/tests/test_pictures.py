@@ -65,17 +65,19 @@ def test_the_sides_of_a_jump_are_not_joined(ball):
         assert y[between - 1] == pytest.approx(event.x[1])
         assert y[between + 1] == pytest.approx(event.x_after[1])
         break
-    assert np.isnan(y).sum() == len({e.t for e in ball.events if e.kind in ("jump", "accumulation")})
+    assert np.isnan(y).sum() == sum(abs(e.x_after[1] - e.x[1]) > 1e-6 * np.ptp(ball["v"]) for e in ball.events)
 
 
 def test_a_jump_between_two_rows_is_not_joined():
-    """Of a result without rows at events the gap lies where the jump is, and so do the marks of events."""
+    """Of a result without rows at events curves have the sides of the event, and so have the marks of events."""
     m = saltus.catalogue("bouncing-ball")
     r = m.simulate(until=3, output={"every": 0.1, "events": False})
     (axis,) = r.plot(["v"])
     x, y = (np.asarray(data, dtype=float) for data in axis.lines[0].get_data())
     (gap,) = np.flatnonzero(np.isnan(y))
-    assert x[gap - 1] < r.events[0].t < x[gap + 1]
+    (jump,) = r.events
+    assert (x[gap - 1], y[gap - 1]) == (jump.t, jump.x[1]) and (x[gap + 1], y[gap + 1]) == (jump.t, jump.x_after[1])
+    assert f"{np.nanmin(y):.3g}</text>" in r._repr_html_() and np.nanmin(y) == jump.x[1]
     (mark,) = [line for line in axis.lines if line.get_label() == "jump"]
     assert [data.tolist() for data in map(np.asarray, mark.get_data())] == [[r.events[0].t], [r.events[0].x[1]]]
     assert len(m.simulate(until=3, output={"times": [0, 0.1], "events": False}).plot()) == 2
@@ -85,7 +87,7 @@ def test_some_states_only():
     """Of a run that has rows of some states only these are drawn."""
     r = saltus.catalogue("bouncing-ball").simulate(until=3, output={"states": ["v"]})
     assert [axis.get_ylabel() for axis in r.plot()] == ["v"]
-    assert "<svg" in r._repr_html_() and ">v</text>" in r._repr_html_()
+    assert "<svg" in r._repr_html_() and ">v</tspan>" in r._repr_html_()
 
 
 def relay():
@@ -102,6 +104,151 @@ def test_an_output_that_switches_is_not_joined():
     way, _, u = r.plot()
     assert np.isnan(u.lines[0].get_ydata()).sum() == len(r.events) > 1
     assert not np.isnan(way.lines[0].get_ydata()).any()
+
+
+SERVO = """
+[model]
+name = "servo"
+[states]
+angle = { initial = 0, unit = "rad", label = "position" }
+speed = 0
+[[hysteresis]]
+name = "forward"
+input = "1 - angle"
+on = 0.10
+off = 0.06
+initial = 1
+[[hysteresis]]
+name = "backward"
+input = "angle - 1"
+on = 0.10
+off = 0.06
+[dynamics]
+angle = "speed"
+speed = "60*(forward - backward) - 5*speed"
+[outputs]
+u = { value = "6*(forward - backward)", unit = "V", label = "voltage" }
+[simulate]
+until = 3
+"""
+
+
+@pytest.fixture(scope="module")
+def servo():
+    return saltus.Model.from_text(SERVO)
+
+
+def marked(axis):
+    return [line for line in axis.lines if line.get_label() in ("jump", "user", "crossing")]
+
+
+def test_what_changes_at_events_only_has_steps(servo):
+    r = servo.simulate()
+    angle, _, forward, backward, u = r.plot()
+    turns = {name: [e.t for e in r.events if e.name == name] for name in ("forward", "backward")}
+    assert len(turns["forward"]) > 3 and len(turns["backward"]) > 3
+    for axis, times in ((forward, turns["forward"]), (backward, turns["backward"]), (u, sorted(sum(turns.values(), [])))):
+        curve, edges = axis.lines[:2]
+        assert np.isnan(curve.get_ydata()).sum() == len(times)
+        across, up = (np.asarray(data).reshape(-1, 3) for data in edges.get_data())
+        assert across[:, 0].tolist() == across[:, 1].tolist() == times and np.isnan(up[:, 2]).all()
+        assert (np.abs(up[:, 1] - up[:, 0]) == (6 if axis is u else 1)).all()
+        assert edges.get_color() == curve.get_color() and edges.get_linewidth() < curve.get_linewidth()
+    # What the edges show has no marks beside.
+    assert [len(line.get_xdata()) for line in marked(angle)] == [len(r.events)]
+    assert [list(line.get_xdata()) for line in marked(forward)] == [turns["backward"]] and marked(u) == []
+
+
+def test_labels_lie_within_the_figure(servo):
+    axes = servo.simulate().plot()
+    axes[0].figure.draw_without_rendering()
+    assert min(axis.yaxis.label.get_window_extent().x0 for axis in axes) >= 0
+
+
+def test_many_events_are_marked_if_asked_for(servo):
+    few, many = servo.simulate(), servo.simulate(until=20)
+    assert len(few.events) <= 100 < len(many.events)
+    assert marked(few.plot(["angle"])[0]) and marked(few.phase("angle", "speed"))
+    assert not marked(few.plot(["angle"], events=False)[0]) and not marked(few.phase("angle", "speed", events=False))
+    assert not marked(many.plot(["angle"])[0]) and not marked(many.phase("angle", "speed"))
+    (all_of_them,) = marked(many.plot(["angle"], events=True)[0])
+    assert len(all_of_them.get_xdata()) == len(many.events)
+
+
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def card(r):
+    return xml.etree.ElementTree.fromstring(r._repr_html_().replace("&nbsp;", " "))
+
+
+def test_the_card_has_ticks_for_all_of_a_run(servo):
+    r = servo.simulate(until=40)
+    picture = card(r).find(f".//{SVG}svg")
+    ticks = [re.findall(r"M([\d.]+) ", path.get("d")) for path in picture.findall(f"{SVG}path[@class='events']")]
+    assert len(ticks) == 5 and all(one == ticks[0] for one in ticks)
+    places = np.array(ticks[0], dtype=float)
+    assert 50 < len(places) < len(r.events) and places.max() > 500
+    assert np.diff(places).max() < 520 / 40
+    words = ["".join(text.itertext()) for text in picture.iter(f"{SVG}text")]
+    assert f"ticks: {len(places)} of {len(r.events)} events" in words
+    assert "ticks: " not in servo.simulate(until=0.3)._repr_html_()
+
+
+def test_the_card_shades_all_of_a_run():
+    r = saltus.catalogue("stick-slip").simulate(until=3000)
+    assert len(r.events) > 500
+    shaded = card(r).find(f".//{SVG}path[@class='sliding']").get("d")
+    assert max(float(x) for x in re.findall(r"H([\d.]+)", shaded)) > 500
+    assert len(r._repr_html_()) < 100_000
+
+
+def test_the_card_has_steps_units_and_outputs(servo):
+    r = servo.simulate(until=40)
+    picture = card(r).find(f".//{SVG}svg")
+    words = ["".join(text.itertext()) for text in picture.iter(f"{SVG}text")]
+    assert {"angle [rad] position", "speed", "forward", "u [V] voltage"} <= set(words)
+    *_, forward, backward, u = (path.get("d") for path in picture.findall(f"{SVG}path[@class='curve']"))
+    for path, name in ((forward, "forward"), (backward, "backward"), (u, None)):
+        assert set(re.findall("[A-Za-z]", path)) == {"M", "h", "H", "V"}
+        assert path.count("V") == sum(name in (None, e.name) for e in r.events)
+    assert len(r._repr_html_()) < 60_000
+
+
+def test_the_card_says_what_it_leaves_out():
+    m = saltus.Builder("many")
+    for number in range(9):
+        m.rate(m.state(f"x{number}", 1), -1)
+    m.output("y", m.define("z", 2))
+    html = m.simulate(until=1)._repr_html_()
+    assert "and 4 more columns" in html and ">y</tspan>" in html and ">x4</tspan>" in html and ">x5</tspan>" not in html
+
+
+def test_a_hysteresis_says_what_it_turned_to(servo):
+    r = servo.simulate()
+    first = r.events[0]
+    assert (first.name, first.turned) == ("forward", "off") and repr(first).startswith("<jump of forward off at t = 0.")
+    turned = [e.turned for e in r.events if e.name == "backward"]
+    assert turned[:4] == ["on", "off", "on", "off"]
+    assert r.events.table()["turned"].tolist() == [e.turned for e in r.events]
+    assert ">forward off<" in r._repr_html_() and ">backward on<" in r._repr_html_()
+    assert "jump  forward off" in str(r) and "jump  backward on" in str(r)
+    assert saltus.catalogue("bouncing-ball").simulate(until=2).events[0].turned is None
+
+
+def test_an_output_that_no_row_has_at_an_event_is_not_joined():
+    r = relay().simulate(until=5, output={"every": 0.5, "events": False})
+    (u,) = r.plot(["u"])
+    x, y = (np.asarray(data, dtype=float) for data in u.lines[0].get_data())
+    for event in r.events:
+        assert np.isnan(y[x == event.t]).all() and (x == event.t).sum() == 2
+
+
+def test_a_value_alone_between_events_is_seen():
+    r = relay().simulate(until=5, output={"times": [0, 2, 4.9], "events": False})
+    (line,) = (line for line in r.plot(["u"])[0].lines if line.get_gid() == "saltus")
+    dots = line.get_markevery()
+    assert line.get_marker() == "." and np.asarray(line.get_xdata())[dots].tolist() == [0, 2]
 
 
 def test_axes_have_labels_and_units():
@@ -132,16 +279,41 @@ def test_pictures_of_sweeps(slip):
 def test_bifurcation_diagrams():
     m = saltus.catalogue("stick-slip")
     s = m.sweep(belt=[0.1, 0.2, 0.3], until=40, keep="events")
-    points = s.bifurcation("q", event="leave_sliding", after=20).lines[0]
     kept = (s["kind"] == "leave_sliding") & (s["t"] > 20)
     assert 0 < kept.sum() < len(s["t"])
-    assert points.get_xdata().tolist() == s["belt"][kept].tolist()
-    assert points.get_ydata().tolist() == s["q"][kept].tolist()
-    assert len(s.bifurcation("v").lines[0].get_xdata()) == len(s["t"])
+    for event in ("leave_sliding", "leave_sliding slip"):
+        (points,) = s.bifurcation("q", event=event, after=20).lines
+        assert points.get_xdata().tolist() == s["belt"][kept].tolist()
+        assert points.get_ydata().tolist() == s["q"][kept].tolist()
     with pytest.raises(KeyError, match="leave_sliding"):
         s.bifurcation("q", event="leaves_sliding")
     with pytest.raises(ValueError, match='keep="final"'):
         s.plot("q")
+
+
+def test_events_of_several_sorts_can_be_told_apart():
+    s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2, 0.3], until=40, keep="events")
+    axis = s.bifurcation("v")
+    assert sum(len(line.get_xdata()) for line in axis.lines) == len(s["t"])
+    assert len({line.get_color() for line in axis.lines}) == len(axis.lines) == 2
+    assert [text.get_text() for text in axis.get_legend().get_texts()] == ["enter_sliding slip", "leave_sliding slip"]
+    assert s.bifurcation("v", event="enter_sliding").get_legend() is None
+
+
+def test_a_bifurcation_diagram_has_all_that_was_swept():
+    m = saltus.Model.from_text(
+        '[model]\nname = "m"\n[parameters]\na = 1\n[states]\nx = 0\n[dynamics]\nx = "a - x"\n'
+        '[[events]]\nname = "high"\nwhen = "x - 1"\n[simulate]\nuntil = 10\n'
+    )
+    s = m.sweep(a=[0.5, 2, 3, 9.5], keep="events")
+    axis = s.bifurcation("x", event="high")
+    assert axis.lines[0].get_xdata().tolist() == [2, 3, 9.5]
+    assert axis.get_xlim()[0] < 0.5 and axis.get_xlim()[1] > 9.5
+    with pytest.warns(saltus.ModelWarning, match="the last of the events \"high\" is at t = 0.69.*after=1000 leaves none"):
+        axis = s.bifurcation("x", event="high", after=1000)
+    assert axis.get_xlim()[0] < 0.5 and axis.get_xlim()[1] > 9.5 and axis.lines[:] == []
+    with pytest.warns(saltus.ModelWarning, match="no run has events"):
+        m.sweep(a=[0.1, 0.2], keep="events").bifurcation("x")
 
 
 def test_a_builder_in_a_notebook_before_it_is_complete():
@@ -185,7 +357,8 @@ def test_the_card_is_small_and_well_formed(name):
     tree = xml.etree.ElementTree.fromstring(html.replace("&nbsp;", " "))
     picture = tree.find(".//{http://www.w3.org/2000/svg}svg")
     assert picture is not None
-    assert len(picture.findall("{http://www.w3.org/2000/svg}path")) == min(6, len(r.states) + len(r.controls))
+    curves = picture.findall("{http://www.w3.org/2000/svg}path[@class='curve']")
+    assert len(curves) == min(6, len(r.states) + len(r.controls) + len(r.output_names))
     for number in re.findall(r"[ML](-?[\d.]+) (-?[\d.]+)", html):
         assert 0 <= float(number[0]) <= 520
 

@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import re
 import subprocess
 
 import numpy as np
@@ -65,6 +66,28 @@ def test_it_is_what_the_tool_writes(source, tool, tmp_path):
         header, *rows = (tmp_path / "r.csv").read_text().splitlines()
         assert len(rows) == len(r.t)
         assert [float(row.split(",")[0]) for row in rows] == r.t.tolist()
+
+
+def test_it_prints_what_the_tool_prints(source, tool, tmp_path):
+    """Units, labels, events and all; but for the seconds."""
+    file = tmp_path / "fall.toml"
+    file.write_text(
+        '[model]\nname = "fall"\n[states]\nh = { initial = 9, unit = "m", label = "height" }\n[dynamics]\nh = "-1"\n'
+        '[[events]]\nname = "low"\nwhen = "h - 8"\n[outputs]\np = { value = "2*h", unit = "W" }\n[simulate]\nuntil = 2\n'
+    )
+    told = subprocess.run([tool, "simulate", file], cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    r = saltus.Model(file).simulate()
+    assert "h = 7 m" in told and "p = 14 W" in told and "\nwhere       h: height\n" in told
+    r.save(tmp_path / "r.json")
+    for printed in (str(r), str(saltus.load(tmp_path / "r.json"))):
+        assert re.sub(r"[\d.e-]+ s\n", "", printed) == re.sub(r"[\d.e-]+ s\n", "", told)
+
+
+def test_alternatives_say_what_they_are():
+    others = saltus.catalogue("part-ways").simulate().events[0].alternatives
+    assert [repr(other) for other in others] == [
+        f"<alternative: mode {other.mode}, alpha [{', '.join(f'{alpha:.6g}' for alpha in other.alpha)}]>" for other in others
+    ]
 
 
 def test_saved_and_loaded(slip, tmp_path):
@@ -132,6 +155,8 @@ def test_optimal_control(source):
     assert r.u.shape == (len(r.t), 1)
     again = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start=r, control_intervals=6)
     assert again.optimization["objective"] == pytest.approx(r.optimization["objective"], rel=1e-5)
+    simulated = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start="simulated", control_intervals=6)
+    assert simulated.options["optimize.start"] == "simulated"
     with pytest.raises(saltus.ModelError, match="control_interval"):
         saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(control_interval=6)
     with pytest.raises(saltus.ModelError, match="optimize"):

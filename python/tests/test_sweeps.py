@@ -1,8 +1,12 @@
 """Sweeps: tables that do not depend on threads, equal to single runs, told what is wrong."""
 
 import json
+import os
 import re
+import signal
 import subprocess
+import threading
+import warnings
 
 import numpy as np
 import pytest
@@ -65,7 +69,7 @@ def test_the_table_does_not_depend_on_threads(tool, tmp_path):
         assert (tmp_path / "1.csv").read_bytes() == (tmp_path / "3.csv").read_bytes()
     run_tool(tool, tmp_path, *arguments, "--out", "a.csv")
     header, *rows = (tmp_path / "a.csv").read_text().splitlines()
-    assert header == "run,belt,v(0),q(0),status,t,q,v,events"
+    assert header == "run,belt,v(0),q(0),status,unique,t,q,v,events"
     cells = [row.split(",") for row in rows]
     belts = list(dict.fromkeys(float(row[1]) for row in cells))
     assert belts == pytest.approx(np.linspace(0.05, 0.3, 20), rel=1e-15)
@@ -73,7 +77,7 @@ def test_the_table_does_not_depend_on_threads(tool, tmp_path):
         {"belt": belts}, until=4, sample={"v": "normal(0,0.1)", "q": "uniform(-1,1)"}, runs=10, seed=7
     )
     assert len(rows) == len(table) == 200
-    assert [float(row[6]) for row in cells] == table["q"].tolist()
+    assert [float(row[7]) for row in cells] == table["q"].tolist()
     samples = np.array([float(row[3]) for row in cells])
     assert samples.min() >= -1 and samples.max() <= 1 and len(set(samples)) == 200
     other = run_tool(tool, tmp_path, *arguments[:-1], "8", "--out", "b.csv")
@@ -90,7 +94,7 @@ def test_pairs_and_archives(tool, tmp_path):
     assert table["v(0)"].tolist() == [0.0, 0.1, 0.2]
     assert table["status"].tolist() == ["completed"] * 3
     run_tool(tool, tmp_path, "stick-slip", "--over", "simulate.event.integrator=dopri5,dop853", "--until", "3", "--out", "i.csv")
-    assert (tmp_path / "i.csv").read_text().splitlines()[1].startswith("1,dopri5,completed,3,")
+    assert (tmp_path / "i.csv").read_text().splitlines()[1].startswith("1,dopri5,completed,1,3,")
 
 
 def test_a_run_that_stops_early_is_a_row(tool, tmp_path):
@@ -243,11 +247,16 @@ def test_shares_are_the_whole(tool, tmp_path, keep):
 def test_axes_of_the_page_say_labels_and_units(tool, tmp_path):
     (tmp_path / "m.toml").write_text(
         '[model]\nname = "m"\n[parameters]\nF = { initial = 1, unit = "N", label = "force" }\n'
-        '[states]\nx = { initial = 1, unit = "m" }\n[dynamics]\nx = "F - x"\n')
-    run_tool(tool, tmp_path, "m.toml", "--until", "1", "--over", "F=1,2", "--over", "x=1,2", "--report", "m.html")
+        '[states]\nx = { initial = 1, unit = "m" }\n[dynamics]\nx = "F - x"\n'
+        '[outputs]\ny = { value = "2*x", label = "twice, \\"x\\"" }\n')
+    sweep = ["m.toml", "--until", "1", "--over", "F=1,2", "--over", "x=1,2"]
+    run_tool(tool, tmp_path, *sweep, "--report", "m.html")
     data = page_data((tmp_path / "m.html").read_text())
     assert dict(zip(data["columns"], data["axes"], strict=True)) == {
-        "run": "run", "F": "force [N]", "x(0)": "x(0) [m]", "status": "status", "t": "t", "x": "x [m]", "events": "events"}
+        "run": "run", "F": "force [N]", "x(0)": "x(0) [m]", "status": "status", "unique": "unique", "t": "t", "x": "x [m]",
+        "y": 'twice, "x"', "events": "events"}
+    run_tool(tool, tmp_path, "--join", *shares(tool, tmp_path, 2, *sweep), "--report", "joined.html")
+    assert (tmp_path / "joined.html").read_text() == (tmp_path / "m.html").read_text()
 
 
 def test_shares_say_what_the_page_needs(tool, tmp_path):
@@ -344,3 +353,101 @@ def test_messages_speak_python(slip):
         with pytest.raises(saltus.ModelError, match=told) as error:
             call()
         assert untold not in str(error.value)
+
+
+TOGGLE = """
+[model]
+name = "toggle"
+[parameters]
+threshold = 1
+[states]
+x = 0.5
+y = 0.5
+[switching]
+x_high = "x - threshold"
+y_high = "y - threshold"
+y_low = "1 - y"
+[dynamics]
+x = "2*step(-y_high) - x"
+y = "2*step(-x_high) - y + 0*step(y_low)"
+[simulate]
+until = 6
+"""
+
+
+@pytest.fixture
+def toggle(tmp_path):
+    """Two genes that repress each other: from equal values either may win."""
+    (tmp_path / "toggle.toml").write_text(TOGGLE)
+    return "toggle.toml", "--over", "x=0.4,0.5,0.6"
+
+
+@pytest.mark.parametrize("keep", ["final", "events", "trajectory"])
+def test_runs_whose_solution_is_not_unique_are_told(tool, tmp_path, toggle, keep):
+    assert "3 runs: 3 completed; 1 not unique\n" in run_tool(tool, tmp_path, *toggle, "--keep", keep, "--out", "t.npz")
+    table = np.load(tmp_path / "t.npz")
+    doubted = {1: 1, 2: 0, 3: 1}
+    assert dict(zip(table["run"], table["unique"], strict=True)) == doubted
+    files = shares(tool, tmp_path, 2, *toggle, "--keep", keep)
+    assert "; 1 not unique\n" in run_tool(tool, tmp_path, "--join", *files, "--out", "joined.csv", "--report", "joined.html")
+    run_tool(tool, tmp_path, *toggle, "--keep", keep, "--out", "t.csv")
+    assert (tmp_path / "t.csv").read_bytes() == (tmp_path / "joined.csv").read_bytes()
+    with pytest.warns(saltus.ModelWarning):
+        s = saltus.Model(str(tmp_path / "toggle.toml")).sweep(x=[0.4, 0.5, 0.6], keep=keep)
+    assert s["unique"].dtype == np.int64 and dict(zip(s["run"], s["unique"], strict=True)) == doubted
+    assert "3 completed; 1 not unique>" in repr(s)
+    assert s.frame().query("unique == 0")["run"].unique().tolist() == [2]
+    if keep == "final":
+        assert s.dataset()["unique"].values.tolist() == [1, 0, 1]
+
+
+def test_of_a_run_that_did_not_begin_nothing_is_decided():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    endless = saltus.Model.from_text(
+        '[model]\nname = "endless"\n[parameters]\na = 1\n[states]\nx = 0\nv = 2\n'
+        '[dynamics]\nx = "v"\nv = "-a*x - 0.01*sign(v - cos(3*t))"\n')
+    threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        endless.sweep(a=[1, 2], until=1e7, max_steps=10**9, max_events=10**9, jobs=1)
+    signal.signal(signal.SIGINT, before)
+    assert stopped.value.result["unique"].tolist() == [1, -1]
+
+
+def test_a_sweep_follows_one_motion(tool, tmp_path, toggle):
+    for how in (["--branch", "all"], ["--set", "simulate.event.branches=2"], ["--over", "simulate.event.branches=1,2"]):
+        out = run_tool(tool, tmp_path, *toggle, *how, "--out", "t.csv", code=2)
+        assert "a sweep takes no --branch" in out and "'unique'" in out
+    run_tool(tool, tmp_path, *toggle, "--branch", "report", "--out", "t.csv")
+    m = saltus.Model(str(tmp_path / "toggle.toml"))
+    with pytest.raises(saltus.ModelError, match="a sweep takes no branches="):
+        m.sweep(x=[0.4, 0.5], branches="all")
+    with pytest.warns(saltus.ModelWarning):
+        whole = m.sweep(x=[0.4, 0.5], branches="all", keep="trajectory")
+    assert [len(run.branches) for run in whole.results] == [0, 2]
+
+
+def test_warnings_of_the_model_are_told_once_with_their_runs(tool, tmp_path, toggle):
+    over = ("toggle.toml", "--over", "threshold=0.9,1,1.1,1", "--jobs", "2")
+    told = "'y_low' is a negative multiple of 'y_high' under another name (in runs 2, 4)"
+    out = run_tool(tool, tmp_path, *over, "--out", "t.csv")
+    assert told in out and out.count("warning: ") == 1
+    assert "(in run 4)" in run_tool(tool, tmp_path, *over, "--task", "2/2", "--out", "s.csv")
+    m = saltus.Model(str(tmp_path / "toggle.toml"))
+    for how in ({}, {"executor": Inline()}):
+        with pytest.warns(saltus.ModelWarning) as warned:
+            m.sweep(threshold=[0.9, 1, 1.1, 1], **how)
+        assert len(warned) == 1 and told in str(warned[0].message)
+
+
+@pytest.mark.parametrize("order", [[1, 2, 3], [3, 2, 1], [2, 1, 3], [2, 3, 1], [1, 1, 2, 2, 1, 3]])
+def test_switching_functions_that_coincide_in_some_runs(order):
+    """Of a run in which they do both are one; its kernel is not used for a run in which they do not."""
+    m = saltus.Model.from_text(
+        '[model]\nname = "two"\n[parameters]\na = 1\nb = 1\n[states]\nx = 0\n'
+        '[dynamics]\nx = "1 + step(x - a) + step(x - b)"\n[simulate]\nuntil = 3\n')
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", saltus.ModelWarning)
+        for jobs in (1, 2):
+            s = m.sweep(b=order, jobs=jobs)
+            assert s["x"] == pytest.approx([{1: 7, 2: 6.5, 3: 6}[b] for b in order], rel=1e-9)
+            assert s["x"].tolist() == [m.simulate(set={"b": b}).final["x"] for b in order]

@@ -43,6 +43,8 @@ def copy_pages():
     shutil.copytree(ROOT / "docs", SOURCE)
     shutil.copytree(ROOT / "examples/01_first_simulation", SOURCE / "examples", ignore=shutil.ignore_patterns("*.md"))
     shutil.copy(ROOT / "tests/optimal_control/builder_test.cpp", SOURCE / "examples")
+    shutil.copy(ROOT / "examples/03_embedded/main.cpp", SOURCE / "examples/embedded.cpp")
+    shutil.copy(ROOT / "examples/03_embedded/CMakeLists.txt", SOURCE / "examples/embedded.cmake")
     for name, page in (("CHANGELOG.md", "changes.md"), ("ARCHITECTURE.md", "architecture.md")):
         text = (ROOT / name).read_text().replace("](docs/adr)", "](decisions.md)").replace("](docs/", "](")
         # What the source tree has, and the site has not, is named without a link.
@@ -56,6 +58,13 @@ def doxygen():
     settings = (ROOT / "scripts/site/Doxyfile").read_text() + f"\nINPUT = {ROOT}/src/saltus\nOUTPUT_DIRECTORY = {BUILD}/site_cpp\n"
     (BUILD / "site_cpp").mkdir(exist_ok=True)
     subprocess.run(["doxygen", "-q", "-"], input=settings, text=True, check=True, stderr=subprocess.DEVNULL)
+    for file in (BUILD / "site_cpp/xml").glob("*.xml"):
+        text = file.read_text()
+        # Sphinx reads neither designated initialisers nor lambdas, and Breathe shows private classes.
+        mended = re.sub(r"<initializer>(= \[|[^<]*\{\.)(?:.|\n)*?</initializer>", "", text)
+        mended = re.sub(r'\s*<innerclass [^>]*prot="private"[^>]*>[^<]*</innerclass>', "", mended)
+        if mended != text:
+            file.write_text(mended)
     return True
 
 

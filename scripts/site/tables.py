@@ -3,6 +3,8 @@
 import json
 import re
 import subprocess
+import sys
+from pathlib import Path
 
 
 def commands_of(tool):
@@ -189,23 +191,29 @@ Read [Saltus in Python](../python.md) first.
 """
 
 CPP_FILES = [
-    ("What one calls", "pipeline", ["simulate.hpp", "simulate_options.hpp", "values_at.hpp", "sweep.hpp", "compare.hpp", "order.hpp"]),
-    ("Stating a model", "model", ["builder.hpp", "build.hpp"]),
-    ("Reading and writing", "io", ["toml_model.hpp", "json_result.hpp"]),
-    ("What one gets", "result", ["result.hpp", "status.hpp"]),
-    ("Errors", "base", ["error.hpp"]),
+    ("Stating a model", ["model/builder.hpp", "model/recognition/condition.hpp", "model/build.hpp", "model/override.hpp", "model/decisions.hpp"]),
+    ("Simulating it", ["pipeline/simulate.hpp", "pipeline/options/simulate_options.hpp", "pipeline/values_at.hpp", "pipeline/sweep.hpp",
+                       "pipeline/compare.hpp", "pipeline/order.hpp", "base/symbolic_lock.hpp"]),
+    ("Optimal control", ["model/optimal_control/ocp_builder.hpp", "model/ocp.hpp", "pipeline/optimal_control/optimize.hpp",
+                         "pipeline/options/optimize_options.hpp", "result/optimization.hpp"]),
+    ("What one gets", ["result/result.hpp", "result/events.hpp", "result/status.hpp"]),
+    ("Reading and writing", ["io/toml/toml_model.hpp", "io/json/json_result.hpp", "io/atomic_file.hpp"]),
+    ("Errors", ["base/error.hpp"]),
 ]
+CPP_SECTIONS = ("briefdescription detaileddescription func enum innerclass innernamespace typedef var "
+                "public-type public-func public-static-func public-attrib")
 
 
 def cpp_page(root):
-    rows = ["# The C++ library", "", "`find_package(saltus)`, link `saltus::saltus`. A whole program: [start](../start.md#a-program-in-c). Here are the headers "
+    rows = ["# The C++ library", "", "`find_package(saltus)`, link `saltus::saltus`. A whole program: [start](../start.md#a-program-in-c); more: [inside a C++ program](../embedding.md). Here are the headers "
             "that a program includes first; every other header says in its comments what it does.", ""]
-    for title, folder, names in CPP_FILES:
+    for title, names in CPP_FILES:
         rows += [f"## {title}", ""]
         for name in names:
-            if (root / "src/saltus" / folder / name).exists():
-                rows += [f"### saltus/{folder}/{name}", "", "```{eval-rst}", f".. doxygenfile:: {name}", "   :project: saltus",
-                         "   :sections: briefdescription func innerclass enum innernamespace", "```", ""]
+            if not (root / "src/saltus" / name).exists():
+                sys.exit(f"the C++ reference names src/saltus/{name}, which is not there")
+            rows += [f"### saltus/{name}", "", "```{eval-rst}", f".. doxygenfile:: {Path(name).name}", "   :project: saltus",
+                     f"   :sections: {CPP_SECTIONS}", "```", ""]
     return "\n".join(rows)
 
 
@@ -222,9 +230,9 @@ def write(source, tool, root):
 
 def write_index(source, with_cpp, quick):
     """The list of the generated pages that the index includes."""
-    names = ["commands", "keys", "functions", "python"] + (["cpp"] if with_cpp else [])
+    names = ["commands", "keys", "functions", "python", "cpp"]
     if not with_cpp:
-        (source / "made/cpp.md").unlink()
+        (source / "made/cpp.md").write_text("# The C++ library\n\nNot made in a quick build, or without Doxygen.\n")
     lines = "\n".join(f"made/{name}" for name in names)
     page = source / "reference.md"
     page.write_text(page.read_text().replace("% made", lines))

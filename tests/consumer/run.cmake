@@ -33,7 +33,7 @@ endif()
 # build_and_run(NAME FOLDER): configures, builds and runs a project that uses the installation; its output in `output`.
 function(build_and_run name folder)
   run(${CMAKE_COMMAND} -S ${folder} -B ${work_dir}/build/${name} -G ${generator}
-    -D CMAKE_BUILD_TYPE=Release -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher}
+    -D CMAKE_BUILD_TYPE=Release "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror" -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_CXX_COMPILER_LAUNCHER=${launcher}
     "-DCMAKE_PREFIX_PATH=${work_dir}/prefix\;${casadi_dir}" -D wanted_version=${version})
   run(${CMAKE_COMMAND} --build ${work_dir}/build/${name})
   run(${work_dir}/build/${name}/${name})
@@ -71,6 +71,16 @@ build_and_run(small_mpcc ${source_dir}/examples/02_small_mpcc)
 if(NOT output MATCHES "completed: f = 1 at")
   message(FATAL_ERROR "examples/02_small_mpcc printed\n${output}")
 endif()
+
+# Installed, it runs without CasADi's folder.
+build_and_run(embedded ${source_dir}/examples/03_embedded)
+run(${CMAKE_COMMAND} --install ${work_dir}/build/embedded --prefix ${work_dir}/build/embedded_installed)
+run(${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH ${work_dir}/build/embedded_installed/bin/embedded)
+foreach(expected "x\\(0.5\\) = 1\\.22" "the same end: yes" "the same in threads: yes" "was built for mu = 0")
+  if(NOT output MATCHES "${expected}")
+    message(FATAL_ERROR "examples/03_embedded printed\n${output}")
+  endif()
+endforeach()
 
 foreach(file LICENSE CITATION.cff docs/python.md examples/01_first_simulation/main.cpp)
   if(NOT EXISTS ${work_dir}/prefix/share/doc/saltus/${file})

@@ -3,6 +3,7 @@
 usage: check_docs.py ROOT TOOL
 """
 
+import doctest
 import re
 import sys
 from pathlib import Path
@@ -54,7 +55,10 @@ def complaints_of_index(root):
 def main(root, tool):
     sys.path.insert(0, str(root / "scripts/site"))
     import blocks
+    import streams
 
+    if doctest.testmod(streams).failed:
+        sys.exit(1)
     complaints = complaints_of_statuses(root) + complaints_of_questions(root) + complaints_of_howtos(root) + complaints_of_index(root)
     if complaints:
         sys.exit("\n".join(complaints))

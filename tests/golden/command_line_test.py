@@ -2,6 +2,7 @@
 
 import json
 import math
+import subprocess
 
 import tool
 
@@ -175,6 +176,10 @@ class Simulate(tool.ToolTest):
         self.assertIn("iteration_limit", out)
         self.assertIn("stopped early: iteration_limit", err)
         self.assertTrue((self.folder / "r.json").exists())
+        # In one stream the reason is said once.
+        joined = subprocess.run([tool.TOOL, "simulate", model, "--set", "simulate.max_steps=1", "--until", "1000"], text=True,
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False).stdout
+        self.assertEqual(joined.count("max_steps = 1"), 1, joined)
 
     def test_long_event_lists_show_both_ends_and_the_count(self):
         model = self.write("m.toml", """

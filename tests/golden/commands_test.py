@@ -206,7 +206,12 @@ class Words(tool.ToolTest):
                                 (["simulate", "stick"], "did you mean 'stick-slip'"),
                                 (["simulate", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`: add --out r.json, then "
                                  "saltus report r.json --figure"),
-                                (["sweep", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`\n"),
+                                (["sweep", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`; saltus sweep draws its "
+                                 "table with --report FILE.html\n"),
+                                (["report", "rows.csv", "--figure", "x.svg"], "rows.csv: error: a .csv file is a table, not the whole result\n"),
+                                (["diff", "rows.csv", "rows.csv"], "a sweep draws its table with --report FILE.html"),
+                                (["new", "ring", "--like", "repressilator"], "saltus models repressilator > ring.toml\n"),
+                                (["new", "ring", "--like", "genes"], "did you mean 'gene'?"),
                                 (["check", "stick-slip", "--until", "3"], "--until is an option of `saltus simulate`"),
                                 (["simulate", "stick-slip", "--output", "x.json"], "did you mean '--out'?"),
                                 (["simulate", "stick-slip", "--show", "w"], "known: q, v, slip\n")):

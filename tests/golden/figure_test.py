@@ -1,5 +1,6 @@
 """Drawings without a browser: saltus report --figure, --phase, --open."""
 
+import json
 import os
 import pathlib
 import stat
@@ -8,6 +9,30 @@ import xml.etree.ElementTree as tree
 
 import tool
 
+SERVO = """[model]
+name = "servo"
+[states]
+angle = 0
+speed = 0
+[[hysteresis]]
+name = "forward"
+input = "1 - angle"
+on = 0.10
+off = 0.06
+initial = 1
+[[hysteresis]]
+name = "backward"
+input = "angle - 1"
+on = 0.10
+off = 0.06
+[dynamics]
+angle = "speed"
+speed = "60*(forward - backward) - 5*speed"
+[outputs]
+u = "6*(forward - backward)"
+[simulate]
+until = 10
+"""
 
 class Figure(tool.ToolTest):
     def setUp(self):
@@ -43,6 +68,52 @@ class Figure(tool.ToolTest):
         self.assertGreater(len(self.marks("a.svg", "circle", "fill", "#8d97a5")), 0)
         self.run_tool("report", "r.json", "--figure", "a.svg", "--phase", "t,v", code=0)
         self.assertEqual(self.marks("a.svg", "path", "stroke", "#b9c0ca"), [])
+
+    def test_jumps_are_seen_without_rows_at_events(self):
+        """Dotted lines from the state before an event to that behind it, and none through it."""
+        rows = ("--set", "simulate.until=3", "--set", "simulate.output.every=0.1")
+        self.run_tool("simulate", "bouncing-ball", *rows, "--out", "a.json", "--quiet", code=0)
+        self.run_tool("simulate", "bouncing-ball", *rows, "--set", "simulate.output.events=false", "--out", "b.json", "--quiet", code=0)
+        jumps = []
+        for name in ("a", "b"):
+            self.run_tool("report", f"{name}.json", "--figure", f"{name}.svg", "--columns", "v", code=0)
+            jumps.append([mark.get("d") for mark in self.marks(f"{name}.svg", "path", "stroke-dasharray", "2 3")])
+        self.assertEqual(len(jumps[0]), 1)
+        self.assertEqual(jumps[0], jumps[1])
+
+    def test_edges_of_a_relay_are_all_drawn_alike(self):
+        """Rows closer than pixels do not join the sides of a jump; legends tell its thresholds apart."""
+        self.write("servo.toml", SERVO)
+        self.run_tool("simulate", "servo.toml", "--out", "s.json", "--quiet", code=0)
+        self.run_tool("report", "s.json", "--figure", "a.svg", "--columns", "u", code=0)
+        jumps = json.loads((self.folder / "s.json").read_text())["events"]
+        self.assertGreater(len(jumps), 50)
+        self.assertEqual(len(self.marks("a.svg", "path", "stroke-dasharray", "2 3")), len(jumps))
+        self.assertEqual(len(self.marks("a.svg", "path", "stroke-width", "1.6")), len(jumps) + 1)
+        self.run_tool("report", "s.json", "--figure", "b.svg", "--phase", "angle,speed", code=0)
+        thresholds = {"forward on": 0.9, "forward off": 0.94, "backward on": 1.1, "backward off": 1.06}
+        for name in thresholds:
+            self.assertEqual(self.words("b.svg").count(name), 1)
+        self.assertEqual(self.thresholds("s.json", "angle"), thresholds)
+        self.run_tool("simulate", "temperature-control", "--out", "t.json", "--quiet", code=0)
+        self.assertEqual(self.thresholds("t.json", "y"), {"heating on": 18, "heating off": 20})
+
+    def test_thresholds_of_jumps_that_turn_a_state_are_told_apart(self):
+        """Whoever wrote them, in whatever order; other jumps keep their names."""
+        model = ("[model]\nname = 'm'\n[states]\nT = 15\n{0} = 1\n[dynamics]\nT = '10*{0} - T'\n{0} = '0'\n[[jumps]]\nname = '{1}'\n"
+                 "when = 'T < 8 and {0} < 0.5 or {0} > 0.5 and T > 9'\nset = {{ {0} = '{2}' }}\n[simulate]\nuntil = 5\n")
+        for state, jump, value, expected in (("heat", "heat", "1 - heat", {"heat on": 8, "heat off": 9}),
+                                             ("heat", "turn", "1 - heat", {"turn": 9}),
+                                             ("heat", "heat", "2 - heat", {"heat": 9})):
+            self.write("m.toml", model.format(state, jump, value))
+            self.run_tool("simulate", "m.toml", "--out", "m.json", "--quiet", code=0)
+            self.assertEqual(self.thresholds("m.json", "T"), expected)
+
+    def thresholds(self, name, state):
+        """Of every surface of this state alone where it lies."""
+        surfaces = json.loads((self.folder / name).read_text())["surfaces"]
+        lines = {one["name"]: one["affine"] for one in surfaces if one["states"] == [state]}
+        return {name: round(-line["constant"] / line["gradient"][0], 12) for name, line in lines.items()}
 
     def test_units_and_labels_stand_beside_panels_and_axes(self):
         self.run_tool("new", "u", "--like", "impact", code=0)

@@ -53,6 +53,22 @@ class MalformedHysteresis(tool.ToolTest):
         self.assertIn("beyond its thresholds", err)
         self.assertEqual(json.loads((self.folder / "r.json").read_text())["trajectory"]["x"][0], [16.0, 1.0])
 
+    def test_a_number_that_is_called_value_is_one_mistake(self):
+        """[outputs] calls it so; what is missing then is not told, too."""
+        thresholds = '[parameters]\nhigh = { value = 15, unit = "m/s" }\nlow = { value = 10 }\n'
+        file = self.write("value.toml", hysteresis(*ALL[:2], "on = 'high'", "off = 'low'") + thresholds)
+        for command in ("simulate", "check"):
+            out, err = self.run_tool(command, file, code=2)
+            self.assertIn("unknown key 'value'", err + out)
+            self.assertIn("did you mean 'initial'?", err + out)
+            self.assertNotIn("both 0", err + out)
+            self.assertNotIn("no initial value", err + out)
+        self.assertEqual((out + err).count("error:"), 2)
+        typo = '[parameters]\nhigh = { inital = 15 }\nlow = { initial = 10 }\n'
+        file = self.write("typo.toml", hysteresis(*ALL[:2], "on = 'high'", "off = 'low'") + typo)
+        out, err = self.run_tool("check", file, code=2)
+        self.assertEqual((out + err).count("error:"), 1)
+
     def test_all(self):
         for number, (name, (content, line, *expected)) in enumerate(FILES.items()):
             with self.subTest(name):

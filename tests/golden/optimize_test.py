@@ -1,6 +1,7 @@
 """saltus optimize from outside: help, bad input, files."""
 
 import json
+import math
 
 import tool
 
@@ -113,6 +114,55 @@ class ClosedLoop(tool.ToolTest):
         self.assertEqual(closed_loop["x"][0], [1.0])
         out, _ = self.run_tool("optimize", file, "--set", "optimize.closed_loop=true", code=0)
         self.assertIn("With feedback from the states at the nodes", " ".join(out.split()))
+
+    def optimised(self, *settings):
+        arguments = [word for one in settings for word in ("--set", one)]
+        self.run_tool("optimize", "m.toml", *arguments, "--quiet", "--out", "r.json", code=0)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
+    def test_a_controller_that_tracks_the_plan(self):
+        """Where the end costs little it is optimal to let an error grow; a controller that tracks the plan does not."""
+        self.write("m.toml", UNSTABLE.replace("100*x^2", "0.001*x^2").replace("stages = 1", "stages = 3"))
+        settings = ["optimize.closed_loop=true", "optimize.plant.x=1.1"]
+        ends = {feedback: self.optimised(*settings, f"optimize.feedback={feedback}")["verification"]["closed_loop"]["end_state_error"]
+                for feedback in ("optimal", "tracking")}
+        self.assertGreater(ends["optimal"], 0.05)
+        self.assertLess(ends["tracking"], 1e-3)
+        _, err = self.run_tool("optimize", "m.toml", "--set", "optimize.feedback=none", code=2)
+        self.assertIn("tracking", err)
+
+    def test_the_plant_may_differ_from_the_model(self):
+        text = UNSTABLE.replace("3*x + u", "a*x + u").replace("[states]", "[parameters]\na = 3\n[states]")
+        self.write("m.toml", text)
+        as_planned = self.optimised("optimize.closed_loop=true")
+        other = self.optimised("optimize.closed_loop=true", "optimize.plant={ a = 3.5, x = 1.25 }", "optimize.plant.x=1.5")
+        self.assertEqual(other["u"], as_planned["u"])
+        self.assertEqual(other["verification"]["open_loop"], as_planned["verification"]["open_loop"])
+        self.assertNotIn("plant", as_planned["verification"])
+        self.assertEqual(other["verification"]["plant"], {"a": 3.5, "x": 1.5})
+        rows = other["verification"]["closed_loop"]
+        self.assertEqual(rows["x"][0], [1.5])
+        # In the first interval: x' = 3.5 x + w, w constant.
+        (t1, x1), (t2, x2) = ((rows["t"][i], rows["x"][i][0]) for i in (1, 2))
+        w = 3.5 * (x1 - 1.5 * math.exp(3.5 * t1)) / (math.exp(3.5 * t1) - 1)
+        self.assertAlmostEqual(x2, (1.5 + w / 3.5) * math.exp(3.5 * t2) - w / 3.5, places=8)
+        self.write("m.toml", text + "closed_loop = true\nplant = { a = 3.5 }\n")
+        out, _ = self.run_tool("optimize", "m.toml", code=0)
+        self.assertIn("With feedback from the states at the nodes, a = 3.5", " ".join(out.split()))
+
+    def test_a_plant_that_cannot_be(self):
+        self.write("m.toml", UNSTABLE.replace("x = 1\n", "x = { initial = 1, lower = 0, upper = 2, free = true }\n"))
+        for plant, message in (("{ y = 1 }", "'y'"), ("{ x = 1 }", "is free"),
+                               ("{ u = \"x\" }", "constant")):
+            _, err = self.run_tool("optimize", "m.toml", "--set", "optimize.closed_loop=true", "--set",
+                                   f"optimize.plant={plant}", code=2)
+            self.assertIn(message, err)
+        self.write("m.toml", UNSTABLE + "plant = { x = 2 }\n")
+        _, err = self.run_tool("optimize", "m.toml", code=2)
+        self.assertRegex(err, r"m.toml:18:15: error: .*closed_loop is false")
+        self.write("m.toml", UNSTABLE + "plant = 3\n")
+        _, err = self.run_tool("optimize", "m.toml", code=2)
+        self.assertIn("a table of parameters and initial values", err)
 
     def test_it_is_left_out_unless_it_is_asked_for(self):
         self.run_tool("optimize", self.write("m.toml", UNSTABLE), "--quiet", "--out", "r.json", code=0)

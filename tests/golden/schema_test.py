@@ -123,8 +123,11 @@ class Schema(tool.ToolTest):
             self.assertNotEqual(self.problems(wrong, self.schema, ""), [], wrong)
         for wrong in ({"method": "x"}, {"rtol": -1}, {"rtol": "small"}, {"until": [1]}, {"output": {"points": 1}},
                       {"output": {"points": 2.5}}, {"output": "all"}, {"event": {"integrator": "rk45"}},
-                      {"fesd": {"stages": 0}}, {"max_steps": True}):
+                      {"fesd": {"stages": 0}}, {"max_steps": True}, {"fesd": {"step_equilibration": "exact"}},
+                      {"fesd": {"lifting": 65}}, {"output": {"times": ["soon"]}}, {"output": {"states": [1]}}):
             self.assertNotEqual(self.problems({"model": {"name": "m"}, "simulate": wrong}, self.schema, ""), [], wrong)
+        for wrong in ({"mpcc": {"method": "newton"}}, {"elements": [0.5]}, {"mpcc": {"sigma_factor": 1}}):
+            self.assertNotEqual(self.problems({"model": {"name": "m"}, "optimize": wrong}, self.schema, ""), [], wrong)
 
 
 if __name__ == "__main__":

@@ -187,6 +187,8 @@ class TimeFreezing(tool.ToolTest):
             (('gap = "z"', 'gap = "z - 0.1*t"'), "the gap of 'ground' depends on t, and time stands still"),
             (("vz = 0\n", "vz = 0\nclock = 0\n"), "a state with the name 'clock' beside [[contacts]]"),
             (("[parameters]\n", "[parameters]\nclock = 1\n"), "a parameter with the name 'clock' beside [[contacts]]"),
+            (("[simulate]", "[tables.clock]\nx = [0, 1]\ny = [0, 1]\n[simulate]"),
+             "a table with the name 'clock' beside [[contacts]]"),
         ):
             file = self.write("bad.toml", BALL.replace(*change))
             _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)
@@ -262,14 +264,55 @@ elements = 3
 running_cost = "0.01*f^2"
 terminal_constraints = ["vx == 0"]
 """
-        _, err = self.run_tool("optimize", self.write("m.toml", braked), "--out", "r.json", code=0)
+        out, err = self.run_tool("optimize", self.write("m.toml", braked), "--out", "r.json", code=0)
         self.assertIn("impacts at t = 0.375 lie at ends of control intervals", err)
+        self.assertIn("Not looked at: impacts at t = 0.375 lie at ends of control intervals", " ".join(out.split()))
         impact = next(e for e in json.loads((self.folder / "r.json").read_text())["events"] if e["kind"] == "impact")
         change = [b - a for a, b in zip(impact["x"][2:], impact["x_after"][2:], strict=True)]
         self.assertAlmostEqual(impact["impulse"][0][0], change[1], delta=1e-9)
         self.assertAlmostEqual(impact["impulse"][0][1], change[0], delta=1e-9)
         out, err = self.run_tool("optimize", self.write("m.toml", braked.replace("intervals = 8", "intervals = 7")), code=0)
-        self.assertNotIn("ends of control intervals", err)
+        self.assertNotIn("ends of control intervals", out + err)
+
+    def test_a_body_stopped_by_a_wall_at_the_end(self):
+        """A block is pushed into a wall that takes its speed: the impact is the last thing that happens."""
+        result = self.optimised(HEAD + """[states]
+q = 0
+v = 0
+[controls]
+u = { lower = -2, upper = 2 }
+[mechanics]
+positions = ["q"]
+velocities = ["v"]
+force = { v = "u - 0.5*sign(v)" }
+[[contacts]]
+name = "wall"
+gap = "1 - q"
+[optimize]
+horizon = { free = true, initial = 2, lower = 0.1, upper = 10 }
+control_intervals = 4
+minimize_time = true
+terminal_constraints = ["q == 1", "v == 0"]
+""")
+        self.assertAlmostEqual(result["horizon"], math.sqrt(2 / 1.5), places=6)
+        impact = result["events"][-1]
+        self.assertEqual((impact["kind"], impact["surfaces"]), ("impact", ["wall"]))
+        self.assertAlmostEqual(impact["impulse"][0][0], 1.5 * result["horizon"], places=6)
+        self.assertAlmostEqual(result["final"]["x"][1], 0.0, delta=1e-12)
+
+    def test_controls_that_change_have_two_rows(self):
+        result = self.optimised(BALL.split("[simulate]")[0].replace("[mechanics]", "[controls]\nf = { lower = -3, upper = 3 }\n[mechanics]").replace(
+            'potential = "10*z"', 'potential = "10*z"\nforce = { vx = "f" }') + """[optimize]
+horizon = 0.3
+control_intervals = 3
+running_cost = "f^2"
+terminal_cost = "x^2"
+""")
+        rows = result["trajectory"]
+        for node in (0.1, 0.2):
+            here = [i for i, t in enumerate(rows["t"]) if abs(t - node) < 1e-9]
+            self.assertEqual(len(here), 2)
+            self.assertNotEqual(rows["u"][here[0]], rows["u"][here[1]])
 
     def test_turns_of_a_slip_and_impulses_are_told(self):
         """A block on a spring with friction turns twice before it sticks, and a ball's impact has its impulse in its row."""

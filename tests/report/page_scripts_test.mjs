@@ -58,6 +58,14 @@ test("a jump is a gap with its two sides, a continuous event and a rounding are 
   assert.deepEqual(jumps, {x: [1, 1, null], y: [1, 5, null]});
 });
 
+test("a missing side of an event is a gap without a jump, and a value between two gaps is seen", () => {
+  const t = [0, 1, 1, 2, 3, 3, 4];
+  const {x, y, jumps} = saltus.points(t, [5, null, null, 7, null, 8, 8], [0, 4], 4);
+  assert.deepEqual(jumps.x, []);
+  assert.deepEqual(y, [5, 5, null, null, 7, 7, null, 8, 8]);
+  assert.deepEqual(x, [-0.5, 0.5, 1, 1, 1.5, 2.5, 3, 3, 4]);
+});
+
 test("a discrete state is drawn as steps without gaps", () => {
   const t = [0, 1, 1, 2, 2, 3];
   const steps = [0, 0, 1, 1, 2, 2];
@@ -254,6 +262,14 @@ test("the search finds numbers, kinds, names, surfaces and reasons, all words to
   assert.deepEqual(saltus.matchingEvents(events, "#1"), [0]);
   assert.deepEqual(saltus.matchingEvents(events, "crossing #12"), [11]);
   assert.deepEqual(saltus.matchingEvents(events, "slip crossing"), []);
+});
+
+test("a jump of a hysteresis says what it turned to", () => {
+  const event = {kind: "jump", name: "heats", turned: "on", surfaces: ["heats"], reason: ""};
+  assert.equal(saltus.eventPlace(event), "heats on");
+  assert.equal(saltus.eventPlace({...event, turned: null}), "heats");
+  assert.equal(saltus.eventPlace({...event, name: null, turned: null, surfaces: ["a", "b"]}), "a, b");
+  assert.deepEqual(saltus.matchingEvents([event, {...event, turned: "off"}], "heats on"), [0]);
 });
 
 const meetingOf = (velocities, before = [0, 0]) =>

@@ -124,6 +124,26 @@ class Sweep(Page):
         self.value("[...document.querySelectorAll('section')].at(-1).querySelectorAll('.run')[2].dispatchEvent(new Event('click'))")
         self.assertIn("run 3: belt = 5; completed, 0 events", self.value("document.getElementById('chosen').textContent"))
 
+    def test_the_page_opens_on_a_value_that_varies(self):
+        """At the threshold that an event is about the state has one value in all runs."""
+        (self.folder / "m.toml").write_text(
+            '[model]\nname = "m"\n[parameters]\nrate = 1\n[states]\nx = 0\ny = 0\n[dynamics]\nx = "rate*step(1 - x)"\ny = "1"\n')
+        self.tool("sweep", "m.toml", "--until", "3", "--over", "rate=0.5,1,2", "--keep", "events", "--report", "sweep.html")
+        self.open("sweep.html")
+        self.assertEqual(self.value("document.querySelector('#controls select').value"), "y")
+
+    def test_runs_whose_solution_is_not_unique_have_a_mark(self):
+        (self.folder / "m.toml").write_text(
+            '[model]\nname = "m"\n[parameters]\npush = 0\n[states]\nx = 0\n[dynamics]\nx = "sign(x) + push"\n')
+        over = ["--over", "push=-3,0,2", "--until", "1"]
+        for keep, second in ("final", ()), ("events", ()), ("final", ("--over", "x=0,1")):
+            self.tool("sweep", "m.toml", *over, *second, "--keep", keep, "--report", "sweep.html")
+            self.open("sweep.html")
+            self.assertIn(f"not unique in 1 of {6 if second else 3} runs", self.value("document.querySelector('#pictures p').textContent"))
+            self.assertEqual(self.value("document.querySelector('section svg').querySelectorAll('.alarm').length"), 1)
+            self.value("document.querySelector('#pictures p button').click()")
+            self.assertIn("the solution is not unique", self.value("document.getElementById('chosen').textContent"))
+
     def test_lines_ascend_and_random_samples_are_points(self):
         line = "document.querySelector('svg path')?.getAttribute('d').split(/[ML ]/).filter((word) => word).map(Number)"
         self.tool("sweep", "stick-slip", "--until", "5", "--over", "belt=0.3,0.1,0.2", "--report", "sweep.html")

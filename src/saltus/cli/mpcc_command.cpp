@@ -202,7 +202,7 @@ std::string wrapped_words(std::string_view words) {
 std::string keys_help() {
   std::string text = "Keys of --set mpcc.KEY=VALUE:\n";
   for (const auto& field : pipeline::mpcc_fields()) {
-    text += fmt::format("  {:<17} {}\n        {}\n", field.key, wrapped_words(field.expects), field.doc);
+    text += fmt::format("  {:<17} {}\n        {}\n", field.key, wrapped_words(expects(field.kind)), field.doc);
   }
   return text;
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/text/terminal.hpp"
@@ -143,18 +144,30 @@ struct NewArguments {
   std::string like = "friction";
 };
 
+fs::path file_of(const std::string& name) {
+  fs::path file(name);
+  if (file.extension() != ".toml") file += ".toml";
+  return file;
+}
+
+Error no_template(const NewArguments& arguments) {
+  const auto models = catalogue();
+  const bool is_model =
+      std::any_of(models.begin(), models.end(), [&](const auto& entry) { return entry.name == arguments.like; });
+  return {ErrorCode::unknown_name,
+          fmt::format("there is no template '{}'", arguments.like),
+          is_model ? fmt::format("it is a model of the catalogue: saltus models {} > {}", arguments.like,
+                                 file_of(arguments.name).string())
+                   : suggest(arguments.like, template_names()),
+          {},
+          {}};
+}
+
 ExitCode run_new(const NewArguments& arguments) {
   const auto* known = std::find_if(templates.begin(), templates.end(),
                                    [&](const Template& other) { return other.name == arguments.like; });
-  if (known == templates.end()) {
-    return refuse({ErrorCode::unknown_name,
-                   fmt::format("there is no template '{}'", arguments.like),
-                   suggest(arguments.like, template_names()),
-                   {},
-                   {}});
-  }
-  fs::path file(arguments.name);
-  if (file.extension() != ".toml") file += ".toml";
+  if (known == templates.end()) return refuse(no_template(arguments));
+  const auto file = file_of(arguments.name);
   const auto name = file.stem().string();
   const bool plain = std::none_of(name.begin(), name.end(),
                                   [](unsigned char c) { return c < 0x20U || c == 0x7FU || c == '"' || c == '\\'; });

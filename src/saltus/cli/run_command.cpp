@@ -4,6 +4,7 @@
 #include <charconv>
 #include <limits>
 #include <set>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -22,16 +23,6 @@
 
 namespace saltus::cli {
 namespace {
-
-/// Of many the first ones.
-void print_warnings(const std::vector<std::string>& warnings) {
-  constexpr std::size_t most = 12;
-  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i)
-    print_error(fmt::format("warning: {}", warnings[i]));
-  if (warnings.size() > most) {
-    print_error(fmt::format("and {} more warnings: saltus check lists them", warnings.size() - most));
-  }
-}
 
 /// Names of --show.
 Expected<void> check_shown(const RunArguments& arguments, const model::System& system) {
@@ -69,7 +60,7 @@ Expected<result::Result> compute_all(const RunArguments& arguments, const ModelI
 /// Says which trajectories stopped early, if any did, and every reason once.
 class Stops {
  public:
-  /// @param message_shown  whoever reads this has the messages on the same terminal already
+  /// @param message_shown  whoever reads this has the messages in the same place already
   explicit Stops(bool message_shown) : message_shown_(message_shown) {}
   void look_at(const std::string& who, const result::Status& status) {
     if (is_done(status.termination)) return;
@@ -122,8 +113,16 @@ Expected<std::size_t> shown_events(const std::string& typed) {
                               {}});
 }
 
-ExitCode report_stops(const result::Result& result, const RunArguments& arguments) {
-  Stops stops(!arguments.quiet && isatty(STDOUT_FILENO) != 0 && isatty(STDERR_FILENO) != 0);
+/// Whether standard output and standard error are one terminal, file or pipe.
+bool is_one_stream() {
+  struct stat output = {}, errors = {};
+  return fstat(STDOUT_FILENO, &output) == 0 && fstat(STDERR_FILENO, &errors) == 0 && output.st_dev == errors.st_dev &&
+         output.st_ino == errors.st_ino;
+}
+
+/// @param table_shown  with what it says of the status
+ExitCode report_stops(const result::Result& result, bool table_shown) {
+  Stops stops(table_shown && is_one_stream());
   for (const auto& entry : result::tree(result)) {
     stops.look_at(entry.result == &result ? "" : "branch " + entry.label + " ", entry.result->status);
   }
@@ -148,6 +147,15 @@ ExitCode report_stops(const result::Result& result, const RunArguments& argument
 }
 
 }  // namespace
+
+void print_warnings(const std::vector<std::string>& warnings) {
+  constexpr std::size_t most = 12;
+  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i)
+    print_error(fmt::format("warning: {}", warnings[i]));
+  if (warnings.size() > most) {
+    print_error(fmt::format("and {} more warnings: saltus check lists them", warnings.size() - most));
+  }
+}
 
 void add_model_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts) {
   command
@@ -244,11 +252,11 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
                                  : outputs->write(*result, progress_of(arguments));
   if (has_grown) result->events = growing->ends();
   // Also if nothing could be written: it is all that is left.
-  if (!arguments.quiet && !outputs->fill_standard_output())
-    print(report::to_table(*result, *shown, input->file.captions, arguments.show));
+  const bool table_shown = !arguments.quiet && !outputs->fill_standard_output();
+  if (table_shown) print(report::to_table(*result, *shown, arguments.show));
   if (!written) return refuse(written.error());
   if (*written == Written::interrupted) return ExitCode::stopped_early;
-  return report_stops(*result, arguments);
+  return report_stops(*result, table_shown);
 }
 
 }  // namespace saltus::cli

@@ -79,6 +79,9 @@ void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const
   return arguments.quiet ? ShowProgress::never : ShowProgress::when_terminal;
 }
 
+/// Writes warnings to standard error, of many the first ones.
+void print_warnings(const std::vector<std::string>& warnings);
+
 /// Applies what was typed beside --set, and notes it as settings.
 [[nodiscard]] Expected<void> apply_shortcuts(const RunArguments& arguments, ModelInput& input);
 

@@ -40,6 +40,7 @@ std::vector<ShownCommand> shown_commands(const CLI::App& app) {
   for (const auto* command : app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); })) {
     ShownCommand shown{command->get_name(), command->get_description()};
     for (const auto* option : command->get_options()) {
+      if (option->get_group().empty()) continue;  // not in the help
       auto words = listed_words(option->get_type_name());
       if (words.empty()) words = words_of_help(option->get_description());
       const bool positional = option->get_positional();

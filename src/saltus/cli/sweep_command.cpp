@@ -17,6 +17,7 @@
 #include "saltus/cli/sweep/share.hpp"
 #include "saltus/cli/sweep/sweep_input.hpp"
 #include "saltus/cli/sweep/sweep_table.hpp"
+#include "saltus/cli/sweep/sweep_warnings.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/atomic_file.hpp"
 
@@ -119,6 +120,25 @@ std::string statuses(const std::vector<pipeline::SweepRun>& runs) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// "; 1 not unique", of a table with a column of that: how many runs are in doubt.
+std::string doubts(const std::vector<TableColumn>& table) {
+  const auto unique =
+      std::find_if(table.begin(), table.end(), [](const auto& column) { return column.name == "unique"; });
+  if (unique == table.end()) return "";  // joined shares of an older version
+  const auto& runs = std::get<std::vector<double>>(table.front().values);
+  const auto& values = std::get<std::vector<double>>(unique->values);
+  std::size_t others = 0, undecided = 0;
+  for (std::size_t row = 0; row < runs.size(); ++row) {
+    if (row > 0 && runs[row] == runs[row - 1]) continue;
+    if (values[row] == 0.0) ++others;
+    if (values[row] < 0.0) ++undecided;
+  }
+  std::vector<std::string> parts;
+  if (others > 0) parts.push_back(fmt::format("{} not unique", others));
+  if (undecided > 0) parts.push_back(fmt::format("uniqueness of {} not decided", undecided));
+  return parts.empty() ? "" : fmt::format("; {}", fmt::join(parts, ", "));
+}
+
 ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs) {
   const auto stopped = [](const auto& run) { return !is_done(run.result.status.termination); };
   const auto first = std::find_if(runs.begin(), runs.end(), stopped);
@@ -181,7 +201,8 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   if (auto once = check_settings(arguments.run.settings, *plan); !once) return refuse(once.error());
   const auto first = input_of_run(*model, *plan, 0);
   if (!first) return refuse(first.error());
-  for (const auto& warning : options_without_effect(first->file)) print_error(fmt::format("warning: {}", warning));
+  if (auto one = check_branches(*first, *plan); !one) return refuse(one.error());
+  print_warnings(options_without_effect(first->file));
 
   const auto share = arguments.task.empty() ? Expected<Share>(Share{}) : parse_share(arguments.task, plan->runs());
   if (!share) return refuse(share.error());
@@ -189,9 +210,11 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   catch_interrupt();
   const auto observers = sweep_observers(arguments, count);
   const auto state = [&](std::size_t run) { return state_run(*model, *plan, begin + run); };
-  const auto runs = pipeline::sweep({count, *keep, *jobs, begin}, state, observers);
-  if (!runs) return refuse(io::located(runs.error(), model->file));
-  auto table = sweep_table(*plan, *runs, *keep, begin);
+  const auto outcome = pipeline::sweep({count, *keep, *jobs, begin}, state, observers);
+  if (!outcome) return refuse(io::located(outcome.error(), model->file));
+  print_warnings(told_with_runs(outcome->warnings));
+  const auto& runs = outcome->runs;
+  auto table = sweep_table(*plan, runs, *keep, begin);
   const bool grid = !request.paired && request.samples.empty();
   const SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid,
                        model->file.captions};
@@ -200,10 +223,10 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   }
   if (auto written = write_files(arguments, table, page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
-    print(fmt::format("{} runs: {}\n{}\n", runs->size(), statuses(*runs),
+    print(fmt::format("{} runs: {}{}\n{}\n", runs.size(), statuses(runs), doubts(table),
                       arguments.out.empty() ? arguments.page : arguments.out));
   }
-  return report_stopped_runs(*runs);
+  return report_stopped_runs(runs);
 }
 
 /// What MODEL and the files behind it are with --join: all are shares.
@@ -218,8 +241,8 @@ ExitCode run_join(const SweepArguments& arguments) {
   if (!whole) return refuse(whole.error());
   if (auto written = write_files(arguments, whole->table, whole->page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
-    print(fmt::format("{} shares, {} rows\n{}\n", arguments.join.size(), rows_of(whole->table.front()),
-                      arguments.out.empty() ? arguments.page : arguments.out));
+    print(fmt::format("{} shares, {} rows{}\n{}\n", arguments.join.size(), rows_of(whole->table.front()),
+                      doubts(whole->table), arguments.out.empty() ? arguments.page : arguments.out));
   }
   return ExitCode::done;
 }
@@ -254,6 +277,7 @@ Command add_sweep(CLI::App& app) {
   command->add_option("--join", arguments->join, "the tables of all shares, which become one; no MODEL then")
       ->type_name("FILE.csv …");
   command->get_option("MODEL")->required(false);
+  command->get_option("--branch")->group("");  // not in the help: it is refused, with the reason
   command->footer("Example:\n  saltus sweep stick-slip --over belt=0.05:0.3:100 --over v=-0.1,0,0.1 --out belt.csv");
   return {"sweep", [arguments] { return arguments->join.empty() ? run_sweep(*arguments) : run_join(*arguments); }};
 }

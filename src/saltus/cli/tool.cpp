@@ -37,8 +37,11 @@ std::string about_option(const std::string& name, const CLI::App& app, const CLI
     if (std::find(names.begin(), names.end(), name) == names.end()) continue;
     auto remedy = fmt::format("{} is an option of `saltus {}`", name, command->get_name());
     const bool writes_results = reader.get_option_no_throw("--format") != nullptr;
+    const bool draws = reader.get_option_no_throw("--report") != nullptr;
     if (command->get_name() == "report" && writes_results) {
       remedy += fmt::format(": add --out r.json, then saltus report r.json {} …", name);
+    } else if (command->get_name() == "report" && draws) {
+      remedy += fmt::format("; saltus {} draws its table with --report FILE.html", reader.get_name());
     }
     return remedy;
   }

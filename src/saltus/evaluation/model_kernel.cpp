@@ -65,6 +65,10 @@ bool ModelKernel::condition(int event, double t, const double* x, const double* 
   return value > 0.5;
 }
 
+bool ModelKernel::is_listed_only(int function) const {
+  return function >= switching_functions() && function < implementation_->compiled->first_jump_guard;
+}
+
 int ModelKernel::jump_guard(int jump, int guard) const { return implementation_->jumps.guard(jump, guard); }
 
 bool ModelKernel::jump_condition(int jump, double t, const double* x, const double* alpha,

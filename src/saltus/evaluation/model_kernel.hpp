@@ -184,6 +184,8 @@ class ModelKernel {
   [[nodiscard]] bool condition(int event, double t, const double* x, const double* alpha,
                                const double* guard_alpha) const;
 
+  /// Returns whether an event function is an expression or a guard of [[events]]: nothing of the motion depends on it.
+  [[nodiscard]] bool is_listed_only(int function) const;
   /// Returns the event function of guard `guard` of jump `jump`.
   [[nodiscard]] int jump_guard(int jump, int guard) const;
   /// Returns the truth (0 or 1) of the condition of a jump from the steps of its guards.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/evaluation/guard_words.hpp"
 #include "saltus/model/graph/model_function.hpp"
 
 namespace saltus::evaluation {
@@ -278,8 +279,10 @@ std::vector<SurfaceFunction> surface_functions(const model::System& system) {
       add(composer.compose(system.contacts.gap(contact - contacts.begin())), jump.name, SurfaceOwner::jump);
       continue;
     }
+    const auto words = guard_words(system, jump);
     for (casadi_int i = 0; i < jump.guards.numel(); ++i) {
-      add(composer.compose(jump.guards(i)), jump.name, SurfaceOwner::jump);
+      const auto& word = words[at(i)];
+      add(composer.compose(jump.guards(i)), word.empty() ? jump.name : jump.name + " " + word, SurfaceOwner::jump);
     }
   }
   for (const auto& group : system.mode_groups) {

@@ -37,9 +37,9 @@ struct SurfaceFunction {
   std::vector<std::function<double(double t, const double* coordinates)>> within_values;  ///< with `value`
 };
 
-/// Returns one function for every column of the result, then one for every guard of [[jumps]]. Then one for every two
-/// regions of a group by `indicator`, which may never be the two smallest ones. Those that depend on no state are left
-/// out. Cost: compiles one function for each that is not affine.
+/// Returns one function for every column of the result, then one for every guard of [[jumps]], of [[hysteresis]] with
+/// "on" or "off" behind the name. Then one for every two regions of a group by `indicator`, which may never be the two
+/// smallest ones. Those that depend on no state are left out. Cost: compiles one function for each that is not affine.
 [[nodiscard]] std::vector<SurfaceFunction> surface_functions(const model::System& system);
 
 }  // namespace saltus::evaluation

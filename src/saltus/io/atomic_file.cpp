@@ -250,6 +250,8 @@ Expected<std::string> read_file(const fs::path& path, std::size_t limit) {
     return failure(path, fmt::format("cannot read: {}", reason(error_number)));
   }
   std::string content;
+  // A text that grows is there twice, for a while.
+  if (const auto size = fs::file_size(path, ignored); !ignored) content.reserve(std::min<std::size_t>(size, limit));
   std::string buffer(1 << 16, '\0');
   for (;;) {
     const auto count = ::read(file.number(), buffer.data(), buffer.size());

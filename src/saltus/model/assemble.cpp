@@ -45,6 +45,7 @@ class Assembly {
     take_columns();
     system_.warnings = statement_.warnings;
     add_switching_warnings();
+    take_decisions();
     return std::move(system_);
   }
 
@@ -226,14 +227,14 @@ class Assembly {
   [[nodiscard]] const MetFunction& met(int index) const { return recognition_.functions()[at(index)]; }
 
   void classify_functions() {
-    std::vector<int> targets = f_;
-    targets.insert(targets.end(), others_.begin(), others_.end());
+    targets_ = f_;
+    targets_.insert(targets_.end(), others_.begin(), others_.end());
     for (const int index : kept_) {
       if (met(index).discrete) discrete_[met(index).alpha_node] = met(index).alpha_at_zero.value_or(0.5);
       surfaces_.push_back({met(index).psi_node, met(index).alpha_node});
-      targets.push_back(met(index).psi_node);
+      targets_.push_back(met(index).psi_node);
     }
-    classes_ = classify(graph_.tape(), surfaces_, discrete_, targets);
+    classes_ = classify(graph_.tape(), surfaces_, discrete_, targets_);
     mark_equalities();
   }
 
@@ -323,6 +324,15 @@ class Assembly {
     }
   }
 
+  void take_decisions() {
+    Decisions decisions{.noted = recognition_.decisions(), .discrete = discrete_, .targets = targets_};
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      decisions.functions.emplace_back(surfaces_[i].psi, met(kept_[i]).name);
+      if (classes_[i].role == SwitchingRole::kink) decisions.kinks.push_back(surfaces_[i]);
+    }
+    system_.decisions = on_tape_of_their_own(graph_.tape(), std::move(decisions));
+  }
+
   void take_columns() {
     for (const auto& stated : statement_.switching) {
       const SharedFunction& function = stated.declared.function;
@@ -382,7 +392,8 @@ class Assembly {
   std::vector<bool> used_;                ///< by met function: something but a named psi needs it
   std::vector<int> kept_, new_index_;     ///< met functions that stay, and the new number of every one
   std::vector<Surface> surfaces_;
-  Selections discrete_;  ///< of the discrete functions, where they are 0
+  Selections discrete_;       ///< of the discrete functions, where they are 0
+  std::vector<int> targets_;  ///< what could jump
   std::vector<SurfaceClass> classes_;
   std::vector<std::string> event_warnings_;
 };
@@ -390,9 +401,12 @@ class Assembly {
 }  // namespace
 
 Error no_right_hand_side(const std::string& state, const SourceLocation& location) {
+  const std::string remedy = location.line > 0
+                                 ? "add {} = \"…\" to [dynamics] or to a mode; a constant state gets 0"
+                                 : "call dynamics(\"{}\", …), or name it in a mode; a constant state gets 0";
   return {ErrorCode::invalid_model,
           fmt::format("the state '{}' has no right-hand side", state),
-          fmt::format("add {} = \"…\" to [dynamics] or to a mode; a constant state gets 0", state),
+          fmt::format(fmt::runtime(remedy), state),
           location,
           {}};
 }

@@ -28,6 +28,7 @@ namespace {
 
 using expression::NodePtr;
 using MaybeError = std::optional<Error>;
+using Of = ComputedNumber::Of;
 
 /// A description and its overrides on the way to a statement; one step per table.
 class Build {
@@ -132,16 +133,17 @@ class Build {
 
   /// The overriding value of a name, else that of its expression; `absent` without one.
   Expected<double> value_of(const std::string& name, const NodePtr& node, Reach reach, const std::string& what,
-                            double absent) {
+                            double absent, const ComputedNumber& computed) {
     if (const auto it = set_values_.find(name); it != set_values_.end()) return it->second;
     if (!node) return absent;
-    return scope_.value(*node, reach, what);
+    return scope_.value(*node, reach, what, computed);
   }
 
   MaybeError parameters() {
     return take_each(description_.parameters, [&](const NamedExpression& entry) -> MaybeError {
+      const int index = static_cast<int>(statement_.parameters.size());
       auto value = value_of(entry.name, entry.expression, Reach::earlier_parameters,
-                            fmt::format("the parameter '{}'", entry.name), 0.0);
+                            fmt::format("the parameter '{}'", entry.name), 0.0, {Of::parameters, index});
       if (value && !std::isfinite(*value)) {
         value = tl::unexpected(Error{ErrorCode::invalid_model,
                                      fmt::format("the parameter '{}' is {}, not a finite number", entry.name, *value),
@@ -154,7 +156,6 @@ class Build {
       const VariableKind kind = quantities_ != nullptr && quantities_->varying_parameters.contains(entry.name)
                                     ? VariableKind::control
                                     : VariableKind::parameter;
-      const int index = static_cast<int>(statement_.parameters.size());
       const SXElem symbol =
           recognition_.graph.symbol(entry.name, {.kind = kind, .index = index, .value = value.value_or(1.0)});
       statement_.parameters.push_back({entry.name, symbol, value.value_or(1.0)});
@@ -191,18 +192,20 @@ class Build {
 
   /// Initial values and bounds; they may use parameters, so all names must mean something first.
   MaybeError bounds() {
-    const auto take = [&](const auto& entry, const std::string& kind, auto& stated) {
-      auto error = range(entry, kind, stated.initial, stated.bounds);
+    const auto take = [&](const auto& entry, const std::string& kind, auto& stated, const ComputedNumber& computed) {
+      auto error = range(entry, kind, stated.initial, stated.bounds, computed);
       recognition_.graph.set_value(state_variable(stated.symbol), stated.initial);
       return error;
     };
-    std::size_t i = 0;
-    auto error =
-        take_each(description_.states, [&](const auto& entry) { return take(entry, "state", statement_.states[i++]); });
+    int i = 0;
+    auto error = take_each(description_.states, [&](const auto& entry) {
+      const ComputedNumber computed{Of::initial_state, i};
+      return take(entry, "state", statement_.states[at(i++)], computed);
+    });
     if (error) return error;
     i = 0;
     return take_each(description_.controls,
-                     [&](const auto& entry) { return take(entry, "control", statement_.controls[i++]); });
+                     [&](const auto& entry) { return take(entry, "control", statement_.controls[at(i++)], {}); });
   }
 
   int state_variable(const SXElem& symbol) {
@@ -210,16 +213,18 @@ class Build {
   }
 
   template <class Entry>
-  MaybeError range(const Entry& entry, const std::string& kind, double& initial, Bounds& bounds) {
+  MaybeError range(const Entry& entry, const std::string& kind, double& initial, Bounds& bounds,
+                   const ComputedNumber& computed) {
     const std::string what = fmt::format("{} '{}'", kind, entry.name);
-    const auto value =
-        value_of(entry.name, entry.initial, Reach::everything, fmt::format("the initial value of {}", what), 0.0);
+    const auto value = value_of(entry.name, entry.initial, Reach::everything,
+                                fmt::format("the initial value of {}", what), 0.0, computed);
     if (!value) return value.error();
     initial = *value;
     for (const auto& [node, bound, side] :
          {std::tuple{&entry.lower, &bounds.lower, "lower"}, std::tuple{&entry.upper, &bounds.upper, "upper"}}) {
       if (!*node) continue;
-      const auto limit = scope_.value(**node, Reach::everything, fmt::format("the {} bound of {}", side, what));
+      const auto limit =
+          scope_.value(**node, Reach::everything, fmt::format("the {} bound of {}", side, what), std::nullopt);
       if (!limit) return limit.error();
       *bound = *limit;
     }

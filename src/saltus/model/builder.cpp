@@ -9,187 +9,11 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/base/function_ref.hpp"
-#include "saltus/model/hysteresis/hysteresis_internal.hpp"
-#include "saltus/model/mechanics/mechanics_internal.hpp"
-#include "saltus/model/statement/modes_internal.hpp"
-#include "saltus/model/statement/names_internal.hpp"
-#include "saltus/model/statement/statement_internal.hpp"
-#include "saltus/model/written_friction_internal.hpp"
+#include "saltus/model/builder_parts_internal.hpp"
 
 namespace saltus::model {
 
 using casadi::SX;
-
-struct Builder::Parts {
-  Recognition recognition;
-  Statement statement;
-  NameTable names;
-  std::optional<MechanicsStatement> mechanics;
-  std::vector<std::pair<std::string, ContactOptions>> contacts;
-  std::vector<SX> gaps;
-  std::optional<Error> error;
-
-  void fail(Error mistake) {
-    if (!error) error = std::move(mistake);
-  }
-
-  void refuse(std::string message, std::string remedy) {
-    fail({ErrorCode::invalid_model, std::move(message), std::move(remedy), {}, {}});
-  }
-
-  bool declare(const std::string& name, NameKind kind, std::size_t index) {
-    auto mistake = names.declare(name, {kind, static_cast<int>(index), {}});
-    if (mistake) fail(*mistake);
-    return !mistake;
-  }
-
-  SXElem entry(const SX& expression, const std::string& where) {
-    if (const auto e = scalar(expression)) return *e;
-    refuse(fmt::format("{}: expected a scalar, found a {} x {} matrix", where, expression.size1(), expression.size2()),
-           "state the entries one by one");
-    return SXElem(0.0);
-  }
-
-  /// The result of a recognition, or 0 and the mistake kept. Nothing is tried after the first one.
-  SX kept(FunctionRef<Expected<SXElem>()> recognise) {
-    if (error) return SX(0.0);
-    try {
-      auto result = recognise();
-      if (result) return SX(*result);
-      fail(result.error());
-    } catch (const std::exception& exception) {
-      refuse(fmt::format("CasADi refused an expression: {}", exception.what()), "");
-    }
-    return SX(0.0);
-  }
-
-  SX symbol(const std::string& name, const Variable& variable) { return SX(recognition.graph.symbol(name, variable)); }
-
-  void add_state(const std::string& name, const Values& values, VariableKind kind) {
-    auto& states = statement.states;
-    const Bounds bounds{values.lower, values.upper};
-    if (auto mistake = check_values(fmt::format("state '{}'", name), values.initial, bounds, {}, statement.warnings)) {
-      fail(*mistake);
-    }
-    const SX made = symbol(name, {.kind = kind, .index = static_cast<int>(states.size()), .value = values.initial});
-    states.push_back({.name = name, .symbol = made.scalar(), .initial = values.initial, .bounds = bounds});
-    if (kind == VariableKind::discrete) states.back().dynamics = SXElem(0.0);
-  }
-
-  /// A jump without its trigger; null after a mistake.
-  JumpStatement* add_jump(const std::map<std::string, SX>& set, const JumpOptions& options) {
-    auto& jumps = statement.jumps;
-    const std::string name = options.name.value_or(fmt::format("jump{}", jumps.size() + 1));
-    if (!declare(name, NameKind::jump, jumps.size())) return nullptr;
-    JumpStatement jump{.name = options.name};
-    for (const auto& [state, value] : set) {
-      const auto* target = find(statement.states, state, NameKind::state);
-      if (target == nullptr) return nullptr;
-      const auto index = static_cast<int>(target - statement.states.data());
-      jump.set.push_back({.state = index, .value = entry(value, fmt::format("jump {}, {}", name, state))});
-    }
-    jump.priority = entry(options.priority, "priority of " + name);
-    jump.delay = entry(options.delay, "delay of " + name);
-    jump.at_start = options.at_start;
-    jump.persistent = options.persistent;
-    jump.evaluated = options.values;
-    jumps.push_back(std::move(jump));
-    return &jumps.back();
-  }
-
-  void add_mode(ModeStatement mode, const std::map<std::string, SX>& rates, const std::string& group) {
-    for (const auto& [name, rate] : rates) {
-      const auto* state = find(statement.states, name, NameKind::state);
-      if (state == nullptr) return;
-      const auto index = static_cast<int>(state - statement.states.data());
-      mode.rates.push_back({.state = index, .rate = entry(rate, "a mode's dynamics of " + name)});
-    }
-    auto& groups = statement.mode_groups;
-    auto known = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.name == group; });
-    if (known == groups.end()) known = groups.insert(groups.end(), {group, {}});
-    if (mode.indicator && mode.name.empty()) mode.name = fmt::format("mode{}", known->modes.size() + 1);
-    for (const auto& other : known->modes) {
-      if (other.indicator.has_value() != mode.indicator.has_value()) {
-        refuse(fmt::format("the group '{}' has modes with conditions and regions by indicator", group),
-               "give all modes of a group the same form, or another group");
-      } else if (mode.indicator && other.name == mode.name) {
-        refuse(fmt::format("two modes are named '{}'", mode.name), "rename one of them");
-      }
-    }
-    known->modes.push_back(std::move(mode));
-  }
-
-  /// @return false after a mistake
-  bool take_drawing(const std::vector<DrawnShape>& shapes, MechanicsStatement& stated) {
-    for (const auto& [points, radius] : shapes) {
-      const bool is_disc = !radius.is_empty();
-      if (points.size1() != 2 || points.size2() < 1 || is_disc != (points.size2() == 1)) {
-        refuse(fmt::format("what is drawn has {} coordinates", points.dim()),
-               "a line has 2 x n coordinates, n >= 2, and no radius; a disc 2 x 1 and a radius");
-        return false;
-      }
-      DrawnStatement drawn{.shape = {SX::densify(points), SX()}};
-      for (SXElem& e : drawn.shape.points.nonzeros()) e = entry(SX(e), "what is drawn");
-      if (is_disc) drawn.shape.radius = SX(entry(radius, "the radius of what is drawn"));
-      stated.draw.push_back(std::move(drawn));
-    }
-    return true;
-  }
-
-  std::optional<Error> add_mechanics(Statement& whole) {
-    if (!mechanics && contacts.empty()) return std::nullopt;
-    if (!mechanics) return Error{ErrorCode::invalid_model, "contacts without mechanics()", "call mechanics()", {}, {}};
-    MechanicsStatement stated = *mechanics;
-    for (std::size_t i = 0; i < contacts.size(); ++i) {
-      const auto& [name, options] = contacts[i];
-      ContactStatement contact{.name = name, .gap = gaps[i]};
-      contact.friction = entry(options.friction, "friction of " + name);
-      contact.restitution = entry(options.restitution, "restitution of " + name);
-      for (const auto* tangent : {&options.tangent, &options.second_tangent}) {
-        if (tangent->empty()) continue;
-        SX row = SX::zeros(1, static_cast<casadi_int>(stated.positions.size()));
-        for (const auto& [position, value] : *tangent) {
-          const auto place =
-              std::find_if(stated.positions.begin(), stated.positions.end(),
-                           [&, &wanted = position](int state) { return whole.states[at(state)].name == wanted; });
-          if (place == stated.positions.end()) {
-            return Error{ErrorCode::unknown_name,
-                         fmt::format("the tangent of '{}' has the entry '{}', which is no position", name, position),
-                         "a tangent is a row over the positions",
-                         {},
-                         {}};
-          }
-          row(0, place - stated.positions.begin()) = entry(value, "tangent of " + name);
-        }
-        contact.tangents = contact.tangents.is_empty() ? row : SX::vertcat({contact.tangents, row});
-      }
-      stated.contacts.push_back(std::move(contact));
-    }
-    return state_mechanics(recognition, whole, stated);
-  }
-
-  /// The cells of points without mistake; null with the mistake kept.
-  std::shared_ptr<const CellTable> cells(const std::string& kind, const std::string& name,
-                                         const std::optional<PointMistake>& mistake, FunctionRef<CellTable()> make) {
-    if (!mistake) return std::make_shared<const CellTable>(make());
-    const std::string point = mistake->point ? fmt::format(", point {}", *mistake->point + 1) : "";
-    refuse(fmt::format("{} '{}'{}: {}", kind, name, point, mistake->message), mistake->remedy);
-    return nullptr;
-  }
-
-  template <class Entries>
-  typename Entries::value_type* find(Entries& entries, const std::string& name, NameKind kind) {
-    const Meaning* meaning = names.find(name);
-    if (meaning != nullptr && meaning->kind == kind) return &entries[at(meaning->index)];
-    fail({ErrorCode::unknown_name,
-          fmt::format("'{}' is not {} of this model", name, with_article(kind)),
-          suggest(name, names.of({kind})),
-          {},
-          {}});
-    return nullptr;
-  }
-};
 
 Builder::Builder(std::string name) : parts_(std::make_unique<Parts>()) {
   parts_->statement.name = std::move(name);
@@ -234,14 +58,13 @@ SX Builder::discrete_state(const std::string& name, double initial) {
 
 SX Builder::hysteresis(const std::string& name, const SX& input, const HysteresisValues& values) {
   auto& states = parts_->statement.states;
-  if (!parts_->declare(name, NameKind::hysteresis, states.size())) return SX(0.0);
+  if (!parts_->declare_with_clock(name, NameKind::hysteresis, states.size(), "hysteresis()")) return SX(0.0);
   const SXElem e = parts_->entry(input, "input of " + name);
   parts_->add_state(name, {.initial = values.initial}, VariableKind::discrete);
   const auto state = static_cast<int>(states.size()) - 1;
-  if (auto error = state_hysteresis(parts_->recognition, parts_->statement, state, e,
-                                    {name, values.on, values.off, values.initial, {}})) {
-    parts_->fail(*error);
-  }
+  const HysteresisThresholds thresholds{name, values.on, values.off, values.initial, {}};
+  if (auto error = state_hysteresis(parts_->recognition, parts_->statement, state, e, thresholds)) parts_->fail(*error);
+  parts_->hysteresis.push_back({state, e, thresholds});
   return SX(states.back().symbol);
 }
 
@@ -373,9 +196,14 @@ void Builder::mechanics(const Mechanics& mechanics) {
 }
 
 void Builder::contact(const std::string& name, const SX& gap, const ContactOptions& options) {
-  if (!parts_->declare(name, NameKind::contact, parts_->contacts.size())) return;
+  if (!parts_->declare_with_clock(name, NameKind::contact, parts_->contacts.size(), "contact()")) return;
   parts_->gaps.push_back(SX(parts_->entry(gap, "gap of " + name)));
   parts_->contacts.emplace_back(name, options);
+}
+
+void Builder::time_freezing(const FreezingNumbers& numbers) {
+  if (const auto mistake = find_mistake(numbers)) parts_->fail(*mistake);
+  parts_->freezing = numbers;
 }
 
 void Builder::mode(const Condition& when, const std::map<std::string, SX>& rates, const std::string& group) {
@@ -470,16 +298,12 @@ void Builder::input(const std::string& control, const std::vector<double>& times
 
 Expected<System> Builder::build() {
   if (parts_->error) return tl::unexpected(*parts_->error);
-  try {
-    Statement statement = parts_->statement;  // more may be stated later
-    if (auto error = add_modes(parts_->recognition, statement)) return tl::unexpected(*error);
-    if (auto error = parts_->add_mechanics(statement)) return tl::unexpected(*error);
-    state_written_friction(parts_->recognition, statement);
-    return assemble(parts_->recognition, statement);
-  } catch (const std::exception& exception) {
-    return tl::unexpected(
-        Error{ErrorCode::invalid_model, fmt::format("CasADi refused the model: {}", exception.what()), "", {}, {}});
-  }
+  auto system = guarded([&] { return parts_->physical(); });
+  if (!system || (!parts_->stands_still() && system->contacts.empty())) return system;
+  auto other =
+      guarded([&] { return parts_->stands_still() ? parts_->frozen(FrozenFor::simulation) : parts_->as_written(); });
+  system->frozen = std::make_shared<const FrozenSystem>(FrozenSystem{std::move(other)});
+  return system;
 }
 
 }  // namespace saltus::model

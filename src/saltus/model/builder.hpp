@@ -15,6 +15,7 @@
 #include "saltus/model/description.hpp"
 #include "saltus/model/recognition/condition.hpp"
 #include "saltus/model/system.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 
 namespace saltus::model {
 
@@ -121,8 +122,10 @@ class Builder {
   /// Returns e - m floor(e / m), in [0, m) for m > 0; m a constant other than 0.
   casadi::SX mod(const casadi::SX& e, const casadi::SX& m);
   /// Declares a table under a name and returns it as a function of one argument, any expression of the model:
+  ///
   ///   const auto road = model.table("road", {0, 1, 2}, {0, 0.1, 0});
   ///   model.dynamics("z", road(x) - z);
+  ///
   /// Constant outside the points. Every cell between two of them is smooth for the integrators, so its cost does not
   /// depend on their number.
   /// @param x  ascending; y one value each; 2 to 10^6 finite points, cubic at least 4
@@ -137,6 +140,8 @@ class Builder {
   /// Adds bodies that do not pass through each other: gap over positions, parameters and time, >= 0 at the start. The
   /// result has the outputs gap(name), force(name), friction(name), impulse(name).
   void contact(const std::string& name, const casadi::SX& gap, const ContactOptions& options = {});
+  /// Says how time is frozen at contacts and hysteresis for Method::fesd and OcpBuilder, which have no events there.
+  void time_freezing(const FreezingNumbers& numbers);
   /// Adds one mode of a group: where the condition holds, the rates are added to those of dynamics() and of the modes
   /// of other groups; a state that is not among them gets 0. The modes of a group cover every sign pattern of their
   /// switching functions exactly once.
@@ -171,6 +176,7 @@ class Builder {
   [[nodiscard]] Expected<System> build();
 
  private:
+  friend class OcpBuilder;  // takes forms that a simulation does not
   struct Parts;
   // Keeps the recognition of nonsmooth terms out of the header.
   std::unique_ptr<Parts> parts_;

@@ -131,11 +131,4 @@ struct Description {
   std::vector<expression::NodePtr> replaced;  ///< by settings: the file uses what they name
 };
 
-/// Holds `--set NAME=VALUE`: replaces a parameter, an initial value or a control's constant value; VALUE is an
-/// expression of constants (numbers, pi, functions). Unknown names are errors with the nearest known ones.
-struct Override {
-  std::string name;
-  expression::NodePtr value;
-};
-
 }  // namespace saltus::model

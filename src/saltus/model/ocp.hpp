@@ -82,6 +82,8 @@ struct Ocp {
   /// With contacts or hysteresis `system` is frozen, and this is what it stands for, with the same outputs: the states
   /// that a result shows come first.
   std::shared_ptr<const System> physical;
+  /// What the closed loop simulates instead: `physical`, or `system` without, with other parameters and initial values.
+  std::shared_ptr<const System> plant;
   std::vector<std::string> warnings;
 };
 

@@ -7,6 +7,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/expression/syntax_tree.hpp"
+#include "saltus/model/override.hpp"
 
 namespace saltus::model {
 
@@ -72,6 +73,7 @@ struct OcpDescription {
   std::vector<PathComplementarityDescription> path_complementarities;
   std::vector<LeastSquaresDescription> least_squares;
   std::vector<GuessDescription> guess;
+  std::vector<Override> plant;  ///< parameters and initial values of what the closed loop simulates; empty: as they are
   SourceLocation location;
 };
 

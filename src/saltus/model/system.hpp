@@ -110,11 +110,13 @@ struct ModeGroup {
 
 struct TimeFreezing;  // time_freezing/time_freezing.hpp
 struct FrozenSystem;
+struct Decisions;  // asked by find_stale (decisions.hpp)
 
 /// Holds xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j), with the constants of cells as further symbols. With
 /// Inclusion::filippov f is multi-affine in the alphas of listed functions (those of kinks and time events are 0 or 1
 /// wherever their value matters). All expressions are over the symbols t, x, u, p, alpha of this value. Units are the
-/// model's. Structure (which functions exist, what folded, what is a kink) holds for parameter_values.
+/// model's. Structure (which functions exist, what folded, what is a kink) was decided with the parameter_values it was
+/// built with; others may be set as long as they decide the same, which pipeline::simulate asks find_stale.
 ///
 /// A branch of if, abs, max, min that can be NaN or infinite is guarded: alpha = 0 and 1 select a branch exactly, also
 /// when the other is NaN. Take derivatives with respect to alpha as differences of corners. Do not differentiate a
@@ -147,6 +149,7 @@ struct System {
   std::vector<DrawnShape> drawing;               ///< of the bodies
   std::shared_ptr<const TimeFreezing> freezing;  ///< of a system without jumps whose time stands still instead
   std::shared_ptr<const FrozenSystem> frozen;    ///< of one with contacts or hysteresis: the same, frozen
+  std::shared_ptr<const Decisions> decisions;    ///< made with values of parameters; null: none
 
   bool multi_affine = true;                        ///< f_as_written is, in the alphas of listed functions, by its form
   std::vector<std::string> inclusion_differences;  ///< states where the two inclusions differ on a surface

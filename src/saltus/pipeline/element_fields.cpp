@@ -35,102 +35,57 @@ constexpr auto option_of = [](auto& o) -> auto& {
   return part(o).*member;
 };
 
-template <auto part>
-Expected<void> set_step_bounds(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  const double number = number_in(value);
-  if (!(number > 0.0 && number <= 1.0)) return tl::unexpected(out_of_range("a number > 0 and <= 1", value));
-  part(options).step_bounds = number;
-  return {};
-}
+void say_lengths_are_fixed(Error& error, const OptionValue&) { error.remedy = "lengths are fixed"; }
 
+/// Lengths of the elements of timestepping are fixed: no errors limit them.
 template <auto part>
-Expected<void> set_error_limit(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  if (const auto* word = std::get_if<std::string>(&value); word != nullptr && *word == "off") {
-    part(options).error_limit.reset();
-    return {};
-  }
-  if (!is_fesd<part>) return tl::unexpected(out_of_range("\"off\": lengths are fixed", value));
-  const auto number = number_within(Range::positive, value);
-  if (!number) return tl::unexpected(out_of_range("a finite number > 0, or \"off\"", value));
-  part(options).error_limit = *number;
-  return {};
-}
-
-template <auto part>
-void record_error_limit(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
-  if (part(options).error_limit) {
-    record.emplace_back(key, *part(options).error_limit);
-  } else {
-    record.emplace_back(key, std::string("off"));
-  }
-}
-
-template <auto part>
-Expected<void> set_lifting(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  if (const auto* word = std::get_if<std::string>(&value); word != nullptr && *word == "off") {
-    part(options).lifting.reset();
-    return {};
-  }
-  const double number = number_in(value);
-  if (!(number >= 2.0 && number <= 64.0 && number == std::floor(number))) {
-    return tl::unexpected(out_of_range("a whole number from 2 to 64 or \"off\"", value));
-  }
-  part(options).lifting = static_cast<long>(number);
-  return {};
-}
-
-template <auto part>
-void record_lifting(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
-  if (part(options).lifting) {
-    record.emplace_back(key, std::int64_t{*part(options).lifting});
-  } else {
-    record.emplace_back(key, std::string("off"));
-  }
+constexpr OptionField error_limit_field() {
+  constexpr auto error_limit = option_of<part, &ElementOptions::error_limit>;
+  auto field = number_or_none_field<error_limit, off_word>(
+      "error_limit", positive_number,
+      "Of the estimated errors of all elements, relative to the states: steps are divided for it.");
+  if (is_fesd<part>) return field;
+  field.kind.number.reset();
+  field.doc = "Lengths are fixed.";
+  field.explain = say_lengths_are_fixed;
+  return field;
 }
 
 template <auto part>
 constexpr std::array fields_of{
-    choice_field<option_of<part, &ElementOptions::scheme>, schemes>(
-        "scheme", "radau_iia, gauss_legendre, lobatto_iiia, lobatto_iiic, explicit",
-        "Runge-Kutta method of the elements."),
-    count_field<option_of<part, &ElementOptions::stages>>(
-        "stages", "a whole number >= 1",
+    choice_field<option_of<part, &ElementOptions::scheme>, schemes>("scheme", "Runge-Kutta method of the elements."),
+    number_field<option_of<part, &ElementOptions::stages>>(
+        "stages", counting_number,
         "Its stages: radau_iia and gauss_legendre have 1 to 9, the Lobatto methods 2 to 5, explicit 1 to 4."),
-    count_field<option_of<part, &ElementOptions::steps>>("steps", "a whole number >= 1",
-                                                         "Simulation steps, of equal length."),
-    count_field<option_of<part, &ElementOptions::elements>>("elements", "a whole number >= 1",
-                                                            "Elements in each; at least 2 with switch detection."),
+    number_field<option_of<part, &ElementOptions::steps>>("steps", counting_number,
+                                                          "Simulation steps, of equal length."),
+    number_field<option_of<part, &ElementOptions::elements>>("elements", counting_number,
+                                                             "Elements in each; at least 2 with switch detection."),
     choice_field<option_of<part, &ElementOptions::representation>, representations>(
-        "representation", "integral, differential",
-        "Unknowns of an element: stage states or stage slopes; the solutions are the same."),
-    OptionField{"error_limit", is_fesd<part> ? "a finite number > 0, or \"off\"" : "\"off\"",
-                is_fesd<part>
-                    ? "Of the estimated errors of all elements, relative to the states: steps are divided for it."
-                    : "Lengths are fixed.",
-                set_error_limit<part>, record_error_limit<part>},
-    OptionField{"step_bounds", "a number > 0 and <= 1",
-                is_fesd<part>
-                    ? "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided."
-                    : "Lengths are fixed: every value holds.",
-                set_step_bounds<part>, record_number<option_of<part, &ElementOptions::step_bounds>>},
-    number_field<option_of<part, &ElementOptions::rho>, Range::positive>(
-        "rho", "a finite number > 0", "Weight of the objective terms of step_equilibration."),
-    number_field<option_of<part, &ElementOptions::equilibration_scale>, Range::positive>(
-        "equilibration_scale", "a finite number > 0", "Scale of step_equilibration = \"l2_relaxed_scaled\"."),
+        "representation", "Unknowns of an element: stage states or stage slopes; the solutions are the same."),
+    error_limit_field<part>(),
+    number_field<option_of<part, &ElementOptions::step_bounds>>(
+        "step_bounds", Numbers{.above = 0.0, .up_to = 1.0},
+        is_fesd<part>
+            ? "Lengths of elements are within (1 - this, 1 + this) times their mean, unless a step is divided."
+            : "Lengths are fixed: every value holds."),
+    number_field<option_of<part, &ElementOptions::rho>>("rho", positive_number,
+                                                        "Weight of the objective terms of step_equilibration."),
+    number_field<option_of<part, &ElementOptions::equilibration_scale>>(
+        "equilibration_scale", positive_number, "Scale of step_equilibration = \"l2_relaxed_scaled\"."),
     choice_field<option_of<part, &ElementOptions::reformulation>, reformulations>(
-        "reformulation", "step, stewart", "How set-valued selections are written with complementarities."),
+        "reformulation", "How set-valued selections are written with complementarities."),
     choice_field<option_of<part, &ElementOptions::cross_complementarity>, cross_complementarities>(
-        "cross_complementarity", "stage_stage, fe_stage, stage_fe, fe_fe, paper",
-        "Which products are summed up; the solutions are the same."),
+        "cross_complementarity", "Which products are summed up; the solutions are the same."),
     choice_field<option_of<part, &ElementOptions::step_equilibration>, step_equilibrations>(
-        "step_equilibration", "direct, mlcp, none, heuristic_mean|diff, l2_relaxed[_scaled], paper",
+        "step_equilibration",
         is_fesd<part> ? "Lengths where nothing switches: the first two are exact, the others slow, for studies."
                       : "Lengths are fixed: all mean the same."),
-    OptionField{"lifting", "a whole number >= 2, or \"off\"",
-                "Most factors in products of selections, longer ones are lifted; the solutions are the same.",
-                set_lifting<part>, record_lifting<part>},
+    number_or_none_field<option_of<part, &ElementOptions::lifting>, off_word>(
+        "lifting", Numbers{.whole = true, .from = 2.0, .up_to = 64.0},
+        "Most factors in products of selections, longer ones are lifted; the solutions are the same."),
     truth_field<option_of<part, &ElementOptions::sensitivities>>(
-        "sensitivities", "true, false",
+        "sensitivities",
         "Derivatives of the end state with respect to initial state and parameters, of the discretisation."),
 };
 

@@ -24,7 +24,7 @@ struct OrderScheme {
 struct OrderOptions {
   std::vector<OrderScheme> schemes{{"radau_iia", 1}, {"radau_iia", 2}, {"radau_iia", 3}, {"gauss_legendre", 2}};
   std::vector<long> steps{25, 50, 100, 200, 400};  ///< simulation steps, ascending
-  std::optional<std::string> reformulation;        ///< step or stewart; that of the options without
+  std::optional<std::string> reformulation{};      ///< step or stewart; that of the options without
 };
 
 /// Reads "radau_iia:2,gauss_legendre:3"; errors (invalid_option) say what was expected and found.

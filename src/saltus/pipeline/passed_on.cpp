@@ -32,7 +32,7 @@ void PassingOn::pass(result::Trajectory rows, result::Events events) {
   for (const auto& x : rows.x) widen(x);
   for (std::size_t i = 0; i < events.size(); ++i) {
     widen(events.x(i));
-    if (events.x_after(i).data() != events.x(i).data()) widen(events.x_after(i));
+    widen(events.x_after(i));
     known_.alternatives += events.alternatives(i);
     ++known_.kinds[events.kind(i)];
   }
@@ -42,17 +42,11 @@ void PassingOn::pass(result::Trajectory rows, result::Events events) {
   observers_.on_part(part_);
 }
 
-/// Without branches: values that are not finite count as those that are known.
 void PassingOn::widen(std::span<const double> x) {
-  const std::size_t n = std::min(x.size(), known_.least.size());
-  const double* __restrict value = x.data();
-  double* __restrict least = known_.least.data();
-  double* __restrict greatest = known_.greatest.data();
-  constexpr double largest = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < n; ++i) {
-    const bool is_finite = std::abs(value[i]) <= largest;
-    least[i] = std::min(least[i], is_finite ? value[i] : least[i]);
-    greatest[i] = std::max(greatest[i], is_finite ? value[i] : greatest[i]);
+  for (std::size_t i = 0; i < std::min(x.size(), known_.least.size()); ++i) {
+    if (!std::isfinite(x[i])) continue;
+    known_.least[i] = std::min(known_.least[i], x[i]);
+    known_.greatest[i] = std::max(known_.greatest[i], x[i]);
   }
 }
 

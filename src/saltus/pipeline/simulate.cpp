@@ -14,6 +14,7 @@
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/decisions.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/kept_columns_internal.hpp"
@@ -116,6 +117,9 @@ Expected<std::vector<double>> surface_scaling(const model::System& system, const
 }
 
 Expected<IntegrationOptions> integration_options(const model::System& system, const SimulateOptions& options) {
+  if (!options.until) {
+    return tl::unexpected(Error{ErrorCode::invalid_option, "no end time", "set SimulateOptions::until", {}, {}});
+  }
   if (const auto problem = find_problem(options)) return tl::unexpected(problem->error);
   IntegrationOptions integration;
   // The layers make every model stiff.
@@ -312,9 +316,18 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
 
 Expected<result::Result> simulate(const model::System& system, const SimulateOptions& options,
                                   const Observers& observers, KernelStore* kernels) {
+  if (auto error = model::find_stale(system)) return tl::unexpected(*error);
   const auto& other = system.frozen;
   if (options.method != Method::event && other && other->system && !other->system->freezing) {
-    return simulate(*other->system, options, observers, kernels);
+    std::optional<model::System> as_written;
+    {
+      const SymbolicLock lock;
+      as_written = model::with_values_of(*other->system, system);
+    }
+    auto result = simulate(*as_written, options, observers, kernels);
+    const SymbolicLock lock;
+    as_written.reset();
+    return result;
   }
   const auto kept = kept_columns(frame(system, options), options.kept);
   if (!kept) return tl::unexpected(kept.error());

@@ -32,7 +32,7 @@ struct StepRecord {
 enum class Proceed { on, stop };
 
 struct Observers {
-  std::function<Proceed(const StepRecord&)> on_step;  ///< may be empty; `stop` ends with stopped_by_user
+  std::function<Proceed(const StepRecord&)> on_step{};  ///< may be empty; `stop` ends with stopped_by_user
   /// Takes rows and events in their order while the run goes on, in results that have these and the names of their
   /// columns only; the result of the run has Result::passed_on instead. Called by the event engine where one trajectory
   /// is followed; may be empty.

@@ -4,8 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <thread>
 #include <unistd.h>
 #include <utility>
@@ -28,8 +30,21 @@ double bytes_of_machine() {
   return static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
 }
 
+/// Whether nothing else was admissible on the way; false outweighs what was not decided.
+std::optional<bool> is_unique(const result::Result& run) {
+  if (!run.families.empty()) return false;
+  std::optional<bool> unique = true;
+  for (std::size_t i = 0; i < run.events.size(); ++i) {
+    const auto here = run.events.unique(i);
+    if (here == false) return false;
+    if (!here) unique = std::nullopt;
+  }
+  return unique;
+}
+
 void leave_what_is_kept(SweepRun& run, Keep keep) {
   run.events = run.result.events.size();
+  run.unique = is_unique(run.result);
   if (keep == Keep::trajectory) return;
   run.result.trajectory = {};
   run.result.branches = {};
@@ -61,8 +76,8 @@ class Workshop {
     }
   }
 
-  [[nodiscard]] Expected<std::vector<SweepRun>> outcome() && {
-    if (!error_) return std::move(runs_);
+  [[nodiscard]] Expected<SweepOutcome> outcome() && {
+    if (!error_) return SweepOutcome{std::move(runs_), warnings()};
     return tl::unexpected(
         with_context(std::move(*error_), fmt::format("in run {}", options_.before + failed_run_ + 1)));
   }
@@ -77,6 +92,8 @@ class Workshop {
       auto made = state_(i);
       if (!made) return tl::unexpected(made.error());
       stated.emplace(std::move(*made));
+      // Under the same lock: other threads note theirs.
+      for (const auto& warning : stated->system.warnings) warned_[warning].insert(options_.before + i + 1);
     }
     if (options_.keep != Keep::trajectory) leave_out_rows(stated->system, stated->options);
     auto result = simulate(stated->system, stated->options, watch_, &kernels_);
@@ -102,6 +119,15 @@ class Workshop {
     return {};
   }
 
+  /// In the order of their first runs, however the threads were.
+  [[nodiscard]] std::vector<SweepWarning> warnings() const {
+    std::vector<SweepWarning> warnings;
+    for (const auto& [text, runs] : warned_) warnings.push_back({text, {runs.begin(), runs.end()}});
+    std::stable_sort(warnings.begin(), warnings.end(),
+                     [](const auto& a, const auto& b) { return a.runs.front() < b.runs.front(); });
+    return warnings;
+  }
+
   void fail(std::size_t run, const Error& error) {
     const std::lock_guard guard(mutex_);
     if (!error_ || run < failed_run_) {
@@ -115,6 +141,7 @@ class Workshop {
   StateRun state_;
   const SweepObservers& observers_;
   std::vector<SweepRun> runs_;
+  std::map<std::string, std::set<std::size_t>> warned_;  ///< numbers of runs, by warning
   KernelStore kernels_;
   Observers watch_;
   std::atomic<std::size_t> next_ = 0;
@@ -128,7 +155,7 @@ class Workshop {
 
 }  // namespace
 
-Expected<std::vector<SweepRun>> sweep(const SweepOptions& options, StateRun state, const SweepObservers& observers) {
+Expected<SweepOutcome> sweep(const SweepOptions& options, StateRun state, const SweepObservers& observers) {
   SALTUS_ASSERT(options.jobs >= 1);
   constexpr double names_and_values = 1500.0;  // bytes, of a model with a few states
   const double needed = static_cast<double>(options.runs) * (static_cast<double>(sizeof(SweepRun)) + names_and_values);

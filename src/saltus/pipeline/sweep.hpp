@@ -3,6 +3,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "saltus/base/error.hpp"
@@ -25,20 +27,33 @@ struct SweepOptions {
 
 /// Holds one run: a system with its values, and the options.
 struct StatedRun {
-  model::System system;
-  SimulateOptions options;
+  model::System system{};
+  SimulateOptions options{};
 };
 /// States run number i, from 0. Called by all threads, one at a time, under the symbolic lock.
 using StateRun = FunctionRef<Expected<StatedRun>(std::size_t run)>;
 
 struct SweepObservers {
-  std::function<void(std::size_t done)> on_run;  ///< after every run, by any thread, one at a time; may be empty
-  std::function<bool()> is_interrupted;          ///< after every step, by all threads; may be empty
+  std::function<void(std::size_t done)> on_run{};  ///< after every run, by any thread, one at a time; may be empty
+  std::function<bool()> is_interrupted{};          ///< after every step, by all threads; may be empty
 };
 
 struct SweepRun {
   result::Result result;
   std::size_t events = 0;  ///< how many there were, also where they are not kept
+  std::optional<bool>
+      unique;  ///< whether no event and no family of solutions told of another one; nullopt: not decided
+};
+
+/// Holds a warning of the model, and the runs whose values it is about.
+struct SweepWarning {
+  std::string text;
+  std::vector<std::size_t> runs;  ///< their numbers in the whole sweep, from 1, ascending
+};
+
+struct SweepOutcome {
+  std::vector<SweepRun> runs;
+  std::vector<SweepWarning> warnings;  ///< each text once
 };
 
 /// Memory that kept trajectories may take; beyond it a sweep is refused.
@@ -49,7 +64,7 @@ inline constexpr double most_kept_bytes = 4e9;
 /// @return a run for each, whatever its numerics did; one that was not begun before an interruption is stopped_by_user
 ///         at its start. An Error for the first run that cannot be stated or started ("in run 17" in its context), or
 ///         if what is kept is too much.
-[[nodiscard]] Expected<std::vector<SweepRun>> sweep(const SweepOptions& options, StateRun state,
-                                                    const SweepObservers& observers = {});
+[[nodiscard]] Expected<SweepOutcome> sweep(const SweepOptions& options, StateRun state,
+                                           const SweepObservers& observers = {});
 
 }  // namespace saltus::pipeline

@@ -168,11 +168,10 @@ std::string contacts_text(const result::Result& result) {
 }
 
 /// What is named, each by itself.
-std::string named_values(const result::Result& result, const result::Captions& captions,
-                         const std::vector<std::string>& names) {
+std::string named_values(const result::Result& result, const std::vector<std::string>& names) {
   std::vector<std::string> pieces, shown;
   const auto add = [&](const std::vector<std::string>& all, const std::vector<double>& values) {
-    const Values list{all, values, captions};
+    const Values list{all, values, result.model.captions};
     for (const auto& name : names) {
       const auto found = result::numbers_of({name}, all);
       if (!found) continue;
@@ -201,22 +200,21 @@ std::string named_values(const result::Result& result, const result::Captions& c
     }
   }
   if (!pieces.empty()) text += wrapped("modes", pieces);
-  return text + labels_text(shown, captions);
+  return text + labels_text(shown, result.model.captions);
 }
 
 }  // namespace
 
-std::string end_state(const result::Result& result, const result::Captions& captions,
-                      const std::vector<std::string>& names) {
-  if (!names.empty()) return named_values(result, captions, names);
-  std::string text = values_text("end state", "states", {result.states, result.final.x, captions});
+std::string end_state(const result::Result& result, const std::vector<std::string>& names) {
+  if (!names.empty()) return named_values(result, names);
+  std::string text = values_text("end state", "states", {result.states, result.final.x, result.model.captions});
   text += sliding_text(result) + regions_text(result) + contacts_text(result);
   auto shown = result.states;
   if (!result.outputs.empty() && !result.final.outputs.empty()) {
-    text += values_text("outputs", "outputs", {result.outputs, result.final.outputs, captions});
+    text += values_text("outputs", "outputs", {result.outputs, result.final.outputs, result.model.captions});
     shown.insert(shown.end(), result.outputs.begin(), result.outputs.end());
   }
-  return text + labels_text(shown, captions);
+  return text + labels_text(shown, result.model.captions);
 }
 
 std::vector<std::size_t> shown_states(const result::Result& result, const std::vector<std::string>& names) {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/report/figure/figure_columns_internal.hpp"
+#include "saltus/result/drawn.hpp"
 #include "saltus/result/kept_columns.hpp"
 
 namespace saltus::report {
@@ -70,7 +71,7 @@ Expected<PhaseAxes> phase_axes(const result::Result& result, const std::string& 
 
 Expected<std::string> to_svg(const result::Result& result, const std::optional<PhaseAxes>& phase,
                              const std::vector<std::string>& names) {
-  if (result.kept) return to_svg(as_in_rows(result), phase, names);
+  if (const auto drawn = as_drawn(result)) return to_svg(*drawn, phase, names);
   const auto columns = figure_columns(result);
   if (!phase) {
     std::vector<FigureColumn> chosen;

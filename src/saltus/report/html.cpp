@@ -12,7 +12,7 @@
 #include "saltus/report/page_data_internal.hpp"
 #include "saltus/report/page_overlays_internal.hpp"
 #include "saltus/report/page_text.hpp"
-#include "saltus/result/kept_columns.hpp"
+#include "saltus/result/drawn.hpp"
 
 namespace saltus::report {
 namespace {
@@ -44,23 +44,18 @@ std::uint64_t fingerprint(std::string_view text) {
   return hash;
 }
 
-/// A page shows what the rows have; all of the others is in the result.
+/// A page shows what the rows have, and events between them; all of the others is in the result.
 /// @param go_on  false ends it, with a part of the data
 nlohmann::json everything_shown(const result::Result& result, const std::vector<Overlay>& overlays, const GoOn& go_on) {
-  const auto is_kept = [](const Overlay& overlay) { return overlay.result.kept.has_value(); };
-  if (result.kept || std::any_of(overlays.begin(), overlays.end(), is_kept)) {
-    std::vector<Overlay> in_rows;
-    for (const auto& [label, other] : overlays) in_rows.push_back({label, as_in_rows(other)});
-    auto shown = everything_shown(as_in_rows(result), in_rows, go_on);
-    if (result.kept) {
-      shown["kept"] = {{"states", result.states.size()}, {"switching functions", result.switching_functions.size()}};
-    }
-    return shown;
-  }
+  const auto drawn = as_drawn(result);
+  const auto& shown = drawn ? *drawn : result;
   const std::size_t share = numbers_in_page / (1 + overlays.size());
-  auto everything = page_data(result, share, go_on);
-  if (go_on()) everything["overlays"] = overlays_data(result, overlays, share);
+  auto everything = page_data(shown, share, go_on);
+  if (go_on()) everything["overlays"] = overlays_data(shown, overlays, share);
   everything["kept"] = nullptr;
+  if (result.kept) {
+    everything["kept"] = {{"states", result.states.size()}, {"switching functions", result.switching_functions.size()}};
+  }
   return everything;
 }
 

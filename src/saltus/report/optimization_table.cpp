@@ -71,8 +71,7 @@ std::string objective_table(const result::Optimization& optimization) {
 }
 
 std::string findings_table(const result::Result& result, const result::Optimization& optimization) {
-  return findings_text("certificate",
-                       certificate_findings(optimization.certificate, residual_tolerance(result.options))) +
+  return findings_text("certificate", certificate_findings(result)) +
          findings_text("simulated", verification_findings(optimization));
 }
 

@@ -2,8 +2,11 @@
 #include <cstddef>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/optimization_words_internal.hpp"
+#include "saltus/result/impacts_at_nodes.hpp"
 
 namespace saltus::report {
 namespace {
@@ -132,10 +135,27 @@ Finding open_loop_finding(std::string text, const result::OpenLoop& open_loop) {
   return {Tone::neutral, text + "."};
 }
 
+std::string feedback_words(const std::vector<std::pair<std::string, double>>& plant) {
+  std::string text = "With feedback from the states at the nodes";
+  for (const auto& [name, value] : plant) text += fmt::format(", {} = {}", name, value);
+  return text + ": ";
+}
+
 }  // namespace
 
 std::vector<Finding> certificate_findings(const result::Certificate& certificate, double tolerance) {
   return {residuals(certificate, tolerance), b_stationarity(certificate)};
+}
+
+std::vector<Finding> certificate_findings(const result::Result& result) {
+  auto findings = certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
+  if (const auto times = result::impacts_at_nodes(result); !times.empty()) {
+    findings.push_back(
+        {Tone::bad, fmt::format("Not looked at: impacts at t = {:.6g} lie at ends of control intervals, and "
+                                "on the other side there may be a better optimum.",
+                                fmt::join(times, ", "))});
+  }
+  return findings;
 }
 
 std::vector<Finding> verification_findings(const result::Optimization& optimization) {
@@ -149,7 +169,7 @@ std::vector<Finding> verification_findings(const result::Optimization& optimizat
   if (verification.penetration) findings.push_back(penetration_finding(*verification.penetration));
   findings.push_back(open_loop_finding("Controls over the whole horizon, from the start on: ", verification.open_loop));
   if (verification.closed_loop) {
-    findings.push_back(open_loop_finding("With feedback from the states at the nodes: ", *verification.closed_loop));
+    findings.push_back(open_loop_finding(feedback_words(verification.plant), *verification.closed_loop));
   }
   return findings;
 }

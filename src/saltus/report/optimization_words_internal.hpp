@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "saltus/result/optimization.hpp"
+#include "saltus/result/result.hpp"
 
 namespace saltus::report {
 
@@ -18,6 +18,9 @@ struct Finding {
 /// Says feasibility, complementarity, stationarity; then whether it is B-stationary, and what that means.
 /// @param tolerance  of the residuals, optimize.mpcc.tolerance
 [[nodiscard]] std::vector<Finding> certificate_findings(const result::Certificate& certificate, double tolerance);
+
+/// Says the same of an optimum, and what no certificate looks at: impacts on the other side of a node.
+[[nodiscard]] std::vector<Finding> certificate_findings(const result::Result& result);
 
 /// Returns what the event-driven simulation says of intervals, switches, constraints between the nodes, and the whole
 /// horizon.

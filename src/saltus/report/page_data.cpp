@@ -8,6 +8,7 @@
 #include "saltus/report/page_comparison_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
 #include "saltus/report/page_optimization_internal.hpp"
+#include "saltus/result/turned.hpp"
 
 namespace saltus::report {
 namespace {
@@ -102,7 +103,7 @@ json intersection_data(const std::optional<result::Intersection>& intersection) 
           {"alpha_after", intersection->alpha_after}};
 }
 
-json event_data(const result::Event& event, std::size_t most) {
+json event_data(const result::Event& event, const result::Result& result, std::size_t most) {
   json alternatives = json::array();
   for (const auto& other : event.alternatives) {
     alternatives.push_back(
@@ -111,6 +112,7 @@ json event_data(const result::Event& event, std::size_t most) {
   return {{"t", event.t},
           {"kind", result::name(event.kind)},
           {"name", or_null(event.name)},
+          {"turned", or_null(turned(event, result))},
           {"surfaces", event.surfaces},
           {"mode_before", head_or_null(event.mode_before, most)},
           {"mode_after", head_or_null(event.mode_after, most)},
@@ -342,13 +344,13 @@ json events_data(const result::Result& result, std::size_t limit, const GoOn& go
   constexpr std::size_t few = 1000;
   if (result.events.size() <= few) {
     json events = json::array();
-    for (const auto& event : result.events) events.push_back(event_data(event, values_of_event));
+    for (const auto& event : result.events) events.push_back(event_data(event, result, values_of_event));
     return events;
   }
   PackedRows events;
   for (const auto& event : result.events) {
     if (events.size() % 1024 == 0 && go_on && !go_on()) break;
-    events.add(event_data(event, values_of_event));
+    events.add(event_data(event, result, values_of_event));
   }
   return events.take();
 }

@@ -103,7 +103,6 @@ json optimization_data(const result::Result& result, std::size_t limit) {
   const auto& optimization = *result.optimization;
   const std::size_t states = std::min(columns_in_page, result.states.size());
   const std::size_t controls = std::min(columns_in_page, result.controls.size());
-  const auto certificate = certificate_findings(optimization.certificate, residual_tolerance(result.options));
   return {{"method", optimization_method(result)},
           {"objective", optimization.objective},
           {"terms", objective_terms(optimization.terms)},
@@ -120,7 +119,7 @@ json optimization_data(const result::Result& result, std::size_t limit) {
           {"multiplier_count", optimization.multipliers.size()},
           {"homotopy", homotopy_data(optimization.homotopy)},
           {"open_loop", open_loop_data(optimization, states, limit)},
-          {"certificate", findings_data(certificate)},
+          {"certificate", findings_data(certificate_findings(result))},
           {"verification", findings_data(verification_findings(optimization))},
           {"statistics", statistics_data(optimization.statistics)}};
 }

@@ -9,6 +9,7 @@
 #include "saltus/report/page_overlays_internal.hpp"
 #include "saltus/report/thinning_internal.hpp"
 #include "saltus/result/difference.hpp"
+#include "saltus/result/drawn.hpp"
 
 namespace saltus::report {
 namespace {
@@ -74,7 +75,9 @@ Expected<void> check_overlay(const result::Result& first, const Overlay& other) 
 
 json overlays_data(const result::Result& first, const std::vector<Overlay>& overlays, std::size_t limit) {
   json list = json::array();
-  for (const auto& [label, other] : overlays) {
+  for (const auto& [label, stored] : overlays) {
+    const auto drawn = as_drawn(stored);
+    const auto& other = drawn ? *drawn : stored;
     const auto& rows = other.trajectory;
     const std::size_t width = 1 + number_of_columns(rows, columns_in_page);
     const auto chosen = rows_to_draw(rows, std::max<std::size_t>(1, limit / width), columns_in_page);

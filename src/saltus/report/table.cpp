@@ -14,6 +14,7 @@
 #include "saltus/report/end_state_internal.hpp"
 #include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/text_columns_internal.hpp"
+#include "saltus/result/turned.hpp"
 
 namespace saltus::report {
 namespace {
@@ -47,10 +48,12 @@ std::string regions(const result::Event& event) {
   return text;
 }
 
-std::string what(const result::Event& event) {
-  std::string text = event.name.value_or("");
+std::string what(const result::Event& event, const result::Result& result) {
+  const std::string name = event.name.value_or("");
+  std::string text = name;
+  if (const auto word = turned(event, result)) text += fmt::format(" {}", *word);
   for (const auto& surface : event.surfaces) {
-    if (surface != text) text += (text.empty() ? "" : ", ") + surface;
+    if (surface != name) text += (text.empty() ? "" : ", ") + surface;
   }
   return text;
 }
@@ -76,8 +79,9 @@ using ShownStates = std::vector<std::size_t>;
 Row event_row(std::size_t number, const result::Event& event, const result::Result& result, const ShownStates& states) {
   const std::size_t columns = result.switching_functions.size();
   const bool with_modes = columns > 0 && columns <= most_signs;
-  Row row{fmt::format("{}", number),  fmt::format("{:.12g}", event.t), std::string(name(event.kind)),
-          shortened(what(event), 24), with_modes ? modes(event) : "",  shortened(regions(event), 64),
+  Row row{fmt::format("{}", number),      fmt::format("{:.12g}", event.t),
+          std::string(name(event.kind)),  shortened(what(event, result), 24),
+          with_modes ? modes(event) : "", shortened(regions(event), 64),
           remark(event, result)};
   for (const std::size_t state : states) row.push_back(fmt::format("{:.9g}", event.x_after[state]));
   return row;
@@ -198,8 +202,7 @@ std::string method_text(const result::Result& result) {
 
 }  // namespace
 
-std::string to_table(const result::Result& result, std::size_t shown_events, const result::Captions& captions,
-                     const std::vector<std::string>& names) {
+std::string to_table(const result::Result& result, std::size_t shown_events, const std::vector<std::string>& names) {
   std::string text = paragraph("model", result.model.description.empty()
                                             ? result.model.name
                                             : fmt::format("{}: {}", result.model.name, result.model.description));
@@ -214,7 +217,7 @@ std::string to_table(const result::Result& result, std::size_t shown_events, con
                                   : fmt::format("{} at t = {:.12g}", termination, result.status.time_reached));
   if (!result.status.message.empty()) text += paragraph("", result.status.message);
   if (result.optimization) text += objective_table(*result.optimization);
-  text += end_state(result, captions, names);
+  text += end_state(result, names);
   if (result.optimization) text += findings_table(result, *result.optimization);
   constexpr double rounding = 1e-12;
   if (result.penetration.value_or(0.0) > rounding) {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/result/caption.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {
@@ -19,7 +18,7 @@ inline constexpr std::size_t events_at_each_end = 10;
 /// @param names  states, outputs and switching functions whose end values are shown, as names or patterns (v*); none:
 ///               all, of a large system a summary. Values of a few states stand beside the events.
 [[nodiscard]] std::string to_table(const result::Result& result, std::size_t shown_events = events_at_each_end,
-                                   const result::Captions& captions = {}, const std::vector<std::string>& names = {});
+                                   const std::vector<std::string>& names = {});
 
 /// Checks whether there is something to show by each of these names; else an Error with the nearest ones.
 [[nodiscard]] Expected<void> check_names(const std::vector<std::string>& names, const std::vector<std::string>& states,

@@ -95,6 +95,9 @@ struct Event {
   std::optional<Intersection> intersection;
 };
 
+/// Returns what tables of numbers have for Event::unique: 1, 0, or -1 where it was not decided.
+[[nodiscard]] constexpr int unique_number(std::optional<bool> unique) { return !unique ? -1 : *unique ? 1 : 0; }
+
 /// Keeps events in their order, as columns: an event takes its states and what has changed since the one before it.
 class Events {
  public:

@@ -86,7 +86,9 @@ struct Verification {
   int switches_extra = 0;   ///< of the solution, not found in the simulation
   double path_violation = 0.0;
   OpenLoop open_loop;
-  std::optional<OpenLoop> closed_loop;     ///< with u_k + K_k (x(t_k) - x_k), if asked for
+  std::optional<OpenLoop> closed_loop;  ///< with u_k + K_k (x(t_k) - x_k), if asked for
+  /// Parameters and initial values of the closed loop's system that are not those of the model.
+  std::vector<std::pair<std::string, double>> plant;
   std::optional<Penetration> penetration;  ///< of a system with contacts
   std::string message;                     ///< why an interval could not be simulated; empty otherwise
 };

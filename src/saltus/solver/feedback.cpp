@@ -31,6 +31,12 @@ std::vector<bool> on_bounds(const Eigen::VectorXd& values, const mpcc::Bounds& b
   return on;
 }
 
+std::vector<bool> equal_bounds(const mpcc::Bounds& bounds) {
+  std::vector<bool> equal;
+  for (Eigen::Index i = 0; i < bounds.lower.size(); ++i) equal.push_back(bounds.lower[i] == bounds.upper[i]);
+  return equal;
+}
+
 crossover::BranchProblem branch_of(mpcc::Problem& problem, const Solution& solution) {
   Eigen::VectorXd c(problem.rows());
   problem.functions(solution.w, c);
@@ -42,17 +48,23 @@ crossover::BranchProblem branch_of(mpcc::Problem& problem, const Solution& solut
 /// The optimality conditions of the branch problem, and the conditions of what is behind a node as a part of them.
 class Conditions {
  public:
-  Conditions(mpcc::Problem& problem, const Solution& solution)
+  Conditions(mpcc::Problem& problem, const Solution& solution, const std::optional<TrackingScales>& scales)
       : chain_(*problem.chain()), branch_(branch_of(problem, solution)), place_(branch_.reduction().place) {
     const Eigen::VectorXd v = branch_.reduced(solution.w);
     Eigen::VectorXd values(branch_.jacobian_pattern().entries()), c(branch_.constraints());
     branch_.jacobian(v, values);
     rows_ = sparse<Eigen::RowMajor>(branch_.jacobian_pattern(), values, branch_.constraints(), branch_.variables());
+    find_intervals();
+    if (scales) {
+      is_active_ = equal_bounds(branch_.constraint_bounds());
+      is_fixed_ = equal_bounds(branch_.variable_bounds());
+      take_tracking(*scales);
+      return;
+    }
     branch_.functions(v, c);
     is_active_ = on_bounds(c, branch_.constraint_bounds());
     is_fixed_ = on_bounds(v, branch_.variable_bounds());
     take_hessian(v, multipliers(problem, solution.multipliers));
-    find_intervals();
   }
 
   /// d u_k / d x_k; 0 where the conditions cannot be factorised.
@@ -100,6 +112,20 @@ class Conditions {
       const int i = pattern.row[at(e)], j = pattern.column[at(e)];
       hessian_.emplace_back(i, j, values[e]);
       if (i != j) hessian_.emplace_back(j, i, values[e]);
+    }
+  }
+
+  /// Squares of deviations at the ends of intervals.
+  void take_tracking(const TrackingScales& scales) {
+    const auto weigh = [&](int variable, double scale) {
+      const int place = place_[at(variable)];
+      if (place >= 0) hessian_.emplace_back(place, place, 1.0 / (scale * scale));
+    };
+    for (const auto& [shared, first, elements] : chain_.intervals) {
+      for (std::size_t i = 0; i < scales.controls.size(); ++i)
+        weigh(shared.first + static_cast<int>(i), scales.controls[i]);
+      const auto& end = chain_.elements[at(first + elements - 1)].link_state;
+      for (std::size_t i = 0; i < std::min(end.size(), scales.states.size()); ++i) weigh(end[i], scales.states[i]);
     }
   }
 
@@ -205,12 +231,12 @@ class Conditions {
 
 }  // namespace
 
-std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Solution& solution, int controls,
-                                            int states) {
+std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Solution& solution, int controls, int states,
+                                            const std::optional<TrackingScales>& scales) {
   if (problem.chain() == nullptr || !solution.w.allFinite()) return {};
   problem.without_method_terms();
   problem.relaxed_by(0.0);
-  Conditions conditions(problem, solution);
+  Conditions conditions(problem, solution, scales);
   std::vector<Eigen::MatrixXd> gains{Eigen::MatrixXd::Zero(controls, states)};
   for (std::size_t k = 1; k < problem.chain()->intervals.size(); ++k) {
     gains.push_back(conditions.gain(static_cast<int>(k), controls, states));

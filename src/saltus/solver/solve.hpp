@@ -26,13 +26,13 @@ enum class FirstProblem {
 struct SolveOptions {
   homotopy::Relaxation relaxation = homotopy::Relaxation::scholtes;
   homotopy::Steering steering = homotopy::Steering::direct;
-  homotopy::Schedule schedule;
+  homotopy::Schedule schedule{};
   homotopy::WarmStart warm_start = homotopy::WarmStart::primal;
   FirstProblem first = FirstProblem::relaxed;
   bool crossover = true;
-  double tolerance = 1e-8;           ///< of the three residuals
-  int iteration_limit = 3000;        ///< of all relaxed and branch problems together
-  std::optional<double> time_limit;  ///< seconds
+  double tolerance = 1e-8;             ///< of the three residuals
+  int iteration_limit = 3000;          ///< of all relaxed and branch problems together
+  std::optional<double> time_limit{};  ///< seconds
   /// Ends everything at the next iteration of the solver (stopped_by_user).
   std::function<bool()> is_interrupted = [] { return false; };
   /// Called after every problem.

@@ -1,4 +1,5 @@
 // Contacts in the event engine, against closed forms.
+#include <algorithm>
 #include <cmath>
 
 #include "run_model.hpp"
@@ -75,6 +76,47 @@ TEST(Contacts, ABallBouncesAndComesToRest) {
   EXPECT_NEAR(run.final.x[1], 0.0, 1e-12);
   EXPECT_NEAR(run.final.outputs.at(1), 9.8, 1e-12);  // the force
   expect_apart(run, {0});
+}
+
+/// A point mass bounces as it does without friction, however fast it moves along the ground.
+TEST(Contacts, BouncesAccumulateWithFrictionToo) {
+  for (const double speed : {0.5, 3.0, 1e2, 1e4}) {
+    for (const double restitution : {0.1, 0.5, 0.8}) {
+      PointMass ball(1.0, speed);
+      ball.moves(1.0);
+      ball.model.contact("ground", ball.z, {.tangent = {{"x", 1.0}}, .friction = 0.2, .restitution = restitution});
+      const double end = std::sqrt(2.0 / g) * (1.0 + restitution) / (1.0 - restitution);
+      const auto run = run_model(ball.model, end + 0.1, {1e-8, 1e-10});
+      expect_done(run);
+      std::vector<double> times;
+      for (const auto& event : run.events) {
+        if (event.kind == EventKind::accumulation) times.push_back(event.t);
+      }
+      ASSERT_EQ(times.size(), 1U) << speed << " " << restitution;
+      EXPECT_NEAR(times[0], end, 1e-7) << speed << " " << restitution;
+    }
+  }
+}
+
+/// Bounces that are nothing before there were enough of them to see where they go: their limit is the last one.
+TEST(Contacts, FewBouncesAccumulateToo) {
+  for (const double speed : {0.0, 1e3}) {
+    const double angle = 0.3;
+    PointMass ball(1.0, speed);
+    ball.moves(1.0);
+    ball.model.contact(
+        "ground", std::cos(angle) * ball.z - std::sin(angle) * ball.x,
+        {.tangent = {{"x", std::cos(angle)}, {"z", std::sin(angle)}}, .friction = 0.1, .restitution = 1e-4});
+    const auto run = run_model(ball.model, 300.0, {1e-8, 1e-10});
+    const auto found = kinds(run);
+    EXPECT_EQ(std::count(found.begin(), found.end(), EventKind::accumulation), 1) << speed;
+    const auto place = std::find(found.begin(), found.end(), EventKind::accumulation);
+    ASSERT_TRUE(place != found.begin() && place != found.end()) << speed;
+    const auto& end = run.events[static_cast<std::size_t>(place - found.begin())];
+    EXPECT_EQ(*(place - 1), EventKind::impact) << speed;
+    EXPECT_EQ(end.t, run.events[static_cast<std::size_t>(place - found.begin()) - 1].t) << speed;
+    EXPECT_EQ(end.surfaces, std::vector<std::string>{"ground"});
+  }
 }
 
 TEST(Contacts, TwoBallsOnASpring) {

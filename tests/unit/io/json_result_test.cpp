@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "saltus/io/json/json_document_internal.hpp"
+
 namespace saltus::io {
 namespace {
 
@@ -230,6 +232,24 @@ TEST(JsonResult, KeysAreInTheOrderOfTheContract) {
   }
 }
 
+/// With so much space in every list that none of them is parsed at once.
+std::string with_long_lists(const std::string& text) {
+  const std::string space(bytes_at_once, ' ');
+  std::string longer;
+  for (const char c : text) {
+    longer += c;
+    if (c == '[') longer += space;
+  }
+  return longer;
+}
+
+TEST(JsonResult, LongListsAreReadAsShortOnes) {
+  const auto text = to_json(with_branches());
+  const auto read = parse_result(with_long_lists(text), "r.json");
+  ASSERT_TRUE(read) << to_text(read.error());
+  EXPECT_EQ(to_json(*read), text);
+}
+
 struct Damage {
   const char* what;
   const char* from;
@@ -248,6 +268,9 @@ TEST_P(DamagedResult, IsRefusedWithItsPlace) {
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().location.file, "r.json");
   EXPECT_NE(to_text(read.error()).find(GetParam().expected), std::string::npos) << to_text(read.error());
+  const auto of_long_lists = parse_result(with_long_lists(text), "r.json");
+  ASSERT_FALSE(of_long_lists);
+  EXPECT_EQ(of_long_lists.error().message, read.error().message);
 }
 
 INSTANTIATE_TEST_SUITE_P(

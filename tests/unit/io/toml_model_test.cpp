@@ -68,7 +68,7 @@ max_step = 0.5
 branches = "report"
 )toml";
 
-ModelFile parsed(std::string_view text) {
+ModelFile parsed_file(std::string_view text) {
   auto model = parse_model(text, "m.toml");
   EXPECT_TRUE(model) << to_text(model.error());
   return model.value_or(ModelFile{});
@@ -82,7 +82,7 @@ std::vector<std::string> names(const std::vector<Item>& items) {
 }
 
 TEST(TomlModel, ReadsEveryTableInTheOrderOfTheFile) {
-  const auto description = parsed(whole).description;
+  const auto description = parsed_file(whole).description;
   using Names = std::vector<std::string>;
   EXPECT_EQ(description.name, "sample");
   EXPECT_EQ(description.description, "one of everything");
@@ -102,7 +102,7 @@ TEST(TomlModel, ReadsEveryTableInTheOrderOfTheFile) {
 }
 
 TEST(TomlModel, ReadsEvents) {
-  const auto events = parsed(whole).description.events;
+  const auto events = parsed_file(whole).description.events;
   ASSERT_EQ(events.size(), 2U);
   EXPECT_EQ(events[0].name, "returns");
   EXPECT_EQ(events[0].direction, model::Direction::up);
@@ -114,7 +114,7 @@ TEST(TomlModel, ReadsEvents) {
 }
 
 TEST(TomlModel, ReadsOptions) {
-  const auto options = parsed(whole).simulate;
+  const auto options = parsed_file(whole).simulate;
   EXPECT_EQ(options.until, 40.0);
   EXPECT_EQ(options.from, -1.5);
   EXPECT_EQ(options.rtol, 1e-9);
@@ -128,22 +128,22 @@ TEST(TomlModel, ReadsOptions) {
   const auto* times = std::get_if<pipeline::AtTimes>(&options.output);
   ASSERT_NE(times, nullptr);
   EXPECT_EQ(times->times, (std::vector<double>{0, 1.5, 40}));
-  EXPECT_TRUE(check_options(parsed(whole)));
+  EXPECT_TRUE(check_options(parsed_file(whole)));
 }
 
 TEST(TomlModel, ReadsEveryFormOfOutput) {
   const std::string head = "[model]\nname='m'\n[simulate]\noutput = ";
-  EXPECT_TRUE(std::holds_alternative<pipeline::EveryStep>(parsed(head + "'steps'").simulate.output));
-  EXPECT_TRUE(std::holds_alternative<pipeline::Automatic>(parsed(head + "'auto'").simulate.output));
-  EXPECT_TRUE(std::holds_alternative<pipeline::Automatic>(parsed("[model]\nname='m'\n").simulate.output));
-  EXPECT_FALSE(parsed(head + "{ every = 0.25, events = false }").simulate.event_rows);
-  EXPECT_TRUE(parsed(head + "{ every = 0.25 }").simulate.event_rows);
-  EXPECT_EQ(std::get<pipeline::EveryInterval>(parsed(head + "{ every = 0.25 }").simulate.output).interval, 0.25);
-  EXPECT_EQ(std::get<pipeline::NumberOfPoints>(parsed(head + "{ points = 7 }").simulate.output).points, 7);
+  EXPECT_TRUE(std::holds_alternative<pipeline::EveryStep>(parsed_file(head + "'steps'").simulate.output));
+  EXPECT_TRUE(std::holds_alternative<pipeline::Automatic>(parsed_file(head + "'auto'").simulate.output));
+  EXPECT_TRUE(std::holds_alternative<pipeline::Automatic>(parsed_file("[model]\nname='m'\n").simulate.output));
+  EXPECT_FALSE(parsed_file(head + "{ every = 0.25, events = false }").simulate.event_rows);
+  EXPECT_TRUE(parsed_file(head + "{ every = 0.25 }").simulate.event_rows);
+  EXPECT_EQ(std::get<pipeline::EveryInterval>(parsed_file(head + "{ every = 0.25 }").simulate.output).interval, 0.25);
+  EXPECT_EQ(std::get<pipeline::NumberOfPoints>(parsed_file(head + "{ points = 7 }").simulate.output).points, 7);
 }
 
 TEST(TomlModel, TheFingerprintIsThatOfTheBytes) {
-  EXPECT_EQ(parsed("[model]\nname = \"m\"\n").sha256,
+  EXPECT_EQ(parsed_file("[model]\nname = \"m\"\n").sha256,
             "9244c2122fabbe47a6c96373cf73373dea8dd270ab685bac1f0e09bd5b179a5b");
 }
 
@@ -156,7 +156,7 @@ struct Placed {
 class ExpressionPosition : public testing::TestWithParam<Placed> {};
 
 TEST_P(ExpressionPosition, IsThatOfTheFile) {
-  const auto model = parsed(std::string("[model]\nname = 'm'\n[dynamics]\nx = ") + GetParam().value + "\n");
+  const auto model = parsed_file(std::string("[model]\nname = 'm'\n[dynamics]\nx = ") + GetParam().value + "\n");
   ASSERT_EQ(model.description.dynamics.size(), 1U);
   const auto* sum = std::get_if<expression::Binary>(&model.description.dynamics[0].expression->value);
   ASSERT_NE(sum, nullptr);
@@ -185,9 +185,9 @@ TEST(TomlModel, ErrorsBehindAnEscapeNameTheirColumn) {
 
 TEST(TomlModel, AByteOrderMarkIsNoPartOfTheText) {
   const std::string plain = "[model]\nname = 'm'\n";
-  const auto marked = parsed("\xEF\xBB\xBF" + plain);
+  const auto marked = parsed_file("\xEF\xBB\xBF" + plain);
   EXPECT_EQ(marked.description.name, "m");
-  EXPECT_NE(marked.sha256, parsed(plain).sha256);  // the fingerprint is that of the bytes
+  EXPECT_NE(marked.sha256, parsed_file(plain).sha256);  // the fingerprint is that of the bytes
   const auto refused = parse_model("\xEF\xBB\xBFnam = 1\n", "m.toml");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().location.column, 1);
@@ -195,7 +195,7 @@ TEST(TomlModel, AByteOrderMarkIsNoPartOfTheText) {
 }
 
 TEST(TomlModel, NamesAndTablesCarryTheirPositions) {
-  const auto model = parsed(whole);
+  const auto model = parsed_file(whole);
   EXPECT_EQ(model.description.states[1].location.line, 13);
   EXPECT_EQ(model.description.states[1].location.column, 1);
   EXPECT_EQ(model.description.states[1].initial->location.line, 13);
@@ -203,19 +203,19 @@ TEST(TomlModel, NamesAndTablesCarryTheirPositions) {
 }
 
 TEST(TomlModel, TooManyRowsAreToldAtTheirOption) {
-  const auto checked = check_options(parsed("[model]\nname='m'\n[simulate]\nuntil = 1\noutput = { every = 1e-9 }\n"));
+  const auto checked = check_options(parsed_file("[model]\nname='m'\n[simulate]\nuntil = 1\noutput = { every = 1e-9 }\n"));
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().location.line, 5);
   EXPECT_NE(checked.error().message.find("1e+09 rows"), std::string::npos) << checked.error().message;
 }
 
 TEST(TomlModel, ProblemsBetweenOptionsNameTheirPlace) {
-  const auto model = parsed("[model]\nname='m'\n[simulate]\nuntil = 1\noutput = { times = [0.5, 2] }\n");
+  const auto model = parsed_file("[model]\nname='m'\n[simulate]\nuntil = 1\noutput = { times = [0.5, 2] }\n");
   const auto checked = check_options(model);
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().location.line, 5);
   EXPECT_NE(checked.error().message.find("output time 2"), std::string::npos);
-  const auto without_end = check_options(parsed("[model]\nname='m'\n"));
+  const auto without_end = check_options(parsed_file("[model]\nname='m'\n"));
   ASSERT_FALSE(without_end);
   EXPECT_NE(without_end.error().message.find("no end time"), std::string::npos);
 }
@@ -254,7 +254,7 @@ TEST(TomlModel, AHundredLevelsOfEverythingAreReadOrRefused) {
 }
 
 TEST(Settings, ReachOptionsInputsAndExpressions) {
-  auto model = parsed(whole);
+  auto model = parsed_file(whole);
   const std::vector<std::pair<std::string, std::string>> settings{{"simulate.rtol", "1e-6"},
                                                                   {"simulate.until", "2*pi"},
                                                                   {"simulate.event.integrator", "\"dopri5\""},
@@ -304,7 +304,7 @@ struct Refused {
 class RefusedSetting : public testing::TestWithParam<Refused> {};
 
 TEST_P(RefusedSetting, SaysWhyAndWhichKey) {
-  const auto changed = with_setting(parsed(whole), GetParam().key, GetParam().value);
+  const auto changed = with_setting(parsed_file(whole), GetParam().key, GetParam().value);
   ASSERT_FALSE(changed);
   const auto text = to_text(changed.error());
   EXPECT_NE(text.find(GetParam().expected), std::string::npos) << text;

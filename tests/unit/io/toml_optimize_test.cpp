@@ -245,7 +245,7 @@ TEST(TomlOptimize, MistakesInTheProblemAreFoundWithTheirPlace) {
       {"[optimize.mpcc]\nsolver = 'structured'\n", 2, "is not available", "ipopt"},
       {"[optimize.mpcc]\nsolver = 'snopt'\n", 2, "expected \"ipopt\"", ""},
       {"[optimize]\nmpcc = 3\n", 2, "the table [optimize.mpcc]", ""},
-      {"[optimize]\ntime_limit = 0\n", 2, "a finite number > 0 or \"none\"", ""},
+      {"[optimize]\ntime_limit = 0\n", 2, "\"none\" or a finite number > 0", ""},
       {"[optimize]\npath_constraints_at = 'nodes'\n", 2, "found the string \"nodes\"", ""},
       {"[optimize]\npath_complementarities = ['q']\n", 2, "a pair of expressions", ""},
       {"[optimize]\npath_complementarities = [['q', 'u', 'v']]\n", 2, "has two sides, found 3", ""},

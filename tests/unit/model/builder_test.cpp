@@ -45,6 +45,14 @@ TEST(BuilderTest, UnnamedFunctionsAreNamedByTheirExpression) {
   EXPECT_EQ(columns(system), (Names{"(x-y)", "limit"}));
 }
 
+TEST(BuilderTest, RemediesAreThoseOfAProgram) {
+  Builder model("still");
+  model.state("x", {1.0});
+  const auto built = model.build();
+  ASSERT_FALSE(built);
+  EXPECT_EQ(built.error().remedy, "call dynamics(\"x\", …), or name it in a mode; a constant state gets 0");
+}
+
 TEST(BuilderTest, NonsmoothCasadiOperationsAreRefused) {
   const std::vector<std::pair<std::string, SX (*)(const SX&)>> cases{
       {"builder's sign", [](const SX& x) { return SX(sign(x)); }},

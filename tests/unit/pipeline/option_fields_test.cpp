@@ -1,6 +1,14 @@
 #include "saltus/pipeline/options/option_fields.hpp"
 
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
 #include <gtest/gtest.h>
+
+#include "saltus/pipeline/options/optimize_fields.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -43,6 +51,45 @@ TEST(OptionFields, WhatIsRecordedSetsTheSameOptionsAgain) {
     EXPECT_EQ(copy.output.index(), original.output.index());
     EXPECT_FALSE(copy.event_rows);
   }
+}
+
+TEST(OptionFields, WhatIsInForceIsOfTheKindOfItsOption) {
+  const auto check_all = [](const auto& fields, const auto& options) {
+    for (const auto& field : fields) {
+      result::OptionRecord record;
+      field.record(options, field.key, record);
+      for (const auto& [name, value] : record) EXPECT_TRUE(check(field.kind, value)) << name;
+    }
+  };
+  check_all(simulate_fields(), SimulateOptions{});
+  check_all(simulate_fields(), uncommon_options());
+  check_all(optimize_fields(), OptimizeOptions{});
+}
+
+TEST(OptionFields, WhatIsSaidOfAKindIsWhatItTakes) {
+  constexpr std::array<std::string_view, 2> words{"auto", "off"};
+  const OptionKind kind{.words = words, .number = Numbers{.whole = true, .from = 2.0}, .list = ListOf::the_same};
+  EXPECT_EQ(expects(kind), "auto, off, or a whole number >= 2, or a list of them");
+  using List = std::vector<double>;
+  for (const result::OptionValue& value :
+       {result::OptionValue(std::string("off")), {std::int64_t{2}}, {1e3}, {List{2.0, 3.0}}}) {
+    EXPECT_TRUE(check(kind, value)) << to_text(value);
+  }
+  for (const result::OptionValue& value : {result::OptionValue(std::string("on")),
+                                           {std::int64_t{1}},
+                                           {2.5},
+                                           {true},
+                                           {List{2.0, 1.0}},
+                                           {List{}},
+                                           {std::vector<std::string>{"off"}}}) {
+    const auto fits = check(kind, value);
+    ASSERT_FALSE(fits) << to_text(value);
+    EXPECT_EQ(fits.error().message,
+              "expected \"auto\", \"off\", a whole number >= 2 or a list of them, found " + to_text(value));
+  }
+  EXPECT_EQ(expects({.number = Numbers{.above = 0.0, .up_to = 1.0}}), "a number > 0 and <= 1");
+  EXPECT_EQ(expects({.number = Numbers{.above_option = "from"}}), "a finite number > `from`");
+  EXPECT_EQ(expects({.truth = true}), "true, false");
 }
 
 TEST(OptionFields, EveryOptionIsOnThePage) {

@@ -54,6 +54,50 @@ TEST(Figure, SaysWhatItsLinesMean) {
   }
 }
 
+TEST(Figure, BreaksCurvesAtEventsWithoutRows) {
+  const auto broken = [](result::Result result) {
+    result.trajectory.t = {0.0, 1.0, 2.0};
+    result.trajectory.x = result::Table<double>{{1.0}, {3.0}, {3.0}};
+    result.trajectory.alpha = {}, result.trajectory.mode = {};
+    result.states = {"x"}, result.switching_functions = {}, result.outputs = {"y"};
+    result.trajectory.outputs = result::Table<double>{{1.0}, {3.0}, {4.0}};
+    result::Event jump;
+    jump.t = 0.5, jump.kind = result::EventKind::jump;
+    jump.x = {2.0}, jump.x_after = {2.5};
+    result.events = result::Events{jump};
+    return to_svg(result, std::nullopt, {"x", "y"});
+  };
+  const auto svg = broken(report_samples::decay());
+  ASSERT_TRUE(svg);
+  EXPECT_EQ(occurrences(*svg, "stroke-dasharray=\"2 3\""), 1U) << "the jump of x";
+  EXPECT_EQ(occurrences(*svg, "stroke-width=\"1.6\""), 3U) << "two pieces of x, one of y";
+  EXPECT_EQ(occurrences(*svg, "<circle"), 1U) << "the first row of y lies alone";
+}
+
+TEST(Figure, BreaksCurvesAtEventsBetweenRowsOfOnePixel) {
+  auto result = report_samples::decay();
+  result.states = {"x"}, result.switching_functions = {}, result.outputs = {"y"};
+  result.trajectory = {};
+  constexpr int rows = 20000;
+  for (int i = 0; i <= rows; ++i) {
+    const double t = static_cast<double>(i) / rows;
+    for (const double y : {i <= rows / 2 ? 6.0 : -6.0, i < rows / 2 ? 6.0 : -6.0}) {
+      if (i != rows / 2 && !result.trajectory.t.empty() && result.trajectory.t.back() == t) continue;
+      result.trajectory.t.push_back(t);
+      result.trajectory.x.push_back({t});
+      result.trajectory.outputs.push_back({y});
+    }
+  }
+  result.events = {};
+  const auto drawn = [&](const std::string& column) {
+    const auto svg = to_svg(result, std::nullopt, {column});
+    EXPECT_TRUE(svg);
+    return std::pair(occurrences(*svg, "stroke-dasharray=\"2 3\""), occurrences(*svg, "stroke-width=\"1.6\""));
+  };
+  EXPECT_EQ(drawn("y"), (std::pair<std::size_t, std::size_t>{1, 2})) << "a jump, and a line on either side";
+  EXPECT_EQ(drawn("x"), (std::pair<std::size_t, std::size_t>{0, 1}));
+}
+
 TEST(Figure, UnknownColumnsAreRefusedWithTheNearestName) {
   const auto result = report_samples::stick_slip(4, 5);
   for (const char* wrong : {"q,vv", "vv,q", "q", ""}) {

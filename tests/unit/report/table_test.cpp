@@ -50,6 +50,24 @@ TEST(Table, ShowsTheEndAndWhereItSlides) {
   EXPECT_NE(text.find("events      none\n"), std::string::npos) << text;
 }
 
+TEST(Table, SaysWhatAHysteresisTurnedTo) {
+  auto r = sample();
+  r.states = {"x", "heats"};
+  r.final.x = {0.1, 1.0};
+  auto jump = crossing(1.0, "heats");
+  jump.kind = result::EventKind::jump;
+  jump.name = "heats";
+  jump.x = {0.5, 1.0}, jump.x_after = {0.5, 0.0};
+  auto back = jump;
+  std::swap(back.x, back.x_after);
+  r.events = {jump, back};
+  const auto text = to_table(r);
+  EXPECT_NE(text.find("jump  heats off "), std::string::npos) << text;
+  EXPECT_NE(text.find("jump  heats on "), std::string::npos) << text;
+  r.final.x[1] = 3.0;  // a counter of that name
+  EXPECT_EQ(to_table(r).find("heats on"), std::string::npos);
+}
+
 /// Two continuations beside the one taken.
 result::Event ambiguous(double t) {
   auto event = crossing(t, "a");
@@ -228,8 +246,8 @@ TEST(Table, OfManyStatesItSaysTheirRange) {
 
 TEST(Table, ShowsWhatIsNamed) {
   auto r = many_states();
-  const result::Captions captions{{"total", {"", "sum"}}, {"q1", {"", "first"}}};
-  const auto text = to_table(r, events_at_each_end, captions, {"v7*", "total"});
+  r.model.captions = {{"total", {"", "sum"}}, {"q1", {"", "first"}}};
+  const auto text = to_table(r, events_at_each_end, {"v7*", "total"});
   EXPECT_NE(text.find("end state   v7 = -3.5  v70 = -35"), std::string::npos) << text;
   EXPECT_NE(text.find("total = 7.5"), std::string::npos) << text;
   EXPECT_NE(text.find("\nwhere       total: sum\n"), std::string::npos) << text;

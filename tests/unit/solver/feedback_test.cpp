@@ -103,6 +103,21 @@ TEST(Feedback, GainsAreThoseOfTheRiccatiRecursion) {
   }
 }
 
+/// Whatever the cost is, and at bounds, too.
+TEST(Feedback, TrackingMinimisesScaledDeviations) {
+  Regulator problem;
+  problem.fix_control(3, 2.0);
+  constexpr double state = 2.0, control = 0.5;
+  const auto gains = feedback_gains(problem, at_zero(2.0), 1, 1, TrackingScales{{state}, {control}});
+  constexpr double a = Regulator::a, b = Regulator::b, q = 1.0 / (state * state), r = 1.0 / (control * control);
+  double p = q;
+  for (int k = Regulator::intervals - 1; k > 0; --k) {
+    const double gain = -b * p * a / (r + b * p * b);
+    EXPECT_NEAR(gains[static_cast<std::size_t>(k)](0, 0), gain, 1e-6) << k;
+    p = q + r * gain * gain + p * (a + b * gain) * (a + b * gain);
+  }
+}
+
 TEST(Feedback, AControlAtItsBoundStaysThere) {
   Regulator problem;
   problem.fix_control(3, 2.0);

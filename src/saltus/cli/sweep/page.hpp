@@ -19,7 +19,7 @@ struct SweepPage {
   std::string command;             ///< that runs one of them, without its values; empty: not known
   std::vector<std::string> names;  ///< what was changed, as --set takes it
   bool grid = true;                ///< of two names every pair is there once
-  result::Captions captions{};     ///< of the model; none where shares are joined
+  result::Captions captions{};     ///< of the model
 };
 
 /// Draws values over one parameter as lines, over two as a map, number of events, status, values at events (bifurcation

@@ -25,6 +25,9 @@ columns.run.forEach((run, row) => {
 });
 const runRows = [...rowOf.values()];
 const eventsOf = (row) => columns.events?.[row] ?? null;
+// Other solutions are admissible (older tables do not say it).
+const isAlarming = (row) => columns.unique?.[row] === 0;
+const doubtOf = (row) => isAlarming(row) ? "; the solution is not unique, --branch all follows the others" : columns.unique?.[row] < 0 ? "; uniqueness not decided" : "";
 // Those of kept events; a run without one has a row that names none.
 const eventRows = columns.kind ? columns.run.map((_, row) => row).filter((row) => columns.kind[row]) : [];
 const allEvents = eventRows.length === runRows.reduce((sum, row) => sum + eventsOf(row), 0);
@@ -36,7 +39,7 @@ function commandOf(row) {
 function choose(row) {
   const parts = swept.map((name) => `${name} = ${shown(columns[name][row])}`);
   document.getElementById("chosen").textContent =
-    `run ${columns.run[row]}: ${parts.join(", ")}; ${columns.status[row]}, ${eventsOf(row)} events`;
+    `run ${columns.run[row]}: ${parts.join(", ")}; ${columns.status[row]}, ${eventsOf(row)} event${eventsOf(row) === 1 ? "" : "s"}${doubtOf(row)}`;
   document.getElementById("command").textContent = commandOf(row);
 }
 
@@ -98,9 +101,12 @@ function frame(title, xName, yName, xAxis, yAxis) {
   if (!yAxis.words) picture.append(make("text", { x: 14, y: size.height / 2, transform: `rotate(-90 14 ${size.height / 2})`, "text-anchor": "middle" }, axisOfColumn(yName)));
   return { picture, name, x, y };
 }
+function cross(picture, row, x, y) {
+  if (isAlarming(row)) picture.append(make("path", { d: `M${x - 5} ${y - 5}l10 10m0 -10l-10 10`, class: "alarm" }));
+}
 function mark(picture, row, x, y, colour, radius, label) {
   const dot = make("circle", { cx: x, cy: y, r: radius, fill: colour, class: "run", "data-run": columns.run[row] });
-  dot.append(make("title", {}, label));
+  dot.append(make("title", {}, label + doubtOf(row)));
   dot.addEventListener("click", () => choose(row));
   picture.append(dot);
 }
@@ -113,6 +119,8 @@ function points(title, xName, yName, chosen, yOf, joined, colourOf = () => palet
     const path = along.map((row, k) => `${k ? "L" : "M"}${drawn.x(columns[xName][row])} ${drawn.y(yOf(row))}`).join("");
     drawn.picture.append(make("path", { d: path, fill: "none", stroke: palette[0] }));
   }
+  const first = new Map(plain.map((row) => [columns.run[row], row]).reverse());
+  for (const row of first.values()) cross(drawn.picture, row, drawn.x(columns[xName][row]), drawn.y(yOf(row)));
   for (const row of plain) mark(drawn.picture, row, drawn.x(columns[xName][row]), drawn.y(yOf(row)), colourOf(row), joined ? 3 : 2, `${shown(columns[xName][row])}: ${shown(yOf(row))}`);
   return drawn.picture;
 }
@@ -132,9 +140,10 @@ function map(title, xName, yName, valueOf) {
     const cell = make("rect", { x: left, y: top, width: right - left + 0.3, height: bottom - top + 0.3, fill: colour, class: "run", "data-run": columns.run[row] });
     low = value !== null && !(value >= low) ? value : low;
     high = value !== null && !(value <= high) ? value : high;
-    cell.append(make("title", {}, `${xName} ${shown(columns[xName][row])}, ${yName} ${shown(columns[yName][row])}: ${shown(value)}`));
+    cell.append(make("title", {}, `${xName} ${shown(columns[xName][row])}, ${yName} ${shown(columns[yName][row])}: ${shown(value)}${doubtOf(row)}`));
     cell.addEventListener("click", () => choose(row));
     drawn.picture.append(cell);
+    cross(drawn.picture, row, (left + right) / 2, (bottom + top) / 2);
   }
   // On narrow screens the scale of colours takes the middle.
   if (size.width < 500) drawn.name.setAttribute("x", size.left);
@@ -156,11 +165,31 @@ function selector(label, options, value, onChange) {
   return box;
 }
 
-const values = numeric.filter((name) => !["run", "event", "events", ...swept].includes(name));
+const values = numeric.filter((name) => !["run", "event", "events", "unique", ...swept].includes(name));
 const kindOf = (row) => columns.name[row] || (columns.surfaces[row] ? `${columns.kind[row]} ${columns.surfaces[row]}` : columns.kind[row]);
 // What the model calls an event comes first: at a switching surface its own value is a threshold.
 const kinds = [...new Set([...eventRows.filter((row) => columns.name[row]), ...eventRows].map(kindOf))];
-const state = { value: values.find((name) => name !== "t") || values[0], x: swept[0], y: swept[1], kind: kinds[0], behind: -Infinity };
+const rangeOf = (name, of) => {
+  let low = Infinity, high = -Infinity;
+  for (const row of of) {
+    const value = columns[name][row];
+    if (value === null) continue;
+    low = Math.min(low, value);
+    high = Math.max(high, value);
+  }
+  return { span: Math.max(0, high - low), most: high < low ? 0 : Math.max(Math.abs(low), Math.abs(high)) };
+};
+// At a surface a value is its threshold in every run: the first one that varies nearly as much as any, for its size.
+function variedValue() {
+  const of = kinds.length ? eventRows.filter((row) => kindOf(row) === kinds[0]) : runRows;
+  const names = values.filter((name) => name !== "t"), ranges = names.map((name) => rangeOf(name, of));
+  // What is that small is rounding.
+  const least = 1e-12 * ranges.reduce((most, range) => Math.max(most, range.most), 0);
+  const scores = ranges.map(({ span, most }) => (most > least ? span / most : 0));
+  const best = scores.reduce((most, score) => Math.max(most, score), 0);
+  return names[scores.findIndex((score) => score >= best / 4)] || values[0];
+}
+const state = { value: variedValue(), x: swept[0], y: swept[1], kind: kinds[0], behind: -Infinity };
 
 function section(title, picture) {
   const box = make("section"), save = make("button", { type: "button" }, "save as SVG");
@@ -176,12 +205,25 @@ function section(title, picture) {
   document.getElementById("pictures").append(box);
 }
 const roomFor = (pictures) => Math.max(340, Math.min(720, pictures.clientWidth));
+function doubts() {
+  const runs = runRows.filter(isAlarming);
+  if (!runs.length) return;
+  const box = make("p", { role: "alert" }, `The solution is not unique in ${runs.length} of ${runRows.length} runs, marked by a cross: `);
+  for (const row of runs.slice(0, 8)) {
+    const button = make("button", { type: "button" }, `run ${columns.run[row]}`);
+    button.addEventListener("click", () => choose(row));
+    box.append(button, " ");
+  }
+  if (runs.length > 8) box.append(`and ${runs.length - 8} more`);
+  document.getElementById("pictures").append(box);
+}
 function draw() {
   const pictures = document.getElementById("pictures");
   // Letters keep their size on narrow screens.
   size.width = roomFor(pictures);
   pictures.replaceChildren();
   if (!rows || !swept.length) return;
+  doubts();
   const grid = swept.length === 2 && data.grid;
   // Random samples are no line.
   const joined = data.grid && swept.length === 1 && isNumber(state.x);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdio>
 #include <optional>
 #include <string_view>
@@ -60,13 +59,17 @@ struct ShareTable {
 
 constexpr std::string_view grid_word = "grid", pairs_word = "pairs";
 
-/// What stands behind the bracket of a share's heading: fields of CSV; nothing in older shares.
+/// What stands behind the bracket of a share's heading: fields of CSV, of them three for each caption; older shares
+/// have fewer, or none.
 void read_page(const std::string& text, SweepPage& page) {
   const auto lines = fields_of(text + "\n");
-  if (lines.size() != 1 || lines[0].size() != 3) return;
-  page.title = lines[0][0];
-  page.command = lines[0][1];
-  page.grid = lines[0][2] == grid_word;
+  if (lines.size() != 1 || lines[0].size() < 3) return;
+  const auto& fields = lines[0];
+  page.title = fields[0];
+  page.command = fields[1];
+  page.grid = fields[2] == grid_word;
+  for (std::size_t k = 3; k + 3 <= fields.size(); k += 3)
+    page.captions.emplace_back(fields[k], result::Caption{fields[k + 1], fields[k + 2]});
 }
 
 /// Those of the columns between the run and its status.
@@ -77,13 +80,6 @@ std::vector<std::string> changed_names(const std::vector<TableColumn>& table) {
     names.push_back(name.ends_with("(0)") ? name.substr(0, name.size() - 3) : name);
   }
   return names;
-}
-
-std::optional<double> number_of_field(const std::string& text) {
-  double value = 0.0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
 }
 
 /// Whether the rows are those of the runs from `first` to `last`; one for each where only ends are kept, which have the
@@ -216,7 +212,10 @@ std::string sweep_mark(const ModelInput& model, const SweepRequest& request, con
 
 std::string share_heading(const Share& share, std::size_t runs, const std::string& mark, const SweepPage& page) {
   const std::string kind(page.grid ? grid_word : pairs_word);
-  auto fields = to_csv({TableColumn{page.title, {}}, TableColumn{page.command, {}}, TableColumn{kind, {}}});
+  std::vector<TableColumn> said{{page.title, {}}, {page.command, {}}, {kind, {}}};
+  for (const auto& [name, caption] : page.captions)
+    said.insert(said.end(), {{name, {}}, {caption.unit, {}}, {caption.label, {}}});
+  auto fields = to_csv(said);
   fields.pop_back();  // the end of the line
   return fmt::format("run [task {} of {}, sweep {}, runs {} to {}] {}", share.number, share.of, mark,
                      share.begin(runs) + 1, share.end(runs), fields);

@@ -33,7 +33,7 @@ struct Share {
 
 struct JoinedShares {
   std::vector<TableColumn> table;
-  SweepPage page;  ///< without title and command where the shares do not say them (older ones)
+  SweepPage page;  ///< without title, command and captions where the shares do not say them (older ones)
 };
 
 /// Returns the table and page of the whole sweep from the files (.csv) of all its shares, in any order: what one run of

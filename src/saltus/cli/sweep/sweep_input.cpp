@@ -1,5 +1,6 @@
 #include "saltus/cli/sweep/sweep_input.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "saltus/model/build.hpp"
@@ -33,6 +34,20 @@ Expected<ModelInput> input_of_run(const ModelInput& model, const SweepPlan& plan
   }
   if (auto fits = io::check_options(input.file); !fits) return tl::unexpected(fits.error());
   return input;
+}
+
+Expected<void> check_branches(const ModelInput& run, const SweepPlan& plan) {
+  const auto swept = std::find(plan.names().begin(), plan.names().end(), "simulate.event.branches");
+  if (run.file.simulate.event.trajectories == 1 && swept == plan.names().end()) return {};
+  return tl::unexpected(Error{
+      ErrorCode::invalid_option,
+      "a sweep takes no --branch: it follows one motion of every run, and its column 'unique' says where others are "
+      "admissible",
+      "leave it out (--branch report where the model has simulate.event.branches); saltus simulate --branch all "
+      "follows "
+      "the others of one run",
+      {},
+      {}});
 }
 
 Expected<pipeline::StatedRun> state_run(const ModelInput& model, const SweepPlan& plan, std::size_t run) {

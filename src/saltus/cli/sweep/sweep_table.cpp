@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,7 +59,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What all tables begin with: the number of the run, its values, its status.
+/// What all tables begin with: the number of the run, its values, its status, whether its solution is unique.
 class Beginning {
  public:
   Beginning(const SweepPlan& plan, const Result& first, std::size_t begin)
@@ -66,7 +67,7 @@ class Beginning {
     for (std::size_t i = 0; i < plan.runs(); ++i) {
       values_.push_back(plan.values(i));
       for (std::size_t k = 0; k < is_number_.size(); ++k) {
-        const auto value = number(values_[i][k]);
+        const auto value = number_of_field(values_[i][k]);
         is_number_[k] = is_number_[k] && value;
         numbers_.push_back(value.value_or(nothing));
       }
@@ -79,6 +80,7 @@ class Beginning {
       columns_.push_back(is_number_[k] ? Table::numbers(heading) : Table::words(heading));
     }
     columns_.push_back(Table::words("status"));
+    columns_.push_back(Table::numbers("unique"));
   }
   [[nodiscard]] std::vector<TableColumn> columns() const { return columns_; }
   void write(Table& table, std::size_t i, const SweepRun& run) const {
@@ -91,16 +93,11 @@ class Beginning {
         table << values_[i][k];
       }
     }
-    table << std::string(result::name(run.result.status.termination));
+    table << std::string(result::name(run.result.status.termination))
+          << static_cast<double>(result::unique_number(run.unique));
   }
 
  private:
-  static std::optional<double> number(const std::string& text) {
-    double value = 0.0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return value;
-  }
   const SweepPlan& plan_;
   std::size_t begin_;
   std::vector<bool> is_number_;
@@ -210,6 +207,13 @@ std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<Sw
       return with_distinct_names(trajectory_table(beginning, first, runs).columns());
   }
   __builtin_unreachable();
+}
+
+std::optional<double> number_of_field(const std::string& text) {
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
 }
 
 std::string to_csv(const std::vector<TableColumn>& table) {

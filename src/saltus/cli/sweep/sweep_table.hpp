@@ -1,6 +1,7 @@
 // All runs of a sweep as one table.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -18,7 +19,8 @@ struct TableColumn {
 };
 
 /// Returns a row for every run (Keep::final), event or row of a trajectory: `run` from 1, what was changed ("v(0)" if v
-/// is a state, whose value has the column "v"), `status`, then
+/// is a state, whose value has the column "v"), `status`, `unique` (1; 0 if other solutions are admissible; -1 if that
+/// was not decided), then
 ///   final:       t, states, outputs at the end, `events` (their number);
 ///   events:      `events`, `event` from 1, t, kind, name, surfaces, states before, states behind ("v(after)"); a run
 ///                without one has a row whose `event` is 0, without time and kind;
@@ -30,6 +32,9 @@ struct TableColumn {
 [[nodiscard]] inline std::size_t rows_of(const TableColumn& column) {
   return std::visit([](const auto& values) { return values.size(); }, column.values);
 }
+
+/// Returns the number that a field is; nullopt if it is anything else.
+[[nodiscard]] std::optional<double> number_of_field(const std::string& text);
 
 /// Writes RFC 4180, numbers as the shortest text that reads back the same.
 [[nodiscard]] std::string to_csv(const std::vector<TableColumn>& table);

@@ -55,13 +55,16 @@ void JumpCascade::note_guards() {
   }
 }
 
+/// Whether jumps have left the value of a function as it was.
+bool JumpCascade::is_unchanged(int function) const {
+  const auto f = at(function);
+  return std::abs(values_.value[f] - zero_values_[f]) <= 8.0 * rounding_unit * values_.magnitude[f];
+}
+
 void JumpCascade::drop_zeros() {
   if (zeros_.empty()) return;
   find_values();
-  std::erase_if(zeros_, [&](int function) {
-    const auto f = at(function);
-    return !(std::abs(values_.value[f] - zero_values_[f]) <= 8.0 * rounding_unit * values_.magnitude[f]);
-  });
+  std::erase_if(zeros_, [&](int function) { return !is_unchanged(function); });
 }
 
 void JumpCascade::read_user_signs() {
@@ -76,7 +79,10 @@ void JumpCascade::read_user_signs() {
     vanish[user] =
         located || holding_.holds(function) || std::abs(value) <= 8.0 * rounding_unit * values_.magnitude[at(function)];
     if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
-    if (!vanish[user]) signs[user] = value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+    const bool turns = signs[user] * value < 0.0;
+    const bool keeps_sign =
+        turns && is_unchanged(function) && search_.is_within_errors(function, value, here_.t, here_.x.data());
+    if (!vanish[user] && !keeps_sign) signs[user] = value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
   }
   search_.set_user_signs(signs, vanish);
 }

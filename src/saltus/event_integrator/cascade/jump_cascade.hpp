@@ -88,6 +88,7 @@ class JumpCascade {
   [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
   [[nodiscard]] SwitchingPoint at_this_time() const;
   void find_values();
+  [[nodiscard]] bool is_unchanged(int function) const;
   [[nodiscard]] double size_at(int function);
   [[nodiscard]] Motion motion_of(int function);
   [[nodiscard]] Motion find_motion(int function);

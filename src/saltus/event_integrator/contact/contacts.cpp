@@ -125,6 +125,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
 std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                              std::vector<double>& x) {
   ContactPoint point = point_at(moment.t, moment.alpha, x);
+  last_bounces_.clear();
   if (!ended.empty() &&
       std::all_of(ended.begin(), ended.end(), [&](int i) { return reaches_a_speed(moment, i, point, x); })) {
     bound_speeds(moment, x);
@@ -144,6 +145,7 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   }
   const bool closing =
       std::any_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) < 0.0; });
+  const ContactPoint before = closing ? point : ContactPoint{};
   if (closing) {
     if (!collide(moment, touching, std::nullopt, point, x)) {
       return fmt::format("the impact of {} at t = {:.17g} has no end: bodies jam, or normals depend on each other",
@@ -151,7 +153,9 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
     }
     excluded.assign(contacts_.size(), {});
   }
-  return find_modes(moment, touching, std::move(excluded), point, x);
+  auto problem = find_modes(moment, touching, std::move(excluded), point, x);
+  if (closing) note_last_bounces(moment, touching, before, x);
+  return problem;
 }
 
 std::optional<std::string> Contacts::settle(const ContactMoment& moment, const std::vector<int>& jumps,

@@ -61,6 +61,8 @@ class Contacts {
   /// mode ends here; x is at the zero of what ended it. Returns what is wrong if nothing follows.
   [[nodiscard]] std::optional<std::string> resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                                    std::vector<double>& x);
+  /// Returns, by their jumps, the contacts whose bounces the last impact has ended: the next one would be nothing.
+  [[nodiscard]] const std::vector<int>& last_bounces() const { return last_bounces_; }
   /// Ends the bounces of these contacts (by their jumps): their gaps close without an impact.
   [[nodiscard]] std::optional<std::string> settle(const ContactMoment& moment, const std::vector<int>& jumps,
                                                   std::vector<double>& x);
@@ -108,6 +110,8 @@ class Contacts {
   [[nodiscard]] double pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const;
   [[nodiscard]] bool rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
                                       const std::vector<double>& x) const;
+  void note_last_bounces(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint before,
+                         const std::vector<double>& x);
   [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
                                    const std::vector<double>& x) const;
   void set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const;
@@ -138,6 +142,7 @@ class Contacts {
   const std::vector<model::Contact>& contacts_;
   std::vector<bool> guards_;  ///< by event function; empty without contacts
   evaluation::ContactValues values_;
+  std::vector<int> last_bounces_;
 };
 
 }  // namespace saltus::event_integrator

@@ -48,6 +48,18 @@ bool Contacts::rises_by_nothing(const ContactMoment& moment, int contact, const 
          speed <= pull * roundings * std::abs(moment.t);
 }
 
+/// Contacts that an impact has closed as slowly as nothing would be left to rise by.
+void Contacts::note_last_bounces(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint before,
+                                 const std::vector<double>& x) {
+  const double none = 64.0 * rounding_unit * before.velocity.cwiseAbs().maxCoeff();
+  for (const int i : touching) {
+    double& speed = before.velocity(i);
+    if (!(speed < 0.0) || before.restitution[at(i)] == 0.0 || mode_of(i, x) == ContactMode::open) continue;
+    speed *= -before.restitution[at(i)];
+    if (speed <= none || rises_by_nothing(moment, i, before, x)) last_bounces_.push_back(contacts_[at(i)].jump);
+  }
+}
+
 /// Whether a gap and its rate are 0 within the tolerances: that of another contact in the same impacts.
 bool Contacts::comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
                              const std::vector<double>& x) const {

@@ -38,6 +38,7 @@ class Process {
       size_ = std::max({size_, std::abs(velocity_(i)), slip(i).norm()});
       strength_ = std::max(strength_, point.influence(i, i));
     }
+    note_closing();
   }
 
   [[nodiscard]] std::optional<VectorXd> run(std::optional<int> pushed) {
@@ -73,9 +74,16 @@ class Process {
     for (int tangent = 0; tangent < tangents(i); ++tangent) velocity_(point_.tangent_row(i, tangent)) = 0.0;
   }
 
+  void note_closing() {
+    for (const int i : touching_) closing_ = std::max(closing_, std::abs(velocity_(i)));
+  }
+
+  /// All impulses are of the size of normal velocities, however fast a slip is: so are their roundings.
   void round() {
+    note_closing();
+    const double none = std::max(process_rounding * closing_, 64.0 * rounding_unit * size_);
     for (const int i : touching_) {
-      if (std::abs(velocity_(i)) <= process_rounding * size_) velocity_(i) = 0.0;
+      if (std::abs(velocity_(i)) <= none) velocity_(i) = 0.0;
       if (slip(i).norm() <= process_rounding * size_) stop_slip(i);
     }
   }
@@ -88,7 +96,7 @@ class Process {
   bool release() {
     bool any = false;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
-      releasing_[k] = stored_[k] > process_rounding * size_ * size_ / strength_;
+      releasing_[k] = stored_[k] > process_rounding * closing_ * closing_ / strength_;
       any = any || releasing_[k];
     }
     return any;
@@ -347,7 +355,7 @@ class Process {
       if (point_.in_plane(i) && speed > 0.0 && change > 0.0) length = std::min(length, speed / (8.0 * change));
     }
     ode::Stepper stepper(ode::Method::dop853, static_cast<int>(y.size()));
-    const ode::Tolerances tolerances{1e-13, 1e-13 * size_};
+    const ode::Tolerances tolerances{1e-13, 1e-13 * closing_ * (closing_ / size_)};
     const auto try_length = [&](double h) {
       return stepper.attempt(field, 0.0, y.data(), slope.data(), h, tolerances) == ode::Attempt::finite;
     };
@@ -390,6 +398,7 @@ class Process {
   std::vector<Branch> branches_;
   std::optional<int> forced_;
   double size_ = 0.0, strength_ = 0.0;  ///< of velocities; of the influence of a normal impulse
+  double closing_ = 0.0;                ///< of normal velocities up to here
 };
 
 }  // namespace

@@ -54,6 +54,7 @@ bool Run::move_contacts() {
   const auto ended = contacts_.with_jumps([&](int jump) { return jumps_.holds(jump); });
   auto problem = contacts_.resolve(contact_moment(), ended, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
+  for (const int jump : contacts_.last_bounces()) event_.last_bounces.push_back(jump);
   return !problem;
 }
 

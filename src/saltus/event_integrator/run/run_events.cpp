@@ -44,7 +44,7 @@ std::string Run::advice_on_steps() {
   if (!norm.empty()) return norm;
   const std::string cycles = ContractingCycles(switching_context_, here_, recorder_).describe();
   const std::string raise = "; raise simulate.max_steps if they are meant";
-  if (!cycles.empty()) return fmt::format("{}, or change the model: {}", raise, cycles);
+  if (!cycles.empty()) return "; " + cycles;  // more steps are of no use
   const bool explicit_steps = options_.method == ode::Method::dopri5 || options_.method == ode::Method::dop853;
   const bool is_told = steps_.stiff_at().has_value();  // at the end of the message
   return raise + (explicit_steps && !is_told ? ", or try --integrator radau5: the model may be stiff" : "");
@@ -63,13 +63,14 @@ bool Run::too_many_events() {
     const std::string advice = names.empty() ? "see what happens in the last events"
                                              : fmt::format("see why {} switch{} so often", fmt::join(names, ", "),
                                                            names.size() == 1 ? "es" : "");
+    // More events are of no use for a sequence without an end.
     fail(Termination::iteration_limit,
-         fmt::format("max_events = {} reached at {}; raise simulate.max_events if they are meant, or {}",
-                     options_.max_events, where(), cycles.empty() ? advice : "change the model: " + cycles));
+         fmt::format("max_events = {} reached at {}; {}", options_.max_events, where(),
+                     cycles.empty() ? "raise simulate.max_events if they are meant, or " + advice : cycles));
     return true;
   }
-  // Jumps have their own limits.
-  if (event_.jumped || !switches_.series().too_dense(here_.t)) return false;
+  // Jumps have their own limits, and what is listed only has none.
+  if (event_.jumped || event_.listed_only || !switches_.series().too_dense(here_.t)) return false;
   if (!follow_dense_cycles()) accumulates();
   return true;
 }
@@ -235,7 +236,8 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
   if (!here_.state.sliding.empty() && is_finite(field_.alpha())) here_.state.alpha = field_.alpha();
   event_.before = here_.state;
   event_.x_before = here_.x;
-  event_.jumped = event_.evaluated = false;
+  event_.jumped = event_.evaluated = event_.listed_only = false;
+  event_.last_bounces.clear();
   event_.cells_before = cells_.indices();
   event_.cell_change = CellChange::none;
   rows_.arrive(row);
@@ -257,6 +259,8 @@ Run::Step Run::handle(const Located& located) {
   if (choices_.families().watches() && here_.t > t_begin) choices_.look(t_begin, steps_);
   // A step that ended exactly here has written the row before the event.
   const Arrival arrival = arrive(ended_here ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
+  event_.listed_only = std::all_of(located.functions.begin(), located.functions.end(),
+                                   [&](std::size_t function) { return search_.is_listed_only(function); });
   flip_user_functions(located);
   jumps_.update(jump_point());
   if (jumps_have_problem()) return depart(arrival);

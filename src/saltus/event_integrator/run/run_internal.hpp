@@ -215,8 +215,10 @@ class Run {
     std::vector<long> cells_before;
     CellChange cell_change = CellChange::none;
     bool jumped = false;
-    bool evaluated = false;  ///< the field of the mode behind it, where that begins, and nothing since
-    std::vector<int> freed;  ///< surfaces that a guard has kept at zero, which it has released
+    bool evaluated = false;         ///< the field of the mode behind it, where that begins, and nothing since
+    bool listed_only = false;       ///< zeros of [[events]], which change nothing
+    std::vector<int> last_bounces;  ///< jumps of contacts that end in it
+    std::vector<int> freed;         ///< surfaces that a guard has kept at zero, which it has released
     SwitchingPoint switching_point;
     Transition transition;
     std::optional<SeriesLimit> unresolved;  ///< the limit that its switch is

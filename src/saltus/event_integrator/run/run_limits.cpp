@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/without_repeats.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -85,7 +86,12 @@ bool Run::change_nothing(const std::vector<int>& jumps) {
 void Run::accumulate_jumps() {
   if (jumps_.none()) return;
   const auto limit = jump_accumulation_.limit();
-  if (limit && limit->t <= std::min(options_.until, jumps_.next_time())) follow_limit(*limit);
+  if (limit && limit->t <= std::min(options_.until, jumps_.next_time())) return follow_limit(*limit);
+  if (event_.last_bounces.empty()) return;
+  jump_accumulation_.clear();
+  drop_repeats(event_.last_bounces);
+  recorder_.accumulated(here_.t, event_.last_bounces, {here_.x, here_.x, here_.state, here_.state},
+                        "no more is left of these impacts than rounding");
 }
 
 void Run::follow_limit(const SeriesLimit& limit) {

@@ -84,7 +84,7 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
     : kernel_(kernel),
       field_(field),
       five_nodes_suffice_(ode::dense_degree(method) <= 4),
-      tolerances_(tolerances),
+      errors_(kernel, tolerances),
       mode_(at(kernel.states())) {
   for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
   any_nesting_ = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
@@ -122,12 +122,13 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
     const double magnitude = by_form ? std::abs(mode_.forms.factor(i) * x[mode_.forms.state(i)]) : values_.magnitude[j];
     const double slope = by_form ? std::abs(mode_.forms.factor(i)) : values_.slope[j];
     // A handful of roundings of terms as large as the magnitude.
-    levels_.set(i, 8.0 * rounding_unit * magnitude, 0.1 * (tolerances_.atol * slope + tolerances_.rtol * magnitude));
+    levels_.set(i, 8.0 * rounding_unit * magnitude,
+                0.1 * (errors_.of_run().atol * slope + errors_.of_run().rtol * magnitude));
     return;
   }
   if (function.kind == FunctionKind::release) {
     const double size = std::abs(held_.pressure[at(function.row)]);
-    levels_.set(i, 32.0 * rounding_unit * size, 0.1 * tolerances_.rtol * size);
+    levels_.set(i, 32.0 * rounding_unit * size, 0.1 * errors_.of_run().rtol * size);
     return;
   }
   const auto& exit = mode_.exits[at(function.row)];
@@ -141,7 +142,7 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
   if (field_.solve() == SlidingSolve::decoupled || (by_sides && is_side)) {
     noise = std::max(noise, 8.0 * rounding_unit * field_.normal_terms(at(function.row)));
   }
-  levels_.set(i, noise, 0.1 * tolerances_.rtol * size);
+  levels_.set(i, noise, 0.1 * errors_.of_run().rtol * size);
 }
 
 void EventSearch::evaluate_parts(double t, const double* x, const FunctionParts& parts) {
@@ -261,7 +262,7 @@ void EventSearch::find_suspects(const ode::DenseStep& step) {
 void EventSearch::find_candidates() {
   candidates_.clear();
   if (!mode_.curved.empty()) candidates_ = mode_.curved;
-  mode_.forms.append_suspects(range_.widened(tolerances_), candidates_);
+  mode_.forms.append_suspects(range_.widened(errors_.of_run()), candidates_);
   for (const std::size_t i : special_) {
     if (mode_.forms.has(i)) candidates_.push_back(i);
   }
@@ -365,7 +366,7 @@ bool EventSearch::is_resolved(const ode::DenseStep& step, double from, double to
   // with a vanishing gradient, have no other measure than their own size.
   double margin = std::numeric_limits<double>::max();
   for (const double b : coefficients) margin = std::min(margin, sign * b);
-  const double wanted = std::max({levels_.accuracy[i], 0.125 * margin, 0.1 * tolerances_.rtol * size});
+  const double wanted = std::max({levels_.accuracy[i], 0.125 * margin, 0.1 * errors_.of_run().rtol * size});
   const double tail = chebyshev_tail(values);
   if (tail > wanted) {
     const bool known_zero = from == 0.0 && (function.zero_order > 0 || function.offset != 0.0);
@@ -405,7 +406,7 @@ SearchOutcome EventSearch::search_interval(const ode::DenseStep& step, double fr
   SearchOutcome outcome = SearchOutcome::none;
   bool resolved = true;
   for (std::size_t k = 0; k < suspects_.size() && resolved; ++k) {
-    const auto finding = find(step, from, to, suspects_[k]);
+    const auto finding = find_clear(step, from, to, suspects_[k]);
     resolved = finding.resolved;
     if (finding.hit && (outcome == SearchOutcome::none || finding.hit->theta < hit.theta)) {
       hit = *finding.hit;

@@ -13,6 +13,7 @@
 #include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/event_integrator/search/mode_functions.hpp"
 #include "saltus/event_integrator/search/search_values.hpp"
+#include "saltus/event_integrator/search/step_errors.hpp"
 #include "saltus/ode/bernstein.hpp"
 #include "saltus/ode/stepper.hpp"
 
@@ -22,8 +23,9 @@ namespace saltus::event_integrator {
 struct Hit {
   std::size_t function = 0;
   double theta = 0.0;
-  double slope = 0.0;  ///< d phi / dt there
-  int sign = 1;        ///< of the function before
+  double slope = 0.0;        ///< d phi / dt there
+  int sign = 1;              ///< of the function before
+  bool is_doubtful = false;  ///< hardly more than errors of the step: one that is far shorter has to show it, too
 };
 
 enum class SearchOutcome {
@@ -39,7 +41,7 @@ enum class SearchOutcome {
 class EventSearch {
  public:
   EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
-              const ode::Tolerances& tolerances);
+              const ode::Tolerances& tolerances);  ///< those of the steps, kept as a reference
 
   /// Sets up the functions of a mode at (t, x), behind an evaluation of the field there. `zero_order` (n_psi): zeros
   /// that surfaces have at this point.
@@ -61,6 +63,11 @@ class EventSearch {
   void evaluate(double t, const double* x, const std::vector<std::size_t>& which, std::vector<double>& values);
 
   [[nodiscard]] const std::vector<EventFunction>& functions() const { return mode_.functions; }
+  /// Returns whether a function belongs to [[events]]: nothing of the motion depends on it.
+  [[nodiscard]] bool is_listed_only(std::size_t function) const {
+    const auto& entry = mode_.functions[function];
+    return entry.kind == FunctionKind::user && kernel_.is_listed_only(entry.index);
+  }
   /// Finds the rounding of a candidate: at the start of the step, or where rescale() was called last.
   void rescale(double t, const double* x) { rescale(t, x, candidates_); }
   [[nodiscard]] double noise(std::size_t function) const { return levels_.noise[function]; }
@@ -71,6 +78,9 @@ class EventSearch {
   }
   /// Returns what the tolerances leave of it, at least its rounding.
   [[nodiscard]] double accuracy(std::size_t function) const { return levels_.accuracy[function]; }
+  /// Returns whether a value of an expression or guard of [[events]] is no more than the errors of steps, so that its
+  /// sign says nothing; false for other functions of the kernel.
+  [[nodiscard]] bool is_within_errors(int function, double value, double t, const double* x);
   /// Returns the signs of the user functions in force, 0 where not known yet.
   [[nodiscard]] const std::vector<int>& user_signs() const { return user_.sign; }
   /// Returns which of them vanish at the start of the next step.
@@ -131,6 +141,9 @@ class EventSearch {
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
   [[nodiscard]] Finding find_along(const ode::DenseStep& step, std::size_t i) const;
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
+  Finding find_clear(const ode::DenseStep& step, double from, double to, std::size_t i);
+  template <class Take>
+  void take_coefficients(const ode::DenseStep& step, double from, double to, std::size_t i, Take take) const;
   /// Of one function over an interval, known to be of `sign` at its start.
   struct Interpolant {
     const std::array<double, ode::event_nodes>& values;
@@ -153,14 +166,14 @@ class EventSearch {
   void sample(const ode::DenseStep& step, double from, double to, const std::vector<std::size_t>& which, Nodes nodes);
   [[nodiscard]] double node_theta(double from, double to, std::size_t node) const;
   void limit_by_tangency(std::size_t i, double t, const double* x);
-  void read_user_signs();
+  void read_user_signs(double t, const double* x);
   void find_pressure(double t, const double* x);
   void enter_cells();
 
   const evaluation::ModelKernel& kernel_;
   ModeField& field_;
   bool five_nodes_suffice_;  ///< the dense output has degree 4: five samples determine an affine function
-  ode::Tolerances tolerances_;
+  StepErrors errors_;
   ModeFunctions mode_;  ///< of the mode that was entered last
   UserSigns user_;
   HeldGuards held_;

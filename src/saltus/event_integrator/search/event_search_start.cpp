@@ -138,7 +138,7 @@ void EventSearch::read_start(double t, const double* x) {
   rescale(t, x, inspected_, parts);
   evaluate_parts(t, x, parts);
   for (const std::size_t i : inspected_) point_[i] = value(i, x);
-  read_user_signs();
+  read_user_signs(t, x);
   for (const std::size_t i : inspected_) {
     auto& function = mode_.functions[i];
     const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
@@ -167,7 +167,7 @@ void EventSearch::limit_by_tangency(std::size_t i, double t, const double* x) {
   alpha[at(function.index)] = is_below ? 0.0 : 1.0;
   if (!moves_along(kernel_, alpha, function.index, t, x, scale)) return;
   constexpr double errors = 1e4;  // of steps, which are smaller than those of dense outputs
-  const double margin = std::clamp(errors * tolerances_.rtol, 1e-7, 1e-2) * scale;
+  const double margin = std::clamp(errors * errors_.of_run().rtol, 1e-7, 1e-2) * scale;
   function.zero_order = 0;
   function.offset = -function.sign * margin;
 }
@@ -394,12 +394,14 @@ void EventSearch::sort(std::size_t i) {
   }
 }
 
-/// From the values in point_.
-void EventSearch::read_user_signs() {
+/// From the values in point_, at (t, x).
+void EventSearch::read_user_signs(double t, const double* x) {
   for (std::size_t i = mode_.users; i < mode_.users_end; ++i) {
     auto& function = mode_.functions[i];
     const auto user = at(function.index - kernel_.switching_functions());
-    function.zero_order = user_.read(user, point_[i], levels_.noise[i]);
+    const bool turns = user_.sign[user] * point_[i] < 0.0 && !user_.vanishes[user];
+    const bool keeps_sign = turns && is_within_errors(function.index, point_[i], t, x);
+    function.zero_order = keeps_sign ? 0 : user_.read(user, point_[i], levels_.noise[i]);
     function.sign = user_.sign[user];
   }
 }
@@ -430,7 +432,7 @@ bool EventSearch::settle(double t, const double* x) {
   for (std::size_t i = mode_.users; i < mode_.users_end; ++i) inspected_.push_back(i);
   rescale(t, x, inspected_);
   read_values(t, x, inspected_);
-  read_user_signs();
+  read_user_signs(t, x);
   sort_functions();
   return true;
 }

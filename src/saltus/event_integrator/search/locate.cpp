@@ -228,7 +228,9 @@ std::optional<std::size_t> Locator::earlier_function(std::size_t located) const 
   const auto& candidates = search_.candidates();
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const std::size_t i = candidates[k];
-    if (i != located && sign(i) != 0 && trial_.values[k] * sign(i) < -search_.noise(i)) return k;
+    if (i == located || sign(i) == 0 || !(trial_.values[k] * sign(i) < -search_.noise(i))) continue;
+    const int function = search_.functions()[i].index;
+    if (!search_.is_within_errors(function, trial_.values[k], start_.t + trial_.h, trial_.x.data())) return k;
   }
   return std::nullopt;
 }

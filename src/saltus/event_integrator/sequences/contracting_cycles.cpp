@@ -109,16 +109,16 @@ std::string ContractingCycles::describe() {
   const auto exponent = exponent_of(events);
   if (!exponent) return {};
   // The sum of what follows like k^-p.
-  const std::string limit =
-      *exponent > 1.1 ? fmt::format("they have a limit at about t = {:.3g}",
+  const std::string when =
+      *exponent > 1.1 ? fmt::format("at about t = {:.3g}",
                                     recorder_.event_time(events - 1) +
                                         last_interval(events) * static_cast<double>(events) / (*exponent - 1.0))
-                      : std::string("they have no limit, and their number grows without bound");
+                      : std::string("as t -> infinity");
   return fmt::format(
-      "cycles of {} shrink like the power -{:.2g} of their number (relative degree 2: the derivative of the function "
-      "is the same on both sides, so that nothing slides): {}; give the switch a hysteresis, use {}, or start "
-      "at rest where function and derivative are 0, which is held",
-      names, *exponent, limit, resolving_layer(farthest, rounding / rounding_unit, smoothed));
+      "cycles of {} shrink like the power -{:.2g} of their number: the motion reaches the point where these functions "
+      "are 0 {} only, with ever faster switches, infinitely many of them; end the run earlier (simulate.until), begin "
+      "at that point (the motion can stay there), use {}, or give the switches a hysteresis",
+      names, *exponent, when, resolving_layer(farthest, rounding / rounding_unit, smoothed));
 }
 
 }  // namespace saltus::event_integrator

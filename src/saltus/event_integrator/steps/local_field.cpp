@@ -1,7 +1,6 @@
 #include "saltus/event_integrator/steps/local_field.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/without_repeats.hpp"
@@ -35,6 +34,8 @@ bool LocalField::is_known() {
 }
 
 bool LocalField::begin(int surface, const ModeState& mode) {
+  const auto is_affine = [&](int j) { return kernel_.is_affine(j); };
+  if (!std::all_of(mode.sliding.begin(), mode.sliding.end(), is_affine)) return false;
   mode_ = &mode;
   for (const std::size_t row : rows_) inside_[row] = false;
   rows_.clear();
@@ -92,7 +93,7 @@ bool LocalField::complete() {
   return true;
 }
 
-/// The surfaces that are slid on whose selections the rows hold.
+/// The surfaces that are slid on whose selections the rows hold; false where one is not alone in that.
 bool LocalField::find_selections() {
   std::vector<std::size_t> surfaces;
   for (const std::size_t row : rows_) {
@@ -109,13 +110,10 @@ bool LocalField::find_selections() {
   selected_.clear();
   for (const std::size_t j : surfaces) {
     selected_.push_back(slid(j));
-    const bool is_affine = std::isfinite(gradients_.offset[j]);
     const auto& neighbours = kernel_.neighbours(static_cast<int>(j));
-    const bool is_alone = std::none_of(neighbours.begin(), neighbours.end(), [&](int i) { return slides(at(i)); });
-    if (!is_affine || !is_alone) return false;
+    if (std::any_of(neighbours.begin(), neighbours.end(), [&](int i) { return slides(at(i)); })) return false;
   }
-  return std::all_of(held_.begin(), held_.end(),
-                     [&](const Slid& surface) { return std::isfinite(gradients_.offset[surface.surface]); });
+  return true;
 }
 
 /// States beside the part that its rows, and the selections in them, are made of.
@@ -187,7 +185,7 @@ void LocalField::operator()(const ode::DenseStep& others, double t, const double
     for (std::size_t k = surface.begin; k < surface.end; ++k)
       slope_[gradients_.column[k]] -= gradients_.coefficient[k] * (normal / square);
     if (surface.end == surface.begin + 1 && gradients_.rate[surface.surface] == 0.0)
-      slope_[gradients_.column[surface.begin]] *= 0.0;
+      slope_[gradients_.column[surface.begin]] *= 0.0;  // NaN stays
   }
   for (std::size_t i = 0; i < rows_.size(); ++i) slope[i] = slope_[rows_[i]];
 }

@@ -31,7 +31,11 @@ class StepAttempt {
   void begin(double h) {
     length_ = h;
     was_undefined_ = false;
+    doubts_ = 0;
   }
+  /// Returns whether a zero that an attempt at this step shows is to be doubted: three times, in a step half as long
+  /// each.
+  [[nodiscard]] bool doubts() { return doubts_++ < 3; }
   void note_undefined() { was_undefined_ = true; }
   /// Returns whether the right-hand side was undefined in an attempt at this step.
   [[nodiscard]] bool was_undefined() const { return was_undefined_; }
@@ -93,6 +97,7 @@ class StepAttempt {
   double error_share_ = 1.0;               ///< the root of the mean square over the continuous states to that over all
   double length_ = 0.0;
   bool was_undefined_ = false;
+  int doubts_ = 0;  ///< at this step
   double longest_ = 0.0;
   double last_error_ = 1.0;
   double last_ = 0.0;  ///< the last step since the control began; 0 = none

@@ -101,7 +101,7 @@ Json simulate_schema() {
               "values of controls")}},
       "how to simulate");
   for (const auto& field : pipeline::simulate_fields()) {
-    put(json, field.key, described(option_schema(field.expects), fmt::format("{} ({})", field.doc, field.expects)));
+    put(json, field.key, described(option_schema(field.kind), fmt::format("{} ({})", field.doc, expects(field.kind))));
   }
   return json;
 }
@@ -143,7 +143,7 @@ Json problem_schema(std::string_view key) {
 Json optimize_schema() {
   Json json = table({}, "an optimal control problem");
   for (const auto& field : pipeline::optimize_fields()) {
-    put(json, field.key, described(option_schema(field.expects), fmt::format("{} ({})", field.doc, field.expects)));
+    put(json, field.key, described(option_schema(field.kind), fmt::format("{} ({})", field.doc, expects(field.kind))));
   }
   for (const auto& key : pipeline::problem_keys()) {
     put(json, key.key, described(problem_schema(key.key), fmt::format("{} ({})", key.doc, key.expects)));

@@ -1,6 +1,9 @@
 // JSON -> Result.
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -52,12 +55,22 @@ void read_model(JsonReader& reader, const Json& json, const std::string& path, r
 
 /// Events whose vectors have the lengths that the names of the result say.
 void read_recorded_events(JsonReader& reader, const Json& json, const std::string& path, result::Result& result) {
-  std::vector<result::Event> events;
-  read_value(reader, json, path, events);
-  for (std::size_t i = 0; i < events.size() && !reader.error(); ++i) {
-    check_event_lengths(reader, events[i], fmt::format("{}/{}", path, i), result);
-  }
-  if (!reader.error()) result.events = events;
+  reader.for_each_entry(json, path, [&](const Json& entry, std::size_t i) {
+    const auto here = fmt::format("{}/{}", path, i);
+    result::Event event;
+    read_record(reader, entry, here, event);
+    check_event_lengths(reader, event, here, result);
+    if (!reader.error()) result.events.push_back(std::move(event));
+  });
+}
+
+bool begins_with_text(const Json& list) {
+  bool begins = false;
+  for_each_piece(list, [&](const Json& piece) {
+    begins = !piece.empty() && piece.front().is_string();
+    return false;
+  });
+  return begins;
 }
 
 void read_option_record(JsonReader& reader, const Json& json, const std::string& path, result::OptionRecord& options) {
@@ -77,9 +90,9 @@ void read_option_record(JsonReader& reader, const Json& json, const std::string&
       add(std::int64_t{});
     } else if (value.is_string()) {
       add(std::string{});
-    } else if (value.is_array() && !value.empty() && value.front().is_string()) {
+    } else if (is_list(value) && begins_with_text(value)) {
       add(std::vector<std::string>{});
-    } else if (value.is_array()) {
+    } else if (is_list(value)) {
       add(std::vector<double>{});
     } else {
       add(double{});
@@ -145,12 +158,11 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
 void read_branches(JsonReader& reader, const Json& json, const std::string& path, int depth, result::Result& result) {
   constexpr int deepest = 500;  // one level for every decision on the way to a branch
   if (depth > deepest) reader.fail(path, fmt::format("branches of branches, more than {} deep", deepest));
-  if (!json.is_array()) reader.mismatch(path, "a list", json);
-  for (std::size_t i = 0; i < json.size() && !reader.error(); ++i) {
+  reader.for_each_entry(json, path, [&](const Json& entry, std::size_t i) {
     const auto here = fmt::format("{}/{}", path, i);
-    result.branches.push_back(read_whole(reader, json[i], here, depth));
+    result.branches.push_back(read_whole(reader, entry, here, depth));
     if (!reader.error()) check_branch(reader, here, result, result.branches.back());
-  }
+  });
 }
 
 /// The places of names in a list, ascending.
@@ -223,37 +235,31 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   return result;
 }
 
-Error json_syntax_error(const std::string& text, const std::string& file, std::size_t byte) {
-  const auto before = std::string_view(text).substr(0, byte > 0 ? byte - 1 : 0);
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const auto line_start = before.rfind('\n') + 1;  // npos + 1 is 0: the first line
-  return {ErrorCode::parse_failure,
-          text.empty() ? "the file is empty" : "not valid JSON",
-          "expected a result file written by saltus simulate or saltus optimize with --out FILE.json",
-          {file, static_cast<int>(line), static_cast<int>(before.size() - line_start + 1)},
-          {}};
-}
-
 }  // namespace
 
 Expected<result::Result> parse_result(const std::string& text, const std::string& file) {
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& failure) {
-    return tl::unexpected(json_syntax_error(text, file, failure.byte));
-  } catch (const Json::exception&) {  // a number beyond the range of a double
-    return tl::unexpected(json_syntax_error(text, file, 1));
-  }
+  const auto json = parse_document(text, file);
+  if (!json) return tl::unexpected(json.error());
   JsonReader reader(file);
   result::Result result;
-  read_format(reader, json);
-  if (!reader.error()) result = read_whole(reader, json, "", 0);
+  read_format(reader, *json);
+  if (!reader.error()) result = read_whole(reader, *json, "", 0);
   if (reader.error()) return tl::unexpected(*reader.error());
   return result;
 }
 
 Expected<result::Result> read_result(const std::filesystem::path& file) {
+  std::error_code ignored;
+  for (const std::string_view table : {".csv", ".npz"}) {
+    if (file.extension() != table || !std::filesystem::exists(file, ignored)) continue;
+    return tl::unexpected(Error{
+        ErrorCode::parse_failure,
+        fmt::format("a {} file is a table, not the whole result", table),
+        "a result is what saltus simulate or saltus optimize writes with --out FILE.json; a sweep draws its table "
+        "with --report FILE.html, where every picture can be saved",
+        {file.string(), 0, 0},
+        {}});
+  }
   const auto text = read_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_result(*text, file.string());

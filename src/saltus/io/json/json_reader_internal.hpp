@@ -14,14 +14,12 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "saltus/base/error.hpp"
+#include "saltus/io/json/json_document_internal.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::io {
-
-using Json = nlohmann::ordered_json;
 
 class JsonReader {
  public:
@@ -101,21 +99,22 @@ class JsonReader {
     const auto mode = json.is_string() ? result::contact_mode_named(json.get<std::string>()) : std::nullopt;
     mode ? void(target = *mode) : mismatch(path, "a mode of a contact", json);
   }
+  /// Calls visit(entry, its number) for the entries of a list, up to the first error.
+  template <class Visit>
+  void for_each_entry(const Json& json, const std::string& path, Visit visit) {
+    if (!is_list(json)) return mismatch(path, "a list", json);
+    std::size_t number = 0;
+    for_each_piece(json, [&](const Json& piece) {
+      for (auto entry = piece.begin(); entry != piece.end() && !error_; ++entry) visit(*entry, number++);
+      return !error_;
+    });
+  }
   template <class Element>
   void read(const Json& json, const std::string& path, std::vector<Element>& target) {
-    if (!json.is_array()) {
-      mismatch(path, "a list", json);
-      return;
-    }
     target.clear();
-    target.reserve(json.size());
-    for (const auto& element : json) {
-      Element value{};
-      // Paths only where they are needed: a trajectory has millions of numbers.
-      read(element, path, value);
-      if (error_) return;
-      target.push_back(std::move(value));
-    }
+    if (json.is_array()) target.reserve(json.size());
+    // Paths only where they are needed: a trajectory has millions of numbers.
+    for_each_entry(json, path, [&](const Json& entry, std::size_t) { read(entry, path, target.emplace_back()); });
   }
   template <class Number>
   void read(const Json& json, const std::string& path, result::Table<Number>& target) {
@@ -127,9 +126,11 @@ class JsonReader {
   }
   template <class Value>
   void read(const Json& json, const std::string& path, result::SteadyList<Value>& target) {
-    std::vector<Value> values;
-    read(json, path, values);
-    for (auto& value : values) target.push_back(std::move(value));
+    for_each_entry(json, path, [&](const Json& entry, std::size_t) {
+      Value value{};
+      read(entry, path, value);
+      target.push_back(std::move(value));
+    });
   }
   template <class Element, std::size_t size>
   void read(const Json& json, const std::string& path, std::array<Element, size>& target) {
@@ -153,7 +154,7 @@ class JsonReader {
 
   void mismatch(const std::string& path, std::string_view expected, const Json& found) {
     constexpr std::size_t shown = 40;
-    const auto text = found.is_structured() ? std::string(found.type_name()) : found.dump();
+    const auto text = is_list(found) ? "array" : found.is_object() ? "object" : found.dump();
     fail(path, fmt::format("expected {}, found {}", expected, text.substr(0, shown)));
   }
 
@@ -161,18 +162,16 @@ class JsonReader {
   /// Rows of one length; which one it must be is asked later.
   template <class Row, class Table>
   void read_rows(const Json& json, const std::string& path, Table& target) {
-    if (!json.is_array()) return mismatch(path, "a list", json);
     target = {};
     Row row;
-    for (const auto& element : json) {
-      read(element, path, row);
-      if (!target.empty() && row.size() != target.width()) {
-        fail(fmt::format("{}/{}", path, target.size()),
+    for_each_entry(json, path, [&](const Json& entry, std::size_t number) {
+      read(entry, path, row);
+      if (number > 0 && row.size() != target.width()) {
+        fail(fmt::format("{}/{}", path, number),
              fmt::format("expected {} entries, found {}", target.width(), row.size()));
       }
-      if (error_) return;
-      target.push_back(row);
-    }
+      if (!error_) target.push_back(row);
+    });
   }
 
   std::string file_;

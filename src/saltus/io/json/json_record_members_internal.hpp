@@ -285,7 +285,8 @@ struct RecordMembers<result::Verification> {
       field("switch_time_error", &R::switch_time_error), field("switches_missed", &R::switches_missed),
       field("switches_extra", &R::switches_extra), field("path_violation", &R::path_violation),
       field("message", &R::message), field("open_loop", &R::open_loop),
-      field("closed_loop", &R::closed_loop, Presence::if_any), field("penetration", &R::penetration, Presence::if_any));
+      field("closed_loop", &R::closed_loop, Presence::if_any), field("plant", &R::plant, Presence::if_any),
+      field("penetration", &R::penetration, Presence::if_any));
 };
 
 template <>

@@ -149,13 +149,9 @@ void read_count(JsonReader& reader, const Json& json, const std::string& path, C
 /// Reads every entry of a list by read_one(reader, json, path).
 template <class Part, class Read>
 void read_list(JsonReader& reader, const Json& json, const std::string& path, std::vector<Part>& parts, Read read_one) {
-  if (!json.is_array()) {
-    reader.mismatch(path, "a list", json);
-    return;
-  }
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    parts.push_back(read_one(reader, json[i], fmt::format("{}/{}", path, i)));
-  }
+  reader.for_each_entry(json, path, [&](const Json& entry, std::size_t i) {
+    parts.push_back(read_one(reader, entry, fmt::format("{}/{}", path, i)));
+  });
 }
 
 /// Reads what value_json() writes.

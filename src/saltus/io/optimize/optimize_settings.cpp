@@ -16,6 +16,7 @@ namespace saltus::io {
 namespace {
 
 constexpr std::string_view optimize_root = "optimize.";
+constexpr std::string_view plant_root = "plant.";
 
 /// Keys that are one expression each.
 struct ExpressionKey {
@@ -32,6 +33,14 @@ constexpr std::array expression_keys{
     ExpressionKey{"terminal_cost", [](auto& problem) -> expression::NodePtr& { return problem.terminal_cost; }},
     ExpressionKey{"minimize_time", [](auto& problem) -> expression::NodePtr& { return problem.time_weight; }},
 };
+
+/// Behind what the file states of it: the last value counts.
+Expected<void> set_plant(ModelFile& model, std::string_view name, std::string_view value, const SourceLocation& place) {
+  auto tree = expression::parse(value, place);
+  if (!tree) return tl::unexpected(tree.error());
+  model.description.optimize->plant.push_back({std::string(name), std::move(*tree)});
+  return {};
+}
 
 Expected<void> set_truth(std::string_view key, std::string_view value, bool& truth) {
   if (value != "true" && value != "false") {
@@ -93,7 +102,9 @@ Expected<void> set_optimize(ModelFile& model, std::string_view key, std::string_
   const auto place = place_of_setting(key);
   const auto path = key.substr(std::min(optimize_root.size(), key.size()));
   if (!model.optimize) return set_optimize_option(model, key, value, place);
-  if ((path == "horizon" || path == "mpcc") && is_table_text(value)) return set_table(model, key, value);
+  if ((path == "horizon" || path == "mpcc" || path == "plant") && is_table_text(value))
+    return set_table(model, key, value);
+  if (path.starts_with(plant_root)) return set_plant(model, path.substr(plant_root.size()), value, place);
   if (path == "horizon.free") return set_truth(key, value, model.description.optimize->horizon.free);
   if (path == "initial_guess.result") {
     model.optimize->start_result = std::string(value);

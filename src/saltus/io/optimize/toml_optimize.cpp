@@ -99,6 +99,13 @@ void read_guess(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   }
 }
 
+/// { mu = 0.7 }.
+void read_plant(TomlReader& reader, const TomlEntry& entry, model::OcpDescription& problem) {
+  const auto* table = reader.table(entry.value, "a table of parameters and initial values like { mu = 0.7 }");
+  if (table == nullptr) return;
+  for (const auto& field : *table) problem.plant.push_back({field.key, reader.expression(field.value)});
+}
+
 void read_all_least_squares(TomlReader& reader, const TomlEntry& entry, model::OcpDescription& problem) {
   for (const auto& value : reader.tables(entry.value, "optimize.least_squares"))
     problem.least_squares.push_back(read_least_squares(reader, value));
@@ -128,6 +135,8 @@ bool read_problem_key(TomlReader& reader, const TomlEntry& entry, ModelFile& mod
     read_complementarities(reader, entry, problem);
   } else if (key == "initial_guess") {
     read_guess(reader, entry, model);
+  } else if (key == "plant") {
+    read_plant(reader, entry, problem);
   } else if (key == "least_squares") {
     read_all_least_squares(reader, entry, problem);
   } else {

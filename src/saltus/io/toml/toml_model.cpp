@@ -96,30 +96,10 @@ Error freezing_mistake(std::string message, std::string remedy, const SourceLoca
 
 /// Contacts and hysteresis have a clock of their own.
 Expected<void> check_own_clock(const model::Description& description) {
+  if (!description.clock || description.clock->clock.empty()) return {};
   const char* beside = description.contacts.empty() ? "[[hysteresis]]" : "[[contacts]]";
-  if (description.clock && !description.clock->clock.empty()) {
-    return tl::unexpected(freezing_mistake(fmt::format("`clock` beside {}", beside),
-                                           "leave it out: they have a clock of their own",
-                                           description.clock->location));
-  }
-  const auto taken = [&](const auto& entries, const char* kind) -> Expected<void> {
-    for (const auto& entry : entries) {
-      if (entry.name != "clock") continue;
-      return tl::unexpected(freezing_mistake(fmt::format("{} with the name 'clock' beside {}", kind, beside),
-                                             "rename it: that is the name of their physical time", entry.location));
-    }
-    return {};
-  };
-  return taken(description.states, "a state")
-      .and_then([&] { return taken(description.parameters, "a parameter"); })
-      .and_then([&] { return taken(description.controls, "a control"); })
-      .and_then([&] { return taken(description.definitions, "a definition"); })
-      .and_then([&] { return taken(description.switching, "a switching function"); })
-      .and_then([&] { return taken(description.outputs, "an output"); })
-      .and_then([&] { return taken(description.events, "an event"); })
-      .and_then([&] { return taken(description.jumps, "a jump"); })
-      .and_then([&] { return taken(description.contacts, "a contact"); })
-      .and_then([&] { return taken(description.hysteresis, "a hysteresis"); });
+  return tl::unexpected(freezing_mistake(fmt::format("`clock` beside {}", beside),
+                                         "leave it out: they have a clock of their own", description.clock->location));
 }
 
 /// The clock of [time_freezing] is a state.

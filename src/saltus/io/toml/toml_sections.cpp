@@ -22,6 +22,12 @@ void read_caption(TomlReader& reader, const TomlEntry& field, result::Caption& c
   (field.key == "unit" ? caption.unit : caption.label) = reader.string(field.value, "a text in quotes");
 }
 
+/// The number of a quantity is what [outputs] calls `value`.
+void unknown_quantity_key(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
+  if (entry.key != "value") return reader.unknown_key(entry, known);
+  reader.fail({ErrorCode::unknown_name, "unknown key 'value'", "did you mean 'initial'?", entry.location, {}});
+}
+
 /// Reads `name = value` or `name = { initial = value }`, with more keys in the table.
 Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
   Quantity quantity;
@@ -32,7 +38,9 @@ Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::ve
   }
   for (const auto& [key, location, value] : *table) {
     if (std::find(known.begin(), known.end(), key) == known.end()) {
-      reader.unknown_key({key, location, value}, known);
+      unknown_quantity_key(reader, {key, location, value}, known);
+      // Perhaps it was to be the initial value: that this is missing, and what follows from it, is the same mistake.
+      if (quantity.initial == nullptr) quantity.initial = expression::unreadable(location);
     } else if (key == "initial") {
       quantity.initial = reader.expression(value);
     } else if (key == "lower") {

@@ -197,10 +197,7 @@ void add_events(const result::Result& result, SpooledColumns& columns) {
   columns.table<double>("mode_after", functions, "<f8", of(&Events::mode_after));
   columns.table<double>("alpha_before", functions, "<f8", of(&Events::alpha_before));
   columns.table<double>("alpha_after", functions, "<f8", of(&Events::alpha_after));
-  columns.numbers<std::int8_t>("unique", "|i1", [&](std::size_t k) {
-    const auto unique = events.unique(k);
-    return !unique ? -1 : *unique ? 1 : 0;
-  });
+  columns.numbers<std::int8_t>("unique", "|i1", [&](std::size_t k) { return result::unique_number(events.unique(k)); });
   columns.words("reason", [&](std::size_t k) { return std::string(events.reason(k)); });
 }
 

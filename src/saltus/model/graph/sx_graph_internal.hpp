@@ -33,6 +33,9 @@ class SxGraph {
  public:
   [[nodiscard]] const Tape& tape() const { return tape_; }
   void set_value(int variable, double value) { tape_.set_value(variable, value); }
+  void restate_as_state(const SXElem& symbol, int index) {
+    tape_.restate_as_state(tape_[node(symbol)].variable, index);
+  }
 
   SXElem symbol(const std::string& name, const Variable& variable);
   SXElem alpha_symbol(const std::string& name, int index, int psi);

@@ -83,6 +83,7 @@ int Tape::append(TapeNode node) {
     candidates.push_back(size());
   }
   node.number = size();
+  set_kinds(node);
   nodes_.push_back(node);
   return size() - 1;
 }
@@ -95,20 +96,13 @@ int Tape::variable(const Variable& variable) {
   SALTUS_ASSERT(variable.kind != VariableKind::alpha);
   variables_.push_back(variable);
   variables_.back().number = static_cast<int>(variables_.size()) - 1;
-  return append({.operation = casadi::OP_PARAMETER,
-                 .variable = static_cast<int>(variables_.size()) - 1,
-                 .written = kind_bit(variable.kind),
-                 .reached = kind_bit(variable.kind)});
+  return append({.operation = casadi::OP_PARAMETER, .variable = static_cast<int>(variables_.size()) - 1});
 }
 
 int Tape::alpha(int index, int psi) {
   const auto number = static_cast<int>(variables_.size());
   variables_.push_back({VariableKind::alpha, index, std::numeric_limits<double>::quiet_NaN(), number});
-  return append({.operation = casadi::OP_PARAMETER,
-                 .variable = static_cast<int>(variables_.size()) - 1,
-                 .psi = psi,
-                 .written = kind_bit(VariableKind::alpha),
-                 .reached = kind_bit(VariableKind::alpha) | (*this)[psi].reached});
+  return append({.operation = casadi::OP_PARAMETER, .variable = static_cast<int>(variables_.size()) - 1, .psi = psi});
 }
 
 int Tape::operation(int operation, int left, int right) {
@@ -116,8 +110,6 @@ int Tape::operation(int operation, int left, int right) {
   node.may_be_nonfinite = !stays_finite(operation);
   for (const int child : {left, right}) {
     if (child < 0) continue;
-    node.written |= (*this)[child].written;
-    node.reached |= (*this)[child].reached;
     node.may_be_nonfinite = node.may_be_nonfinite || (*this)[child].may_be_nonfinite;
   }
   return append(node);
@@ -129,14 +121,36 @@ int Tape::cell(int argument, const std::shared_ptr<const CellTable>& table, int 
   cells_.push_back({table, column});
   const auto number = static_cast<int>(variables_.size());
   variables_.push_back({VariableKind::cell, index, std::numeric_limits<double>::quiet_NaN(), number});
-  // A constant that jumps is like a discrete state: it does not move between its jumps.
-  const bool jumps = table->change == CellTable::Change::jump && (operand.reached & changing_kinds) != 0;
   return append({.operation = cell_operation,
                  .left = argument,
                  .variable = static_cast<int>(variables_.size()) - 1,
-                 .written = jumps ? kind_bit(VariableKind::cell) : operand.written,
-                 .reached = jumps ? kind_bit(VariableKind::cell) : operand.reached,
                  .may_be_nonfinite = operand.may_be_nonfinite});
+}
+
+void Tape::set_kinds(TapeNode& node) const {
+  node.written = node.reached = 0;
+  if (node.operation == cell_operation) {
+    const auto& [table, column] = cells_[at(variables_[at(node.variable)].index)];
+    const TapeNode& operand = (*this)[node.left];
+    // A constant that jumps is like a discrete state: it does not move between its jumps.
+    const bool jumps = table->change == CellTable::Change::jump && (operand.reached & changing_kinds) != 0;
+    node.written = jumps ? kind_bit(VariableKind::cell) : operand.written;
+    node.reached = jumps ? kind_bit(VariableKind::cell) : operand.reached;
+    return;
+  }
+  if (node.variable >= 0) node.written = node.reached = kind_bit(variables_[at(node.variable)].kind);
+  if (node.psi >= 0) node.reached |= (*this)[node.psi].reached;
+  for (const int child : {node.left, node.right}) {
+    if (child < 0) continue;
+    node.written |= (*this)[child].written;
+    node.reached |= (*this)[child].reached;
+  }
+}
+
+void Tape::restate_as_state(int variable, int index) {
+  variables_[at(variable)].kind = VariableKind::state;
+  variables_[at(variable)].index = index;
+  for (TapeNode& node : nodes_) set_kinds(node);
 }
 
 double Tape::operate(const TapeNode& node, double left, double right) const {
@@ -194,6 +208,10 @@ int Tape::place_of(int number) const {
   const auto place = std::lower_bound(nodes_.begin(), nodes_.end(), number,
                                       [](const TapeNode& node, int wanted) { return node.number < wanted; });
   return place != nodes_.end() && place->number == number ? static_cast<int>(place - nodes_.begin()) : -1;
+}
+
+void Tape::renumber() {
+  for (int place = 0; place < size(); ++place) nodes_[at(place)].number = place;
 }
 
 bool is_polynomial(const Tape& tape, std::span<const int> cone) {

@@ -80,6 +80,8 @@ class Tape {
   /// Returns the value of an operation for given operands; a constant of a cell by looking it up.
   [[nodiscard]] double operate(const TapeNode& node, double left, double right) const;
   void set_value(int variable, double value) { variables_[at(variable)].value = value; }
+  /// Makes a variable a state; what depends on it moves by then. Cost: linear in the size.
+  void restate_as_state(int variable, int index);
 
   /// Returns all nodes the roots consist of, ascending (hence in order of evaluation). Negative roots are skipped.
   [[nodiscard]] std::vector<int> cone(std::span<const int> roots, Links links) const;
@@ -89,9 +91,12 @@ class Tape {
   [[nodiscard]] Tape part(std::span<const int> roots) const;
   /// Returns the place in a part: where node `number` of the whole tape is, -1 if it is not in it.
   [[nodiscard]] int place_of(int number) const;
+  /// Makes a part a whole tape, of which there may be parts: numbers are places from now on.
+  void renumber();
 
  private:
   int append(TapeNode node);
+  void set_kinds(TapeNode& node) const;
 
   std::vector<TapeNode> nodes_;
   std::vector<Variable> variables_;

@@ -38,8 +38,10 @@ class ContactMotion {
       if (auto error = check_gap(stated)) return tl::unexpected(*error);
       if (auto error = check_jumps(stated)) return tl::unexpected(*error);
       Contact contact{.name = stated.name};
-      contact.has_friction =
-          !stated.tangents.is_empty() && recognition_.parameter_value(stated.friction.scalar()).value_or(0.0) > 0.0;
+      const SXElem friction = stated.friction.scalar();
+      contact.has_friction = !stated.tangents.is_empty() && recognition_.parameter_value(friction).value_or(0.0) > 0.0;
+      recognition_.note({.kind = Decision::Kind::sign, .node = recognition_.graph.node(friction)},
+                        [&] { return fmt::format("the friction of '{}'", stated.name); });
       contact.in_plane = contact.has_friction && stated.tangents.size1() == 2;
       if (contact.has_friction) {
         if (auto error = check_tangents(stated)) return tl::unexpected(*error);

@@ -17,8 +17,6 @@ namespace saltus::model {
 namespace {
 
 using expression::NodePtr;
-/// Speed of time beside contacts and hysteresis, unless bounds are stated.
-constexpr double default_fastest = 100.0;
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 NodePtr subtracted(const NodePtr& left, const NodePtr& right) {
@@ -61,11 +59,7 @@ class OcpBuild {
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }
-    if (ocp_.system.freezing) {
-      auto physical = quantities_.build_physical(overrides_);
-      if (!physical) return tl::unexpected(physical.error());
-      ocp_.physical = std::make_shared<const System>(std::move(*physical));
-    }
+    if (auto error = take_physical()) return tl::unexpected(*error);
     ocp_.warnings = ocp_.system.warnings;
     if (auto error = check(ocp_, slacks_.description())) return tl::unexpected(*error);
     return std::move(ocp_);
@@ -355,12 +349,46 @@ class OcpBuild {
     return check_initial_states(ocp_, description());
   }
 
+  [[nodiscard]] bool is_chosen(const std::string& name) const {
+    const auto& states = description().states;
+    return is_free(description(), name) ||
+           std::any_of(states.begin(), states.end(), [&](const auto& one) { return one.free && one.name == name; });
+  }
+
+  static Error chosen_in_plant(const std::string& name, const SourceLocation& location) {
+    return {ErrorCode::invalid_model,
+            fmt::format("'{}' is free: the plant has the value that the optimisation chooses", name),
+            "leave it out of plant",
+            location,
+            {"in [optimize.plant]"}};
+  }
+
+  std::optional<Error> take_physical() {
+    const auto build = [&](const std::vector<Override>& overrides, std::shared_ptr<const System>& place) {
+      auto built = quantities_.build_physical(overrides);
+      if (built) place = std::make_shared<const System>(std::move(*built));
+      return built ? std::nullopt : std::optional(built.error());
+    };
+    if (ocp_.system.freezing) {
+      if (auto error = build(overrides_, ocp_.physical)) return error;
+    }
+    if (stated_.plant.empty()) return std::nullopt;
+    for (const auto& [name, value] : stated_.plant) {
+      if (is_chosen(name)) return chosen_in_plant(name, value->location);
+    }
+    auto overrides = overrides_;
+    overrides.insert(overrides.end(), stated_.plant.begin(), stated_.plant.end());
+    auto error = build(overrides, ocp_.plant);
+    if (error) error->context = {"in [optimize.plant]"};
+    return error;
+  }
+
   std::optional<Error> take_clock() {
     if (!description().clock && !ocp_.system.freezing) return std::nullopt;
     OcpClock clock;
     if (ocp_.system.freezing) {
       clock.state = ocp_.system.freezing->clock;
-      clock.speed_upper = default_fastest;
+      clock.speed_upper = FreezingNumbers{}.speed_upper;
       ocp_.system.initial_state[at(clock.state)] = ocp_.from;
     } else {
       const auto& stated = *description().clock;

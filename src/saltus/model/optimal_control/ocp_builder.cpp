@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
+#include "saltus/model/builder_parts_internal.hpp"
 #include "saltus/model/optimal_control/ocp_checks_internal.hpp"
 
 namespace saltus::model {
@@ -36,13 +38,10 @@ struct OcpBuilder::Parts {
   int outputs = 0;
 
   explicit Parts(Builder builder) : system(std::move(builder)) {
-    auto built = system.build();
-    if (!built) {
-      error = built.error();
-      return;
-    }
-    outputs = ocp.user_outputs = static_cast<int>(built->output_names.size());
-    ocp.user_controls = static_cast<int>(built->control_names.size());
+    if (auto built = system.build(); !built) error = built.error();
+    const Statement& stated = system.parts_->statement;
+    outputs = ocp.user_outputs = static_cast<int>(stated.outputs.size());
+    ocp.user_controls = static_cast<int>(stated.controls.size());
   }
 
   /// An output of the system's own beside the user's.
@@ -108,20 +107,50 @@ struct OcpBuilder::Parts {
     }
   }
 
+  /// The system as it is written; time stands still in it where there are contacts and hysteresis.
+  std::optional<Error> take_system() {
+    auto& stated = *system.parts_;
+    if (stated.error) return stated.error;
+    auto physical = guarded([&] { return stated.as_written(); });
+    if (!physical) return physical.error();
+    if (!stated.stands_still()) {
+      ocp.system = std::move(*physical);
+      return std::nullopt;
+    }
+    auto frozen = guarded([&] { return stated.frozen(FrozenFor::optimisation); });
+    if (!frozen) return frozen.error();
+    ocp.system = std::move(*frozen);
+    ocp.physical = std::make_shared<const System>(std::move(*physical));
+    const int clock = ocp.system.freezing->clock;
+    ocp.clock = {clock, stated.freezing.speed_lower, stated.freezing.speed_upper};
+    ocp.system.initial_state[at(clock)] = ocp.from;
+    return std::nullopt;
+  }
+
+  /// What the checks look for in a description, which names places in a file: there are none.
+  [[nodiscard]] Description without_places() const {
+    Description nowhere;
+    nowhere.optimize.emplace();
+    const auto& built = ocp.system;
+    nowhere.states.resize(built.freezing ? at(built.freezing->first_hidden) : built.state_names.size());
+    nowhere.jumps.resize(built.jumps.size());
+    const auto& mechanics = system.parts_->mechanics;
+    if (!mechanics) return nowhere;
+    nowhere.mechanics.emplace();
+    for (const auto& list : {mechanics->positions, mechanics->velocities}) {
+      for (const int i : list) nowhere.mechanics->velocities.push_back({built.state_names[at(i)], {}});
+    }
+    return nowhere;
+  }
+
   Expected<Ocp> build() {
     if (!error && !(ocp.horizon.value > 0.0)) fail(check_horizon(ocp.horizon, {}));
     if (error) return tl::unexpected(*error);
-    auto built = system.build();
-    if (!built) return tl::unexpected(built.error());
-    ocp.system = std::move(*built);
+    if (auto mistake = take_system()) return tl::unexpected(*mistake);
     ocp.guess.clear();
     free_what_is_free();
     take_guesses();
-    // The checks name places in a file: there are none.
-    Description nowhere;
-    nowhere.optimize.emplace();
-    nowhere.states.resize(ocp.system.state_names.size());
-    nowhere.jumps.resize(ocp.system.jumps.size());
+    const Description nowhere = without_places();
     fail(check_initial_states(ocp, nowhere));
     fail(check(ocp, nowhere));
     if (error) return tl::unexpected(*error);

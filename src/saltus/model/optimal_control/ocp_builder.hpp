@@ -43,7 +43,7 @@ class OcpBuilder {
 
   /// Sets the time that the problem begins at; 0 by default.
   void start_time(double from);
-  void horizon(double length);  ///< > 0
+  void horizon(double length);  ///< positive
   void free_horizon(double initial, double lower, double upper);
   /// Adds weight T to the objective.
   void minimize_time(double weight = 1.0);

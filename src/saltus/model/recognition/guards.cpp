@@ -55,6 +55,8 @@ Expected<Truth> Guards::comparison_truth(const Comparison& comparison) {
   if (!node) return tl::unexpected(node.error());
   const auto constant = constant_value(recognition_.graph.tape(), *node);
   if (!constant) return diagram_.literal(guard(*node, comparison.at_equality));
+  recognition_.note({.kind = Decision::Kind::sign, .node = *node},
+                    [&] { return fmt::format("'{}'", casadi::SX(*difference).get_str()); });
   const bool holds = *constant > 0.0 || (*constant == 0.0 && comparison.at_equality == AtEquality::is_true);
   return holds ? TruthDiagram::constant_true() : TruthDiagram::constant_false();
 }

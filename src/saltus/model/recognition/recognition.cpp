@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,6 +16,10 @@ bool holds(double difference, AtEquality at_equality) {
 }
 
 std::string shown(const SXElem& e, const std::string& name) { return name.empty() ? casadi::SX(e).get_str() : name; }
+
+bool is_discrete(KindSet reached) { return (reached & moving_kinds) == 0 && (reached & jumping_kinds) != 0; }
+
+std::string quoted(const SXElem& e, const std::string& name) { return "'" + shown(e, name) + "'"; }
 
 }  // namespace
 
@@ -44,8 +50,14 @@ std::optional<SharedFunction> Recognition::find(int psi_node, std::optional<doub
     const auto& met = functions_[at(candidate.function)];
     return !met.discrete || !at_zero || !met.alpha_at_zero || *met.alpha_at_zero == value_of(candidate);
   });
-  if (found && at_zero) {
-    auto& met = functions_[at(found->function)];
+  if (!found) return found;
+  auto& met = functions_[at(found->function)];
+  if (met.psi_node != psi_node) {
+    note({.kind = Decision::Kind::multiple, .node = met.psi_node, .other = psi_node}, [&] {
+      return fmt::format("'{}' and {} are one switching function", met.name, quoted(graph.expression(psi_node), ""));
+    });
+  }
+  if (at_zero) {
     const bool on_discrete = (graph.tape()[met.psi_node].reached & kind_bit(VariableKind::discrete)) != 0;
     if (on_discrete && !met.alpha_at_zero) met.alpha_at_zero = value_of(*found);
   }
@@ -56,7 +68,7 @@ int Recognition::append(const std::string& name, const SXElem& psi, int psi_node
   const auto index = static_cast<int>(functions_.size());
   MetFunction met{shown(psi, name), psi, psi_node, SXElem(0.0), 0, false};
   const KindSet reached = graph.tape()[psi_node].reached;
-  met.discrete = (reached & moving_kinds) == 0 && (reached & jumping_kinds) != 0;
+  met.discrete = is_discrete(reached);
   if ((reached & jumping_kinds) != 0) met.alpha_at_zero = at_zero;
   if (met.discrete) {
     const bool taken =
@@ -77,13 +89,19 @@ Expected<Recognition::Selection> Recognition::corner_selection(int node, const s
   const auto cone = tape.cone(std::span(&node, 1), Links::written);
   Point point = blank_point(tape);
   TapeValues values;
+  std::vector<std::map<int, double>> corners;
   for (std::size_t corner = 0; corner < (std::size_t{1} << literals.size()); ++corner) {
+    corners.emplace_back();
     for (std::size_t k = 0; k < literals.size(); ++k) {
       const int leaf = functions_[at(literals[k])].alpha_node;
-      point[at(tape[leaf].variable)] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+      point[at(tape[leaf].variable)] = corners.back()[leaf] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
     }
     evaluate(tape, cone, point, values);
     result.corners.push_back(values.value[at(node)]);
+  }
+  for (const auto& fixed : corners) {
+    const SXElem value = graph.with_alphas(node, fixed);
+    note({.kind = Decision::Kind::sign, .node = graph.node(value)}, [&] { return quoted(value, ""); });
   }
   return result;
 }
@@ -93,7 +111,10 @@ Expected<Recognition::Selection> Recognition::selection(const SXElem& e, const s
   const auto node = graph.add(e);
   if (!node) return tl::unexpected(node.error());
   const Tape& tape = graph.tape();
-  if (const auto constant = constant_value(tape, *node)) return Selection{.constant = *constant};
+  if (const auto constant = constant_value(tape, *node)) {
+    note({.kind = Decision::Kind::sign, .node = *node}, [&] { return quoted(e, name); });
+    return Selection{.constant = *constant};
+  }
   const auto known = find(*node, at_zero);
   if (known) return Selection{.kind = Selection::Kind::alpha, .function = *known};
   const auto literals = alphas_in(*node);
@@ -275,6 +296,22 @@ Expected<SXElem> Recognition::difference_of(const Comparison& comparison) {
 
 Expected<bool> Recognition::changes_by_jumps_only(const SXElem& expression) {
   return graph.add(expression).map([this](int node) { return (graph.tape()[node].reached & moving_kinds) == 0; });
+}
+
+void Recognition::restate_as_state(const SXElem& symbol, int index) {
+  graph.restate_as_state(symbol, index);
+  for (auto& met : functions_) {
+    const KindSet reached = graph.tape()[met.psi_node].reached;
+    met.discrete = is_discrete(reached);
+    if ((reached & jumping_kinds) == 0) met.alpha_at_zero.reset();
+  }
+}
+
+void Recognition::note(Decision decision, FunctionRef<std::string()> text) {
+  if (!has_parameters(graph.tape(), decision)) return;
+  decision.text = text();
+  if (!known_decisions_.emplace(decision.kind, decision.node, decision.other, decision.text).second) return;
+  decisions_.push_back(decided(graph.tape(), std::move(decision)));
 }
 
 std::optional<double> Recognition::parameter_value(const SXElem& expression) {

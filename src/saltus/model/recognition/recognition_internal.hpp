@@ -3,12 +3,16 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/model/graph/sharing_internal.hpp"
 #include "saltus/model/graph/sx_graph_internal.hpp"
 #include "saltus/model/recognition/condition.hpp"
+#include "saltus/model/recognition/decisions_internal.hpp"
 
 namespace saltus::model {
 
@@ -75,6 +79,14 @@ class Recognition {
   /// Returns the value of an expression of constants and parameters; nothing if it is none.
   [[nodiscard]] std::optional<double> parameter_value(const SXElem& expression);
 
+  /// Makes a symbol, of time or a discrete state, that of a state; its functions are moving ones from now on.
+  void restate_as_state(const SXElem& symbol, int index);
+
+  /// Notes a decision; one without parameters, or noted before, is left out.
+  /// @param text  of Decision
+  void note(Decision decision, FunctionRef<std::string()> text);
+  [[nodiscard]] const std::vector<Decision>& decisions() const { return decisions_; }
+
  private:
   /// What step(e) turns out to be.
   struct Selection {
@@ -101,6 +113,8 @@ class Recognition {
   bool whole_parts_of_all_ = false;
   std::vector<MetFunction> functions_;
   SharingIndex index_;
+  std::vector<Decision> decisions_;
+  std::set<std::tuple<Decision::Kind, int, int, std::string>> known_decisions_;
   std::shared_ptr<const CellTable> integers_ = std::make_shared<const CellTable>(integer_cells());
 };
 

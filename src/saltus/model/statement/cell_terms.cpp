@@ -34,6 +34,8 @@ std::optional<SXElem> Recognition::lookup_corners(const std::shared_ptr<const Ce
                                                   const std::string& name, int& corners) {
   const int node = graph.node(e);
   if (const auto constant = constant_value(graph.tape(), node)) {
+    note({.kind = Decision::Kind::cell, .node = node, .table = table},
+         [&] { return fmt::format("the argument of '{}' lies between two of its breaks", name); });
     std::vector<SXElem> constants;
     const long cell = table->cell(*constant);
     for (int column = 0; column < table->columns; ++column) constants.emplace_back(table->constant(cell, column));

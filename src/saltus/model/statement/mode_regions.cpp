@@ -129,7 +129,11 @@ class Cover {
   }
 
   std::optional<Error> exclude_impossible() {
-    for (const auto& pair : excluded_signs(recognition_.graph.tape(), recognition_.functions(), literals_)) {
+    const auto& functions = recognition_.functions();
+    for (const auto& pair : excluded_signs(recognition_.graph.tape(), functions, literals_)) {
+      const auto &a = functions[saltus::at(pair.a)], &b = functions[saltus::at(pair.b)];
+      recognition_.note({.kind = Decision::Kind::excluded, .node = a.psi_node, .other = b.psi_node},
+                        [&] { return fmt::format("'{}' and '{}' exclude signs of each other", a.name, b.name); });
       const Truth both =
           diagram().conjunction(signed_literal(pair.a, pair.a_holds), signed_literal(pair.b, pair.b_holds));
       possible_ = diagram().conjunction(possible_, diagram().negation(both));

@@ -49,6 +49,10 @@ std::optional<Error> ModelScope::declare_names() {
   // The later one of two equal names is the wrong one.
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.second.location.line < b.second.location.line; });
+  const char* beside = !description_.contacts.empty()     ? "[[contacts]]"
+                       : !description_.hysteresis.empty() ? "[[hysteresis]]"
+                                                          : nullptr;
+  if (beside != nullptr) static_cast<void>(names_.reserve_clock(beside, {"in [time_freezing]"}));
   for (const auto& [name, meaning] : found) {
     auto error = names_.declare(name, meaning);
     if (!error) continue;
@@ -238,10 +242,16 @@ Expected<SXElem> ModelScope::expression(const saltus::expression::Node& node, Re
   return result;
 }
 
-Expected<double> ModelScope::value(const saltus::expression::Node& node, Reach reach, const std::string& what) {
+Expected<double> ModelScope::value(const saltus::expression::Node& node, Reach reach, const std::string& what,
+                                   const std::optional<ComputedNumber>& computed) {
   const auto translated = expression(node, reach);
   if (!translated) return tl::unexpected(translated.error());
-  if (const auto constant = recognition_.parameter_value(*translated)) return *constant;
+  if (const auto constant = recognition_.parameter_value(*translated)) {
+    if (!computed) return *constant;
+    const int number = recognition_.graph.node(*translated);
+    recognition_.note({.kind = Decision::Kind::value, .node = number, .computed = *computed}, [&] { return what; });
+    return *constant;
+  }
   return tl::unexpected(Error{ErrorCode::invalid_model,
                               fmt::format("{} must be a constant, found '{}'", what, saltus::expression::to_text(node)),
                               "use numbers and parameters",

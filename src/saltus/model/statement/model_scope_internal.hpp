@@ -57,7 +57,9 @@ class ModelScope {
   [[nodiscard]] Expected<SXElem> expression(const saltus::expression::Node& node, Reach reach = Reach::everything);
   /// Returns the value of an expression of constants and parameters.
   /// @param what  "the initial value of 'q'", for the error
-  [[nodiscard]] Expected<double> value(const saltus::expression::Node& node, Reach reach, const std::string& what);
+  /// @param computed  where the system has it; nothing: simulations do not ask for it
+  [[nodiscard]] Expected<double> value(const saltus::expression::Node& node, Reach reach, const std::string& what,
+                                       const std::optional<ComputedNumber>& computed = ComputedNumber{});
 
   /// Works out entry number `index` of [switching] unless that has happened, and declares it.
   [[nodiscard]] std::optional<Error> resolve_switching(int index);

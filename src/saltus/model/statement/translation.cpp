@@ -283,7 +283,14 @@ Expected<Condition> Translation::equality(const expression::Binary& binary, cons
   }
   const auto a = recognition_.parameter_value(*left), b = recognition_.parameter_value(*right);
   const bool asked_equal = binary.op == BinaryOperator::equal;
-  if (a && b) return (*a == *b) == asked_equal ? Condition::always() : Condition::never();
+  if (a && b) {
+    const casadi::SX difference(*left - *right);
+    if (const auto node = recognition_.graph.add(difference.scalar())) {
+      recognition_.note({.kind = Decision::Kind::sign, .node = *node},
+                        [&] { return fmt::format("'{}'", difference.get_str()); });
+    }
+    return (*a == *b) == asked_equal ? Condition::always() : Condition::never();
+  }
   const Condition same =
       saltus::model::equal(casadi::SX(*left), casadi::SX(*right), difference_text(binary.left, binary.right),
                            difference_text(binary.right, binary.left));

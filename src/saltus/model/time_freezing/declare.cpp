@@ -9,8 +9,18 @@
 namespace saltus::model {
 namespace {
 
-Error freezing_error(const SourceLocation& location, std::string message, std::string remedy) {
-  return {ErrorCode::invalid_model, std::move(message), std::move(remedy), location, {"in [time_freezing]"}};
+enum class Range { positive, not_negative, positive_or_infinite };
+
+/// What is wrong with a number of [time_freezing].
+std::optional<Error> find_mistake(const std::string& name, double value, Range range, const SourceLocation& location) {
+  const bool is_number = range == Range::positive_or_infinite ? !std::isnan(value) : std::isfinite(value);
+  const bool may_vanish = range == Range::not_negative;
+  if (is_number && (value > 0.0 || (may_vanish && value == 0.0))) return std::nullopt;
+  return Error{ErrorCode::invalid_model,
+               fmt::format("{} is {}", name, value),
+               may_vanish ? "it is a number that is 0 or positive" : "it is a positive number",
+               location,
+               {location.line > 0 ? "in [time_freezing]" : "in time_freezing()"}};
 }
 
 std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& scope, FreezingNumbers& numbers) {
@@ -18,26 +28,22 @@ std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& sc
     const char* name;
     const expression::NodePtr& node;
     double& number;
-    bool may_vanish;
-    bool may_be_infinite = false;
+    Range range = Range::positive;
   };
-  for (const auto& key :
-       {Key{"a_n", stated.a_n, numbers.a_n, false}, Key{"stiffness", stated.stiffness, numbers.stiffness, false},
-        Key{"stabilisation", stated.stabilisation, numbers.stabilisation, true},
-        Key{"stabilisation.initial", stated.stabilisation_initial, numbers.stabilisation_initial, true},
-        Key{"transfer", stated.transfer, numbers.transfer, false}, Key{"eps_t", stated.eps_t, numbers.eps_t, false},
-        Key{"correction", stated.correction, numbers.correction, true},
-        Key{"penetration", stated.penetration, numbers.penetration, false, true}}) {
+  double initial = 0.0;
+  for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n}, Key{"stiffness", stated.stiffness, numbers.stiffness},
+                          Key{"stabilisation", stated.stabilisation, numbers.stabilisation, Range::not_negative},
+                          Key{"stabilisation.initial", stated.stabilisation_initial, initial, Range::not_negative},
+                          Key{"transfer", stated.transfer, numbers.transfer}, Key{"eps_t", stated.eps_t, numbers.eps_t},
+                          Key{"correction", stated.correction, numbers.correction, Range::not_negative},
+                          Key{"penetration", stated.penetration, numbers.penetration, Range::positive_or_infinite}}) {
     if (!key.node) continue;
     const auto value = scope.value(*key.node, Reach::everything, key.name);
     if (!value) return with_context(value.error(), "in [time_freezing]");
-    const bool is_number = key.may_be_infinite ? !std::isnan(*value) : std::isfinite(*value);
-    if (!is_number || !(*value > 0.0 || (key.may_vanish && *value == 0.0))) {
-      return freezing_error(key.node->location, fmt::format("{} is {}", key.name, *value),
-                            key.may_vanish ? "it is a number that is 0 or positive" : "it is a positive number");
-    }
+    if (auto error = find_mistake(key.name, *value, key.range, key.node->location)) return error;
     key.number = *value;
   }
+  if (stated.stabilisation_initial) numbers.stabilisation_initial = initial;
   return std::nullopt;
 }
 
@@ -50,13 +56,11 @@ int declare_state(Recognition& recognition, Statement& statement, const std::str
 }
 
 /// A number, or, for an optimisation that begins with another one, a parameter: a variable, so that nothing folds.
-void declare_stabilisation(const Description& description, Recognition& recognition, Statement& statement,
-                           FreezingPlan& plan) {
-  plan.stabilisation = plan.numbers.stabilisation;
-  const bool is_followed = description.clock && description.clock->stabilisation_initial;
-  if (!is_followed || plan.purpose != FrozenFor::optimisation || description.contacts.empty()) return;
+void declare_stabilisation(Recognition& recognition, Statement& statement, FreezingPlan& plan) {
+  const auto& initial = plan.numbers.stabilisation_initial;
+  if (!initial || plan.purpose != FrozenFor::optimisation) return;
   plan.made.stabilisation = static_cast<int>(statement.parameters.size());
-  plan.made.stabilisation_initial = plan.numbers.stabilisation_initial;
+  plan.made.stabilisation_initial = *initial;
   const SXElem symbol = recognition.graph.symbol(
       "time_freezing.stabilisation",
       {.kind = VariableKind::control, .index = plan.made.stabilisation, .value = plan.numbers.stabilisation});
@@ -66,40 +70,66 @@ void declare_stabilisation(const Description& description, Recognition& recognit
 
 }  // namespace
 
+std::optional<Error> find_mistake(const FreezingNumbers& numbers) {
+  struct Key {
+    const char* name;
+    double value;
+    Range range = Range::positive;
+  };
+  for (const auto& key :
+       {Key{"a_n", numbers.a_n}, Key{"stiffness", numbers.stiffness}, Key{"transfer", numbers.transfer},
+        Key{"stabilisation", numbers.stabilisation, Range::not_negative},
+        Key{"stabilisation_initial", numbers.stabilisation_initial.value_or(0.0), Range::not_negative},
+        Key{"eps_t", numbers.eps_t}, Key{"correction", numbers.correction, Range::not_negative},
+        Key{"penetration", numbers.penetration, Range::positive_or_infinite}, Key{"speed_lower", numbers.speed_lower},
+        Key{"speed_upper", numbers.speed_upper}}) {
+    if (auto error = find_mistake(key.name, key.value, key.range, {})) return error;
+  }
+  return std::nullopt;
+}
+
+void declare_hidden(Recognition& recognition, Statement& statement, const std::vector<ContactToFreeze>& contacts,
+                    FreezingPlan& plan) {
+  plan.made.penetration = plan.numbers.penetration;
+  plan.stabilisation = plan.numbers.stabilisation;
+  if (!contacts.empty()) declare_stabilisation(recognition, statement, plan);
+  plan.made.first_hidden = static_cast<int>(statement.states.size());
+  for (const auto& contact : contacts) {
+    // Names of hidden states have a point in them, which no name of a user has.
+    FrozenContact made{.name = contact.name, .is_elastic = contact.restitution > 0.0};
+    plan.restitution.push_back(contact.restitution);
+    plan.depth.push_back(made.is_elastic ? declare_state(recognition, statement, contact.name + ".depth") : -1);
+    if (plan.purpose == FrozenFor::simulation) {
+      made.impulse = declare_state(recognition, statement, contact.name + ".impulse");
+      declare_state(recognition, statement, contact.name + ".impulse_t");
+      if (contact.in_plane) declare_state(recognition, statement, contact.name + ".impulse_t2");
+    }
+    plan.made.contacts.push_back(std::move(made));
+  }
+  plan.takes_plane = plan.purpose == FrozenFor::optimisation && plan.made.hysteresis.size() == 1 && contacts.empty();
+}
+
 std::optional<Error> declare_frozen(const Description& description, ModelScope& scope, Recognition& recognition,
                                     Statement& statement, FreezingPlan& plan) {
   if (description.clock) {
     if (auto error = take_numbers(*description.clock, scope, plan.numbers)) return error;
   }
-  plan.made.penetration = plan.numbers.penetration;
-  declare_stabilisation(description, recognition, statement, plan);
   for (const auto& entry : description.hysteresis) {
     plan.made.hysteresis.push_back({entry.name, declare_state(recognition, statement, entry.name, entry.location)});
   }
-  plan.made.first_hidden = static_cast<int>(statement.states.size());
+  std::vector<ContactToFreeze> contacts;
   for (const auto& contact : description.contacts) {
-    double restitution = 0.0;
-    if (contact.restitution) {
-      const auto value = scope.value(*contact.restitution, Reach::everything, "the restitution");
-      if (!value) return with_context(value.error(), "in [[contacts]]");
-      restitution = *value;
-    }
-    // Names of hidden states have a point in them, which no name of a user has.
-    FrozenContact made{.name = contact.name, .is_elastic = restitution > 0.0};
-    plan.restitution.push_back(restitution);
-    plan.depth.push_back(made.is_elastic ? declare_state(recognition, statement, contact.name + ".depth") : -1);
-    if (plan.purpose == FrozenFor::simulation) {
-      made.impulse = declare_state(recognition, statement, contact.name + ".impulse");
-      declare_state(recognition, statement, contact.name + ".impulse_t");
-      if (contact.tangents.size() == 2) declare_state(recognition, statement, contact.name + ".impulse_t2");
-    }
-    plan.made.contacts.push_back(std::move(made));
+    contacts.push_back({.name = contact.name, .in_plane = contact.tangents.size() == 2});
+    if (!contact.restitution) continue;
+    const auto value = scope.value(*contact.restitution, Reach::everything, "the restitution");
+    if (!value) return with_context(value.error(), "in [[contacts]]");
+    contacts.back().restitution = *value;
   }
+  declare_hidden(recognition, statement, contacts, plan);
   const bool has_indicators = std::any_of(description.modes.begin(), description.modes.end(),
                                           [](const auto& mode) { return mode.indicator != nullptr; });
-  plan.takes_plane = plan.purpose == FrozenFor::optimisation && description.hysteresis.size() == 1 &&
-                     description.contacts.empty() && !has_indicators;
-  plan.made.clock = declare_state(recognition, statement, "clock");
+  plan.takes_plane = plan.takes_plane && !has_indicators;
+  plan.made.clock = declare_state(recognition, statement, clock_name);
   plan.numerical_time = statement.time;
   statement.time = statement.states.back().symbol;
   return std::nullopt;

@@ -15,15 +15,6 @@ namespace saltus::model {
 
 enum class FrozenFor { simulation, optimisation };
 
-/// Holds numbers of [time_freezing] (docs/model-file.md).
-struct FreezingNumbers {
-  double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
-  double stabilisation_initial = 0.0;
-  double penetration = 5e-4;
-  double eps_t = 1e-7;      ///< tangential speed up to which a contact with two tangents sticks
-  double correction = 0.1;  ///< largest speed with which a held gap is corrected
-};
-
 /// Holds a rate that is added to that of a state.
 struct AddedRate {
   int state = 0;
@@ -55,6 +46,18 @@ struct FreezingPlan {
   std::vector<AddedRate> added{};
   std::vector<std::pair<SXElem, FrozenSelection*>> selections{};  ///< to be found in the system
 };
+
+/// Holds what the hidden states of a contact depend on.
+struct ContactToFreeze {
+  std::string name;
+  double restitution = 0.0;
+  bool in_plane = false;
+};
+
+/// Appends the hidden states of contacts behind those of hysteresis, which the plan has, and the parameter of a
+/// stabilisation that is followed down.
+void declare_hidden(Recognition& recognition, Statement& statement, const std::vector<ContactToFreeze>& contacts,
+                    FreezingPlan& plan);
 
 /// Appends the states of the plan: one for every hysteresis, then what is hidden, the clock last; `t` is the clock from
 /// now on. The values of parameters are known.

@@ -1,6 +1,7 @@
 // Systems whose time stands still where bodies collide and where a hysteresis switches.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,20 @@
 #include "saltus/model/system.hpp"
 
 namespace saltus::model {
+
+/// Holds numbers of [time_freezing] (docs/model-file.md).
+struct FreezingNumbers {
+  double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
+  /// An optimisation begins with this and follows it to `stabilisation`; absent: it is fixed.
+  std::optional<double> stabilisation_initial{};
+  double eps_t = 1e-7;                            ///< tangential speed up to which a contact with two tangents sticks
+  double correction = 0.1;                        ///< largest speed with which a held gap is corrected
+  double penetration = 5e-4;                      ///< how deep an optimum may be in a contact
+  double speed_lower = 1.0, speed_upper = 100.0;  ///< of time in an optimum, beside contacts and hysteresis
+};
+
+/// Returns what is wrong with them: all are positive; stabilisations and the correction may be 0.
+[[nodiscard]] std::optional<Error> find_mistake(const FreezingNumbers& numbers);
 
 /// Holds the selection of a switching function that freezing has added.
 struct FrozenSelection {
@@ -50,5 +65,8 @@ struct TimeFreezing {
 struct FrozenSystem {
   Expected<System> system;
 };
+
+/// Returns a frozen system with the parameters and initial values that the system it stands for has by now.
+[[nodiscard]] System with_values_of(System frozen, const System& system);
 
 }  // namespace saltus::model

@@ -13,9 +13,21 @@ namespace {
 using event_integrator::Integration;
 using result::Termination;
 
+/// The plant with what the optimisation has chosen: free parameters and initial values.
+model::System optimised_plant(const model::Ocp& ocp, const OptimizedPath& path) {
+  model::System system = ocp.plant ? *ocp.plant : ocp.system;
+  const auto& start = path.nodes.front();
+  for (std::size_t i = 0; i < path.parameters.size(); ++i) {
+    if (!ocp.plant || ocp.free_parameters[i]) system.parameter_values[i] = path.parameters[i];
+  }
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    if (!ocp.plant || (i < ocp.free_states.size() && ocp.free_states[i])) system.initial_state[i] = start[i];
+  }
+  return system;
+}
+
 /// The system whose controls are its last parameters.
-model::System with_parameters_as_controls(const model::Ocp& ocp, const OptimizedPath& path) {
-  model::System system = ocp.system;
+model::System with_parameters_as_controls(model::System system, const OptimizedPath& path) {
   const auto n = static_cast<casadi_int>(system.control_names.size());
   // Without the cells of its own inputs, and without those of the ones given here.
   system = model::with_controls(std::move(system), {path.times.front()}, {path.controls.front()});
@@ -23,7 +35,6 @@ model::System with_parameters_as_controls(const model::Ocp& ocp, const Optimized
   const casadi::SX controls = casadi::SX::sym("control", n);
   system.input = controls;
   system.p = casadi::SX::vertcat({system.p, controls});
-  system.parameter_values = path.parameters;
   for (const auto& name : system.control_names) system.parameter_names.push_back("control." + name);
   system.parameter_values.resize(system.parameter_names.size(), 0.0);
   system.events.clear();  // they would stop it
@@ -54,14 +65,14 @@ const std::vector<double>& planned_state(const OptimizedPath& path, std::size_t 
 Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
                                                      const std::vector<Eigen::MatrixXd>& gains,
                                                      const std::function<bool()>& is_interrupted) {
-  model::System system = with_parameters_as_controls(ocp, path);
+  model::System system = with_parameters_as_controls(optimised_plant(ocp, path), path);
   const std::size_t first = path.parameters.size();
   const auto observer = [&](const result::Progress&) {
     return is_interrupted && is_interrupted() ? result::Continue::no : result::Continue::yes;
   };
   KernelStore kernels;
   Resimulation::Segment whole;
-  std::vector<double> x = path.nodes.front();
+  std::vector<double> x = system.initial_state;
   for (std::size_t k = 0; k < path.controls.size(); ++k) {
     const auto& planned = planned_state(path, k, x);
     Eigen::VectorXd off(gains[k].cols());

@@ -6,12 +6,14 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/base/at.hpp"
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/model/decisions.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
@@ -23,6 +25,7 @@
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
+#include "saltus/result/impacts_at_nodes.hpp"
 #include "saltus/solver/feedback.hpp"
 
 namespace saltus::pipeline {
@@ -121,7 +124,8 @@ void take_point(discretization::OcpProblem& problem, const solver::Solution& sol
 }
 
 /// completed only if the other engine agrees.
-void judge(const result::Verification& verification, double tolerance, result::Status& status) {
+void judge(const result::Verification& verification, const OptimizeOptions& options, result::Status& status) {
+  const double tolerance = options.verification_tolerance;
   if (status.termination != Termination::completed) return;
   if (verification.interval_defect <= tolerance && verification.message.empty()) return;
   status.termination = Termination::verification_failed;
@@ -134,13 +138,15 @@ void judge(const result::Verification& verification, double tolerance, result::S
     return;
   }
   const bool missed = verification.switches_missed > 0;
+  const long stages = options.element.stages;
   status.message = fmt::format(
       "the event-driven simulation of interval {} differs by {:.3g} of the range of '{}' (verification_tolerance = "
       "{:.3g}); "
       "{}",
       verification.interval, verification.interval_defect, verification.state, tolerance,
-      missed ? "a switch was missed there: take more elements or more intervals (or fewer stages)"
-             : "take more stages or more elements");
+      !missed      ? "take more stages or more elements"
+      : stages > 1 ? "a switch was missed there: take more elements or more intervals (or fewer stages)"
+                   : "a switch was missed there: take more stages, elements or intervals");
 }
 
 std::optional<solver::Start> same_structure(const discretization::OcpProblem& problem, const OptimizeOptions& options) {
@@ -154,6 +160,20 @@ std::optional<solver::Start> same_structure(const discretization::OcpProblem& pr
   start.multipliers.lower = vector_of(from.dual_lower);
   start.multipliers.upper = vector_of(from.dual_upper);
   return start;
+}
+
+/// States by the range that they have in the plan, controls by the width of their bounds; what does not move, or has
+/// none, may be off by anything.
+std::optional<solver::TrackingScales> tracking_scales(const model::Ocp& ocp, const OptimizeOptions& options,
+                                                      const OptimizedPath& path) {
+  if (options.feedback != Feedback::tracking) return std::nullopt;
+  const auto widths = [](const std::vector<double>& low, const std::vector<double>& high) {
+    std::vector<double> list;
+    for (std::size_t i = 0; i < low.size(); ++i) list.push_back(high[i] > low[i] ? high[i] - low[i] : INFINITY);
+    return list;
+  };
+  return solver::TrackingScales{widths(path.state_min, path.state_max),
+                                widths(ocp.system.control_lower, ocp.system.control_upper)};
 }
 
 /// How deep bodies are in each other at the nodes and stages.
@@ -183,21 +203,13 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
   return verify(physical_ocp(ocp), physical_path(ocp, *bodies, path, run), wanted, observers.is_interrupted);
 }
 
-/// An impact cannot move from one interval into the next: that is another branch, which no certificate looks at.
 void warn_of_impacts_at_nodes(const result::Result& run, const OptimizeObservers& observers) {
-  const auto& grid = run.optimization->grid;
-  std::string times;
-  for (const auto& event : run.events) {
-    const auto is_here = [&](double node) { return std::abs(event.t - node) <= 1e-9 * (grid.back() - grid.front()); };
-    if (event.kind != result::EventKind::impact || grid.size() < 3) continue;
-    if (std::none_of(grid.begin() + 1, grid.end() - 1, is_here)) continue;
-    times += fmt::format("{}{:.6g}", times.empty() ? "" : ", ", event.t);
-  }
+  const auto times = result::impacts_at_nodes(run);
   if (times.empty()) return;
-  observers.on_warning(
-      fmt::format("impacts at t = {} lie at ends of control intervals, and an optimum may have them on the other side; "
-                  "compare with one interval more or less",
-                  times));
+  observers.on_warning(fmt::format(
+      "impacts at t = {:.6g} lie at ends of control intervals, and an optimum may have them on the other side; "
+      "compare with one interval more or less",
+      fmt::join(times, ", ")));
 }
 
 void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
@@ -226,6 +238,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
                                   const OptimizeObservers& observers) {
   const SymbolicLock lock;  // problems are made, and dropped, while it runs
   const Stopwatch whole;
+  if (auto error = model::find_stale(ocp.system)) return tl::unexpected(*error);
   auto stated = state_problem(ocp, options);
   if (!stated) return tl::unexpected(stated.error());
   for (const auto& warning : stated->warnings) observers.on_warning(warning);
@@ -268,11 +281,11 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     std::vector<Eigen::MatrixXd> gains;
     if (options.closed_loop) {
       gains = solver::feedback_gains(problem, *solution, static_cast<int>(ocp.system.control_names.size()),
-                                     static_cast<int>(result.states.size()));
+                                     static_cast<int>(result.states.size()), tracking_scales(ocp, options, run->path));
     }
     auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), bodies.get(), observers);
     if (!verification) return tl::unexpected(verification.error());
-    judge(*verification, options.verification_tolerance, result.status);
+    judge(*verification, options, result.status);
     if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);
     found.verification = std::move(*verification);
   }

@@ -9,6 +9,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/record/element_recorder.hpp"
 #include "saltus/fesd_integrator/record/recorder.hpp"
+#include "saltus/model/decisions.hpp"
 #include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
@@ -252,6 +253,7 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   model::System system = ocp.system;
   system.parameter_values = solution.parameters;
   system.initial_state = solution.initial_state;
+  if (auto error = model::find_stale(system)) return tl::unexpected(*error);
   system.events.clear();  // an optimised point knows of none
   system = model::with_controls(std::move(system), {times.begin(), times.end() - 1}, solution.controls);
   const auto dcs = reformulation::reformulate(system, form);

@@ -53,7 +53,7 @@ class Resimulation {
 };
 
 /// Simulates from the first node over the whole horizon, in interval k with u_k + K_k (x(t_k) - x_k), moved onto the
-/// bounds of the controls.
+/// bounds of the controls. Simulates Ocp::plant if there is one.
 /// @param gains  K_k over all controls and the states of the result
 [[nodiscard]] Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
                                                                    const std::vector<Eigen::MatrixXd>& gains,

@@ -243,6 +243,20 @@ result::OpenLoop open_loop_of(const Ocp& ocp, const OptimizedPath& path, const S
   return open_loop;
 }
 
+/// What of the plant is not as in the model.
+std::vector<std::pair<std::string, double>> differing_values(const Ocp& ocp) {
+  std::vector<std::pair<std::string, double>> list;
+  if (!ocp.plant) return list;
+  const auto compare = [&](const auto& names, const auto& values, const auto& planned) {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (values[i] != planned[i]) list.emplace_back(names[i], values[i]);
+    }
+  };
+  compare(ocp.plant->parameter_names, ocp.plant->parameter_values, ocp.system.parameter_values);
+  compare(ocp.plant->state_names, ocp.plant->initial_state, ocp.system.initial_state);
+  return list;
+}
+
 }  // namespace
 
 Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, const VerificationWanted& wanted,
@@ -270,6 +284,7 @@ Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, const V
   if (!closed_loop) return tl::unexpected(closed_loop.error());
   verification.closed_loop = open_loop_of(ocp, path, checks.scales(), std::move(*closed_loop));
   verification.closed_loop->amplification = not_known;
+  verification.plant = differing_values(ocp);
   return verification;
 }
 

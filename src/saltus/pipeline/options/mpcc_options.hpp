@@ -5,23 +5,16 @@
 #include <string_view>
 
 #include "saltus/base/error.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/result/result.hpp"
 #include "saltus/solver/solve.hpp"
 
 namespace saltus::pipeline {
 
-/// Holds one key of [optimize.mpcc]; `solver` is not among them, as it is no option of the method.
-struct MpccField {
-  std::string_view key;      ///< below [optimize.mpcc]: "sigma_final"
-  std::string_view expects;  ///< "a number > 0"
-  std::string_view doc;      ///< one sentence
-  /// Writes a value into the options; errors carry no location.
-  Expected<void> (*set)(solver::SolveOptions&, std::string_view key, const result::OptionValue&);
-  /// Appends the value in force under `key`.
-  void (*record)(const solver::SolveOptions&, std::string_view key, result::OptionRecord&);
-};
+using MpccField = FieldOf<solver::SolveOptions>;
 
-/// Returns all of them, in the order of the documentation.
+/// Returns the keys of [optimize.mpcc], in the order of the documentation; `solver` is not among them, as it is no
+/// option of the method.
 [[nodiscard]] std::span<const MpccField> mpcc_fields();
 
 /// Changes one option.

@@ -62,11 +62,20 @@ std::optional<OptionProblem> problem_of_references(const OptimizeOptions& option
   return std::nullopt;
 }
 
+std::optional<OptionProblem> problem_of_plant(const OptimizeOptions& options, const model::OcpDescription& problem) {
+  if (options.closed_loop || problem.plant.empty()) return std::nullopt;
+  auto found = misfit("closed_loop", "plant is what closed_loop simulates, and closed_loop is false",
+                      "write closed_loop = true, or leave plant out");
+  found.error.location = problem.plant.front().value->location;
+  return found;
+}
+
 }  // namespace
 
 std::optional<OptionProblem> find_problem(const OptimizeOptions& options, const model::OcpDescription& problem) {
   if (auto found = problem_of_grid(options)) return found;
   if (auto found = problem_of_references(options, problem)) return found;
+  if (auto found = problem_of_plant(options, problem)) return found;
   if (auto fits = check_mpcc_options(options.mpcc); !fits) return OptionProblem{"mpcc.sigma_final", fits.error()};
   return std::nullopt;
 }

@@ -20,13 +20,15 @@ namespace saltus::pipeline {
 /// Holds one option a person may write under [optimize]. Spelled the same in TOML ([optimize.mpcc] sigma_final = VALUE)
 /// and on the command line (--set optimize.mpcc.sigma_final=VALUE).
 struct OptimizeField {
-  std::string key;      ///< dotted, below [optimize]
-  std::string expects;  ///< "a number > 0"
-  std::string doc;      ///< one sentence
-  /// Writes a value into the options. Errors carry no location.
-  std::function<Expected<void>(OptimizeOptions&, const result::OptionValue&)> set;
+  std::string key;  ///< dotted, below [optimize]
+  OptionKind kind;
+  std::string doc;  ///< one sentence
+  /// Writes a value of this kind into the options; no option has a name behind its key.
+  std::function<void(OptimizeOptions&, std::string_view, const result::OptionValue&)> set;
   /// Appends the value in force under its full name; nothing if the option is not.
   std::function<void(const OptimizeOptions&, std::string_view key, result::OptionRecord&)> record;
+  /// Says more about a value of another kind; may be null.
+  void (*explain)(Error&, const result::OptionValue&) = nullptr;
 };
 
 /// Returns all options of an optimisation, in the order of the documentation.

@@ -53,9 +53,9 @@ std::string optimize_options_help() {
   }
   for (const auto& field : optimize_fields()) {
     const auto standard = default_of_optimize(field);
-    const auto expects =
-        fmt::format("{}{}", field.expects, standard.empty() ? "" : fmt::format("; default {}", standard));
-    auto block = wrapped(expects, "                         ");
+    const auto taken =
+        fmt::format("{}{}", expects(field.kind), standard.empty() ? "" : fmt::format("; default {}", standard));
+    auto block = wrapped(taken, "                         ");
     block.replace(2, field.key.size(), field.key);
     text += block + wrapped(field.doc, "        ");
   }
@@ -69,7 +69,7 @@ std::string optimize_options_page() {
   }
   for (const auto& field : optimize_fields()) {
     const auto standard = default_of_optimize(field);
-    text += fmt::format("| `{}` | {} | {} | {} |\n", field.key, field.expects,
+    text += fmt::format("| `{}` | {} | {} | {} |\n", field.key, expects(field.kind),
                         standard.empty() ? "" : fmt::format("`{}`", standard), field.doc);
   }
   return text;

@@ -13,6 +13,7 @@
 namespace saltus::pipeline {
 
 enum class StartValues { neutral, simulated };
+enum class Feedback { optimal, tracking };
 
 /// Holds the numerical keys of [optimize] and [optimize.mpcc]; defaults as in docs/options.md.
 struct OptimizeOptions {
@@ -27,11 +28,12 @@ struct OptimizeOptions {
   Native native = Native::automatic;
   StartValues start = StartValues::neutral;
   double verification_tolerance = 1e-3;
-  bool closed_loop = false;                          ///< simulate the controls with feedback, too
-  std::optional<std::string> start_result;           ///< file: initial_guess = { result = FILE } or --start
-  std::shared_ptr<const result::Result> start_from;  ///< that file as read, by whoever calls pipeline::optimize
+  bool closed_loop = false;                            ///< simulate the controls with feedback, too
+  Feedback feedback = Feedback::optimal;               ///< of the closed loop
+  std::optional<std::string> start_result{};           ///< file: initial_guess = { result = FILE } or --start
+  std::shared_ptr<const result::Result> start_from{};  ///< that file as read, by whoever calls pipeline::optimize
   std::string solver = "ipopt";
-  solver::SolveOptions mpcc;  ///< its time limit is that of [optimize] time_limit
+  solver::SolveOptions mpcc{};  ///< its time limit is that of [optimize] time_limit
 };
 
 }  // namespace saltus::pipeline

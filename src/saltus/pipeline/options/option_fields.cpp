@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,6 +28,7 @@ constexpr auto max_events_of = [](auto& o) -> auto& { return o.max_events; };
 constexpr auto integrator_of = [](auto& o) -> auto& { return o.event.integrator; };
 constexpr auto local_steps_of = [](auto& o) -> auto& { return o.event.local_steps; };
 constexpr auto epsilon_of = [](auto& o) -> auto& { return o.smoothed.epsilon; };
+constexpr auto max_step_of = [](auto& o) -> auto& { return o.event.max_step; };
 constexpr auto selection_of = [](auto& o) -> auto& { return o.event.selection; };
 
 void record_until(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
@@ -62,15 +62,11 @@ std::string_view integrator_meant(std::string word) {
 }
 
 /// Of methods and integrators.
-template <auto access, const auto& choices>
-Expected<void> set_engine(SimulateOptions& options, std::string_view key, const OptionValue& value) {
-  auto done = set_choice<access, choices>(options, key, value);
+void name_integrator(Error& error, const OptionValue& value) {
   const auto* word = std::get_if<std::string>(&value);
-  if (done || word == nullptr || !done.error().remedy.empty()) return done;
-  if (const auto meant = integrator_meant(*word); !meant.empty()) {
-    done.error().remedy = fmt::format("did you mean the integrator {}?", meant);
-  }
-  return done;
+  if (word == nullptr || !error.remedy.empty()) return;
+  if (const auto meant = integrator_meant(*word); !meant.empty())
+    error.remedy = fmt::format("did you mean the integrator {}?", meant);
 }
 
 constexpr Choices<Native, 3> natives{{"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
@@ -78,67 +74,37 @@ constexpr Choices<Selection, 4> selections{
     {"active_dominant", "passive_dominant", "scaled", "report"},
     {Selection::active_dominant, Selection::passive_dominant, Selection::scaled, Selection::report}};
 
-Expected<void> set_output_word(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  const auto* word = std::get_if<std::string>(&value);
-  if (word == nullptr || (*word != "auto" && *word != "steps")) {
-    return tl::unexpected(
-        out_of_range("\"steps\", \"auto\", { every = a number > 0 }, { points = a whole number >= 2 } or { times = "
-                     "[increasing numbers] }, the tables also with events = false, states = [names], surfaces = "
-                     "[names]",
-                     value));
-  }
-  options.output = *word == "auto" ? OutputGrid(Automatic{}) : OutputGrid(EveryStep{});
+constexpr std::array<std::string_view, 2> output_words{"auto", "steps"}, branch_words{"report", "all"};
+constexpr std::array signs{-1, 0, 1};
+
+void set_output_word(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  options.output = std::get<std::string>(value) == "auto" ? OutputGrid(Automatic{}) : OutputGrid(EveryStep{});
   // A word stands for the whole table: what a table before it left out is there again.
   options.event_rows = true;
   options.kept = {};
-  return {};
 }
 
-Expected<void> set_output_every(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  return number_within(Range::positive, value).map([&](double interval) { options.output = EveryInterval{interval}; });
+void name_output_tables(Error& error, const OptionValue&) {
+  error.remedy =
+      "or write a table: { every = a number }, { points = a whole number } or { times = [increasing numbers] }, also "
+      "with events = false, states = [names], surfaces = [names]";
 }
 
-Expected<void> set_output_points(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  const double number = number_in(value);
-  if (!(number >= 2.0 && number <= 1e9 && number == std::floor(number))) {
-    return tl::unexpected(out_of_range("a whole number from 2 to 1000000000", value));
+template <class Grid>
+void set_output(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  if constexpr (std::is_same_v<Grid, EveryInterval>) options.output = EveryInterval{number_in(value)};
+  if constexpr (std::is_same_v<Grid, NumberOfPoints>) {
+    options.output = NumberOfPoints{static_cast<int>(number_in(value))};
   }
-  options.output = NumberOfPoints{static_cast<int>(number)};
-  return {};
-}
-
-Expected<void> set_output_times(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  constexpr std::string_view expected = "a list of finite, increasing numbers";
-  const auto* times = std::get_if<std::vector<double>>(&value);
-  if (times == nullptr || times->empty()) return tl::unexpected(out_of_range(expected, value));
-  for (std::size_t i = 0; i < times->size(); ++i) {
-    const double time = (*times)[i];
-    if (std::isfinite(time) && (i == 0 || (*times)[i - 1] < time)) continue;
-    return tl::unexpected(Error{ErrorCode::invalid_option,
-                                fmt::format("expected {}, found {} at place {}{}", expected, time, i + 1,
-                                            i == 0 ? "" : fmt::format(", after {}", (*times)[i - 1])),
-                                "sort the times and write each once",
-                                {},
-                                {}});
-  }
-  options.output = AtTimes{*times};
-  return {};
+  if constexpr (std::is_same_v<Grid, AtTimes>) options.output = AtTimes{std::get<std::vector<double>>(value)};
 }
 
 /// A list of names; a word by itself is one name, and a list without anything in it can be one of numbers.
 template <auto member>
-Expected<void> set_kept(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  const auto* numbers = std::get_if<std::vector<double>>(&value);
-  if (const auto* names = std::get_if<std::vector<std::string>>(&value)) {
-    options.kept.*member = *names;
-  } else if (const auto* name = std::get_if<std::string>(&value)) {
-    options.kept.*member = std::vector{*name};
-  } else if (numbers != nullptr && numbers->empty()) {
-    options.kept.*member = std::vector<std::string>{};
-  } else {
-    return tl::unexpected(out_of_range("a list of names like [\"x\", \"v*\"]", value));
-  }
-  return {};
+void set_kept(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  auto& kept = (options.kept.*member).emplace();
+  if (const auto* names = std::get_if<std::vector<std::string>>(&value)) kept = *names;
+  if (const auto* name = std::get_if<std::string>(&value)) kept = {*name};
 }
 
 template <auto member>
@@ -171,15 +137,12 @@ void put(std::vector<std::pair<std::string, Value>>& entries, std::string_view n
   }
 }
 
-Expected<void> set_initial_mode(SimulateOptions& options, std::string_view name, const OptionValue& value) {
-  const double number = number_in(value);
-  if (number != -1.0 && number != 0.0 && number != 1.0) return tl::unexpected(out_of_range("-1, 0 or 1", value));
-  put(options.initial_mode, name, static_cast<int>(number));
-  return {};
+void set_initial_mode(SimulateOptions& options, std::string_view name, const OptionValue& value) {
+  put(options.initial_mode, name, static_cast<int>(number_in(value)));
 }
 
-Expected<void> set_scaling(SimulateOptions& options, std::string_view name, const OptionValue& value) {
-  return number_within(Range::positive, value).map([&](double kappa) { put(options.event.scaling, name, kappa); });
+void set_scaling(SimulateOptions& options, std::string_view name, const OptionValue& value) {
+  put(options.event.scaling, name, number_in(value));
 }
 
 void record_initial_mode(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
@@ -194,39 +157,10 @@ void record_scaling(const SimulateOptions& options, std::string_view key, Option
   for (const auto& [name, kappa] : options.event.scaling) record.emplace_back(fmt::format("{}{}", prefix, name), kappa);
 }
 
-Expected<void> set_max_step(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  if (const auto* word = std::get_if<std::string>(&value); word != nullptr && *word == "none") {
-    options.event.max_step.reset();
-    return {};
-  }
-  const auto step = number_within(Range::positive, value);
-  if (!step) return tl::unexpected(out_of_range("a finite number > 0 or \"none\"", value));
-  options.event.max_step = *step;
-  return {};
-}
-
-void record_max_step(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
-  if (options.event.max_step) {
-    record.emplace_back(key, *options.event.max_step);
-  } else {
-    record.emplace_back(key, std::string("none"));
-  }
-}
-
-Expected<void> set_branches(SimulateOptions& options, std::string_view, const OptionValue& value) {
+void set_branches(SimulateOptions& options, std::string_view, const OptionValue& value) {
   constexpr long all = 64;
   const auto* word = std::get_if<std::string>(&value);
-  const auto* count = std::get_if<std::int64_t>(&value);
-  if (word != nullptr && *word == "report") {
-    options.event.trajectories = 1;
-  } else if (word != nullptr && *word == "all") {
-    options.event.trajectories = all;
-  } else if (count != nullptr && *count >= 1) {
-    options.event.trajectories = *count;
-  } else {
-    return tl::unexpected(out_of_range("\"report\", \"all\" or a whole number >= 1", value));
-  }
-  return {};
+  options.event.trajectories = word == nullptr ? static_cast<long>(number_in(value)) : *word == "all" ? all : 1;
 }
 
 void record_branches(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
@@ -237,73 +171,88 @@ void record_branches(const SimulateOptions& options, std::string_view key, Optio
   }
 }
 
-Expected<void> set_members(SimulateOptions& options, std::string_view, const OptionValue& value) {
-  const auto* count = std::get_if<std::int64_t>(&value);
-  if (count == nullptr || *count < 0) return tl::unexpected(out_of_range("a whole number >= 0", value));
-  options.event.members = *count;
-  return {};
-}
-
 constexpr std::array fields{
-    OptionField{"until", "a finite number > `from`", "End of the simulation; there is no default.",
-                set_number<until_of, Range::finite>, record_until},
-    number_field<from_of, Range::finite>("from", "a finite number", "Start of the simulation."),
-    OptionField{"method", "event, smoothed, fesd, timestepping",
-                "Event-driven; regularised; finite elements with switch detection; the same without it.",
-                set_engine<method_of, methods>, record_choice<method_of, methods>},
-    number_field<rtol_of, Range::positive>("rtol", "a finite number > 0",
-                                           "Relative error tolerance of a step, per component of the state."),
-    number_field<atol_of, Range::not_negative>("atol", "a finite number >= 0",
-                                               "Absolute error tolerance of a step, in the units of the states."),
-    OptionField{"output", "auto, steps",
+    OptionField{"until",
+                {.number = Numbers{.above_option = "from"}},
+                "End of the simulation; there is no default.",
+                set_number<until_of, SimulateOptions>,
+                record_until},
+    number_field<from_of>("from", any_number, "Start of the simulation."),
+    choice_field<method_of, methods>(
+        "method", "Event-driven; regularised; finite elements with switch detection; the same without it.",
+        name_integrator),
+    number_field<rtol_of>("rtol", positive_number, "Relative error tolerance of a step, per component of the state."),
+    number_field<atol_of>("atol", not_negative_number,
+                          "Absolute error tolerance of a step, in the units of the states."),
+    OptionField{"output",
+                {.words = output_words},
                 "Rows at steps, and between them so that straight lines are within 1e-3 of every column's range.",
-                set_output_word, record_output_word},
-    OptionField{"output.every", "a finite number > 0", "Instead: a row every so often, counted from `from`.",
-                set_output_every, record_output<EveryInterval>},
-    OptionField{"output.points", "a whole number >= 2", "Instead: so many rows, both ends among them.",
-                set_output_points, record_output<NumberOfPoints>},
-    OptionField{"output.times", "increasing numbers", "Instead: rows at these times, all within the span.",
-                set_output_times, record_output<AtTimes>},
+                set_output_word,
+                record_output_word,
+                name_output_tables},
+    OptionField{"output.every",
+                {.number = positive_number},
+                "Instead: a row every so often, counted from `from`.",
+                set_output<EveryInterval>,
+                record_output<EveryInterval>},
+    OptionField{"output.points",
+                {.number = Numbers{.whole = true, .from = 2.0, .up_to = 1e9}},
+                "Instead: so many rows, both ends among them.",
+                set_output<NumberOfPoints>,
+                record_output<NumberOfPoints>},
+    OptionField{"output.times",
+                {.list = ListOf::increasing_numbers},
+                "Instead: rows at these times, all within the span.",
+                set_output<AtTimes>,
+                record_output<AtTimes>},
     truth_field<event_rows_of>(
-        "output.events", "true, false",
-        "Rows before and behind every event; false leaves them out, so that no time has two rows."),
-    OptionField{"output.states", "names, or patterns like v*",
+        "output.events", "Rows before and behind every event; false leaves them out, so that no time has two rows."),
+    OptionField{"output.states",
+                {.list = ListOf::names, .pattern = "v*"},
                 "Rows have these states only; end state and events stay complete. Default: all.",
-                set_kept<&KeptNames::states>, record_kept<&KeptNames::states>},
-    OptionField{"output.surfaces", "names, or patterns like s*",
+                set_kept<&KeptNames::states>,
+                record_kept<&KeptNames::states>},
+    OptionField{"output.surfaces",
+                {.list = ListOf::names, .pattern = "s*"},
                 "Rows have the modes and selections of these switching functions only. Default: all.",
-                set_kept<&KeptNames::surfaces>, record_kept<&KeptNames::surfaces>},
+                set_kept<&KeptNames::surfaces>,
+                record_kept<&KeptNames::surfaces>},
     choice_field<native_of, natives>(
-        "native", "auto, on, off",
-        "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler."),
-    count_field<max_steps_of>(
-        "max_steps", "a whole number >= 1",
+        "native", "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler."),
+    number_field<max_steps_of>(
+        "max_steps", counting_number,
         "Stop with iteration_limit after so many steps (fesd: elements, and divided simulation steps)."),
-    count_field<max_events_of>("max_events", "a whole number >= 1", "Stop with iteration_limit after so many events."),
-    OptionField{"initial_mode.*", "-1, 0, 1",
+    number_field<max_events_of>("max_events", counting_number, "Stop with iteration_limit after so many events."),
+    OptionField{"initial_mode.*",
+                {.values = signs},
                 "Force the side of a switching function at the start (0: slide on it), or a mode by `indicator`.",
-                set_initial_mode, record_initial_mode},
-    OptionField{
-        "event.integrator", "dopri5, dop853, radau5, radau9, radau13, taylor",
+                set_initial_mode,
+                record_initial_mode},
+    choice_field<integrator_of, integrators>(
+        "event.integrator",
         "Runge-Kutta of order 5, of order 8, of order 5, 9, 13 for stiff models; Taylor series where modes are affine.",
-        set_engine<integrator_of, integrators>, record_choice<integrator_of, integrators>},
-    OptionField{"event.max_step", "none, or a number > 0", "Longest step.", set_max_step, record_max_step},
-    truth_field<local_steps_of>("event.local_steps", "true, false",
+        name_integrator),
+    number_or_none_field<max_step_of, none_word>("event.max_step", positive_number, "Longest step."),
+    truth_field<local_steps_of>("event.local_steps",
                                 "Of many states only those that a switch moves are integrated anew behind it."),
-    choice_field<selection_of, selections>("event.selection", "active_dominant, passive_dominant, scaled, report",
+    choice_field<selection_of, selections>("event.selection",
                                            "Which motion, where that depends on how surfaces are scaled."),
-    OptionField{"event.scaling.*", "a finite number > 0", "Scale of a surface for selection = \"scaled\".", set_scaling,
+    OptionField{"event.scaling.*",
+                {.number = positive_number},
+                "Scale of a surface for selection = \"scaled\".",
+                set_scaling,
                 record_scaling},
     OptionField{
-        "event.branches", "report, all, or a whole number >= 1",
+        "event.branches",
+        {.words = branch_words, .number = counting_number},
         "Other admissible motions: only listed in the events, or followed, so many trajectories at most (all: 64).",
-        set_branches, record_branches},
-    OptionField{"event.members", "a whole number >= 0",
-                "Of every family of motions (departures at later times, spirals), with branches: followed so many.",
-                set_members, record_count<members_of>},
-    number_field<epsilon_of, Range::positive>(
-        "smoothed.epsilon", "a finite number > 0",
-        "Half width of the layer around every surface, in the units of its switching function."),
+        set_branches,
+        record_branches},
+    number_field<members_of>(
+        "event.members", Numbers{.whole = true, .from = 0.0},
+        "Of every family of motions (departures at later times, spirals), with branches: followed so many."),
+    number_field<epsilon_of>("smoothed.epsilon", positive_number,
+                             "Half width of the layer around every surface, in the units of its switching function."),
 };
 
 /// More rows than this do not fit into a result that anybody reads.
@@ -349,7 +298,7 @@ Expected<SimulateOptions> with_value(SimulateOptions options, std::string_view k
     const auto prefix = field.key.substr(0, field.key.size() - (open ? 1 : 0));
     const bool fits = open ? key.size() > prefix.size() && key.starts_with(prefix) : key == prefix;
     if (!fits) continue;
-    return field.set(options, key.substr(prefix.size()), value).map([&] { return std::move(options); });
+    return set_option(field, options, key.substr(prefix.size()), value).map([&] { return std::move(options); });
   }
   return tl::unexpected(unknown_key(key));
 }

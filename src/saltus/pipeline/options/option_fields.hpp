@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/pipeline/options/option_kind.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/result/result.hpp"
 
@@ -16,15 +17,19 @@ namespace saltus::pipeline {
 
 /// Holds one option a person may write. Spelled the same in TOML ([simulate.event] integrator = VALUE) and on the
 /// command line (--set simulate.event.integrator=VALUE).
-struct OptionField {
-  std::string_view key;      ///< dotted, below [simulate]; a final `*` stands for a name of the model
-  std::string_view expects;  ///< "a number > 0"
-  std::string_view doc;      ///< one sentence
-  /// Writes a value into the options. `name` is what `*` stands for. Errors carry no location.
-  Expected<void> (*set)(SimulateOptions&, std::string_view name, const result::OptionValue&);
+template <class Options>
+struct FieldOf {
+  std::string_view key;  ///< dotted, below its section; a final `*` stands for a name of the model
+  OptionKind kind;
+  std::string_view doc;  ///< one sentence
+  /// Writes a value of this kind into the options. `name` is what `*` stands for.
+  void (*set)(Options&, std::string_view name, const result::OptionValue&);
   /// Appends the values in force under their full names ("simulate.event.integrator"); nothing if the option is not.
-  void (*record)(const SimulateOptions&, std::string_view key, result::OptionRecord&);
+  void (*record)(const Options&, std::string_view key, result::OptionRecord&);
+  /// Says more about a value of another kind; may be null.
+  void (*explain)(Error&, const result::OptionValue&) = nullptr;
 };
+using OptionField = FieldOf<SimulateOptions>;
 
 /// Returns all options of a simulation, in the order of the documentation.
 [[nodiscard]] std::span<const OptionField> simulate_fields();

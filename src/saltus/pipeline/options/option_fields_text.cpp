@@ -55,8 +55,10 @@ std::string options_help() {
   std::string text;
   for (const auto& field : simulate_fields()) {
     const auto standard = default_text(field);
-    text += fmt::format("  {:<17} {}{}\n        {}\n", field.key, field.expects,
-                        standard.empty() ? "" : fmt::format("; default {}", standard), field.doc);
+    const auto value =
+        fmt::format("{}{}", expects(field.kind), standard.empty() ? "" : fmt::format("; default {}", standard));
+    const bool fits = field.key.size() + value.size() < 110;
+    text += fmt::format("  {:<17}{}{}\n        {}\n", field.key, fits ? " " : "\n        ", value, field.doc);
   }
   return text;
 }
@@ -65,7 +67,7 @@ std::string options_page() {
   std::string text(page_head);
   for (const auto& field : simulate_fields()) {
     const auto standard = default_text(field);
-    text += fmt::format("| `{}` | {} | {} | {} |\n", field.key, field.expects,
+    text += fmt::format("| `{}` | {} | {} | {} |\n", field.key, expects(field.kind),
                         standard.empty() ? "" : fmt::format("`{}`", standard), field.doc);
   }
   return text.append(page_tail);

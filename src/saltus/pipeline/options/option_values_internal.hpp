@@ -3,15 +3,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
-#include <vector>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -23,15 +22,19 @@ namespace saltus::pipeline {
 using result::OptionRecord;
 using result::OptionValue;
 
-inline Error out_of_range(std::string_view expected, const OptionValue& found) {
-  return {ErrorCode::invalid_option, fmt::format("expected {}, found {}", expected, to_text(found)), "", {}, {}};
-}
-
 /// Returns the number a value states, whether it was written 1 or 1.0; NaN if it is none.
-inline double number_in(const OptionValue& value) {
-  if (const auto* real = std::get_if<double>(&value)) return *real;
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
-  return std::numeric_limits<double>::quiet_NaN();
+[[nodiscard]] double number_in(const OptionValue& value);
+
+/// Checks a value and writes it into the options.
+template <class Field, class Options>
+Expected<void> set_option(const Field& field, Options& options, std::string_view name, const OptionValue& value) {
+  auto fits = check(field.kind, value);
+  if (fits) {
+    field.set(options, name, value);
+  } else if (field.explain != nullptr) {
+    field.explain(fits.error(), value);
+  }
+  return fits;
 }
 
 /// Returns the values in force of a table of options, under the name of their section.
@@ -47,69 +50,49 @@ OptionRecord record_of(const Options& options, std::string_view section, const F
   return record;
 }
 
-enum class Range { finite, positive, not_negative };
+/// What `access` returns of the options, by value.
+template <auto access, class Options>
+using MemberOf = std::remove_cvref_t<decltype(access(std::declval<Options&>()))>;
 
-constexpr std::string_view text(Range range) {
-  switch (range) {
-    case Range::finite:
-      return "a finite number";
-    case Range::positive:
-      return "a finite number > 0";
-    case Range::not_negative:
-      return "a finite number >= 0";
+template <class Member>
+OptionValue recorded(const Member& value) {
+  if constexpr (std::is_same_v<Member, bool> || std::is_same_v<Member, double> || std::is_same_v<Member, std::string>) {
+    return value;
+  } else {
+    return std::int64_t{value};
   }
-  __builtin_unreachable();
 }
 
-inline Expected<double> number_within(Range range, const OptionValue& value) {
-  const double number = number_in(value);
-  const bool fits = std::isfinite(number) && (range != Range::positive || number > 0.0) &&
-                    (range != Range::not_negative || number >= 0.0);
-  if (!fits) return tl::unexpected(out_of_range(text(range), value));
-  return number;
+template <auto access, class Options>
+void record_member(const Options& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, recorded(access(options)));
 }
 
-template <auto access, Range range, class Options = SimulateOptions>
-Expected<void> set_number(Options& options, std::string_view, const OptionValue& value) {
-  return number_within(range, value).map([&](double number) { access(options) = number; });
+template <auto access, class Options>
+void set_number(Options& options, std::string_view, const OptionValue& value) {
+  access(options) = static_cast<MemberOf<access, Options>>(number_in(value));
 }
 
-template <auto access, class Options = SimulateOptions>
-void record_number(const Options& options, std::string_view key, OptionRecord& record) {
-  record.emplace_back(key, access(options));
+template <auto access, class Options>
+void set_truth(Options& options, std::string_view, const OptionValue& value) {
+  access(options) = std::get<bool>(value);
 }
 
-template <auto access, class Options = SimulateOptions>
-Expected<void> set_count(Options& options, std::string_view, const OptionValue& value) {
-  // Written 1e6 it is a real number, and still a count.
-  const double number = number_in(value);
-  if (!(number >= 1.0 && number <= 9e15 && number == std::floor(number))) {
-    return tl::unexpected(out_of_range("a whole number >= 1", value));
+/// Sets a number, or none where the value is a word.
+template <auto access, class Options>
+void set_number_or_none(Options& options, std::string_view, const OptionValue& value) {
+  auto& member = access(options);
+  if (std::holds_alternative<std::string>(value)) {
+    member.reset();
+  } else {
+    member = static_cast<typename MemberOf<access, Options>::value_type>(number_in(value));
   }
-  access(options) = static_cast<long>(number);
-  return {};
 }
 
-template <auto access, class Options = SimulateOptions>
-void record_count(const Options& options, std::string_view key, OptionRecord& record) {
-  record.emplace_back(key, std::int64_t{access(options)});
-}
-
-template <auto access, class Options = SimulateOptions>
-Expected<void> set_truth(Options& options, std::string_view, const OptionValue& value) {
-  const auto* word = std::get_if<std::string>(&value);  // on the command line
-  const auto* truth = std::get_if<bool>(&value);
-  const bool yes = truth != nullptr ? *truth : word != nullptr && *word == "true";
-  if (!yes && truth == nullptr && (word == nullptr || *word != "false")) {
-    return tl::unexpected(out_of_range("true or false", value));
-  }
-  access(options) = yes;
-  return {};
-}
-
-template <auto access, class Options = SimulateOptions>
-void record_truth(const Options& options, std::string_view key, OptionRecord& record) {
-  record.emplace_back(key, bool{access(options)});
+template <auto access, const auto& none, class Options>
+void record_number_or_none(const Options& options, std::string_view key, OptionRecord& record) {
+  const auto& member = access(options);
+  record.emplace_back(key, member ? recorded(*member) : OptionValue(std::string(none.front())));
 }
 
 /// Holds the spellings of an enum, and what they stand for.
@@ -119,44 +102,50 @@ struct Choices {
   std::array<Enum, n> values;
 };
 
-template <auto access, const auto& choices, class Options = SimulateOptions>
-Expected<void> set_choice(Options& options, std::string_view, const OptionValue& value) {
-  const std::vector<std::string> known(choices.names.begin(), choices.names.end());
-  const auto* word = std::get_if<std::string>(&value);
-  if (word == nullptr) return tl::unexpected(out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value));
-  const auto found = std::find(known.begin(), known.end(), *word);
-  if (found == known.end()) {
-    auto error = out_of_range(fmt::format("\"{}\"", fmt::join(known, "\" or \"")), value);
-    if (!nearest_names(*word, known).empty()) error.remedy = suggest(*word, known);
-    return tl::unexpected(std::move(error));
-  }
-  access(options) = choices.values[at(found - known.begin())];
-  return {};
+template <auto access, const auto& choices, class Options>
+void set_choice(Options& options, std::string_view, const OptionValue& value) {
+  const auto* found = std::find(choices.names.begin(), choices.names.end(), std::get<std::string>(value));
+  access(options) = choices.values[at(found - choices.names.begin())];
 }
 
-template <auto access, const auto& choices, class Options = SimulateOptions>
+template <auto access, const auto& choices, class Options>
 void record_choice(const Options& options, std::string_view key, OptionRecord& record) {
   const auto* position = std::find(choices.values.begin(), choices.values.end(), access(options));
   record.emplace_back(key, std::string(choices.names[at(position - choices.values.begin())]));
 }
 
-/// Makes the rows of options of a simulation that are numbers, counts, truths or words.
-template <auto access, Range range>
-constexpr OptionField number_field(std::string_view key, std::string_view expects, std::string_view doc) {
-  return {key, expects, doc, set_number<access, range>, record_number<access>};
+/// Makes the rows of options that are numbers, numbers or a word for none, truths or words.
+template <auto access, class Options = SimulateOptions>
+constexpr FieldOf<Options> number_field(std::string_view key, const Numbers& numbers, std::string_view doc) {
+  return {key, {.number = numbers}, doc, set_number<access, Options>, record_member<access, Options>};
 }
-template <auto access>
-constexpr OptionField count_field(std::string_view key, std::string_view expects, std::string_view doc) {
-  return {key, expects, doc, set_count<access>, record_count<access>};
+template <auto access, const auto& none, class Options = SimulateOptions>
+constexpr FieldOf<Options> number_or_none_field(std::string_view key, const Numbers& numbers, std::string_view doc) {
+  return {key,
+          {.words = none, .number = numbers},
+          doc,
+          set_number_or_none<access, Options>,
+          record_number_or_none<access, none, Options>};
 }
-template <auto access>
-constexpr OptionField truth_field(std::string_view key, std::string_view expects, std::string_view doc) {
-  return {key, expects, doc, set_truth<access>, record_truth<access>};
+template <auto access, class Options = SimulateOptions>
+constexpr FieldOf<Options> truth_field(std::string_view key, std::string_view doc) {
+  return {key, {.truth = true}, doc, set_truth<access, Options>, record_member<access, Options>};
 }
-template <auto access, const auto& choices>
-constexpr OptionField choice_field(std::string_view key, std::string_view expects, std::string_view doc) {
-  return {key, expects, doc, set_choice<access, choices>, record_choice<access, choices>};
+template <auto access, const auto& choices, class Options = SimulateOptions>
+constexpr FieldOf<Options> choice_field(std::string_view key, std::string_view doc,
+                                        void (*explain)(Error&, const OptionValue&) = nullptr) {
+  return {key,
+          {.words = choices.names},
+          doc,
+          set_choice<access, choices, Options>,
+          record_choice<access, choices, Options>,
+          explain};
 }
+
+inline constexpr Numbers any_number{}, positive_number{.above = 0.0}, not_negative_number{.from = 0.0},
+    counting_number{.whole = true, .from = 1.0};
+/// The words of numbers that there may be none of.
+inline constexpr std::array<std::string_view, 1> none_word{"none"}, off_word{"off"};
 
 /// Returns the fields of [simulate.fesd] and [simulate.timestepping].
 [[nodiscard]] std::span<const OptionField> element_fields();

@@ -33,16 +33,16 @@ using OutputGrid = std::variant<Automatic, EveryStep, EveryInterval, NumberOfPoi
 
 /// Holds columns of the rows: names, or patterns in which * stands for any letters; nullopt: all.
 struct KeptNames {
-  std::optional<std::vector<std::string>> states;    ///< of x
-  std::optional<std::vector<std::string>> surfaces;  ///< switching functions, of alpha and mode
+  std::optional<std::vector<std::string>> states{};    ///< of x
+  std::optional<std::vector<std::string>> surfaces{};  ///< switching functions, of alpha and mode
 };
 
 /// Holds [simulate.event].
 struct EventOptions {
   Integrator integrator = Integrator::dopri5;
-  std::optional<double> max_step;  ///< none by default
+  std::optional<double> max_step{};  ///< none by default
   Selection selection = Selection::active_dominant;
-  std::vector<std::pair<std::string, double>> scaling;
+  std::vector<std::pair<std::string, double>> scaling{};
   bool local_steps = true;  ///< of many states only those that a switch moves are integrated anew behind it
   long trajectories = 1;    ///< at most so many along other admissible modes; 1: those are only listed in the events
   long members = 0;         ///< followed of every family of solutions (later departures, spirals), if others are
@@ -66,8 +66,8 @@ struct ElementOptions {
   long steps = 100;   ///< simulation steps of equal length
   long elements = 2;  ///< per simulation step
   Representation representation = Representation::integral;
-  std::optional<double> error_limit;  ///< of the sum of elements' estimated errors; beyond it steps are divided
-  double step_bounds = 1.0;           ///< lengths of elements are within (1 - this, 1 + this) times their mean
+  std::optional<double> error_limit{};  ///< of the sum of elements' estimated errors; beyond it steps are divided
+  double step_bounds = 1.0;             ///< lengths of elements are within (1 - this, 1 + this) times their mean
   double rho = 1.0;
   double equilibration_scale = 1.0;
   Reformulation reformulation = Reformulation::step;
@@ -80,21 +80,21 @@ struct ElementOptions {
 /// Holds [simulate]; defaults as in docs/options.md. `until` has none: it must be given in the file or on the command
 /// line.
 struct SimulateOptions {
-  std::optional<double> until;
+  std::optional<double> until{};
   double from = 0.0;
   Method method = Method::event;
   double rtol = 1e-8;
   double atol = 1e-10;
   OutputGrid output = Automatic{};
-  KeptNames kept;
+  KeptNames kept{};
   bool event_rows = true;  ///< rows before and behind every event; without them no two rows have the same time
   Native native = Native::automatic;
   long max_steps = 1000000;
   long max_events = 100000;
-  std::vector<std::pair<std::string, int>> initial_mode;  ///< switching function -> -1, 0, 1
-  EventOptions event;
-  SmoothedOptions smoothed;
-  ElementOptions fesd{.error_limit = 0.03}, timestepping;
+  std::vector<std::pair<std::string, int>> initial_mode{};  ///< switching function -> -1, 0, 1
+  EventOptions event{};
+  SmoothedOptions smoothed{};
+  ElementOptions fesd{.error_limit = 0.03}, timestepping{};
 };
 
 }  // namespace saltus::pipeline

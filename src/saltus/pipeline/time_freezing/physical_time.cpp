@@ -19,7 +19,8 @@ using result::Event;
 using result::EventKind;
 using result::Mode;
 
-/// Relative to the fastest one: velocities that differ less are the same at an impact without known impulses.
+/// Relative to the fastest one of the run: velocities that differ less are the same at an impact without known
+/// impulses.
 constexpr double same_velocity = 1e-7;
 
 class PhysicalTime {
@@ -44,6 +45,9 @@ class PhysicalTime {
   std::vector<std::string> run() {
     auto raw = std::exchange(run_.trajectory, {});
     auto events = std::exchange(run_.events, {});
+    for (const auto& x : raw.x) {
+      for (const int v : freezing_.velocities) fastest_ = std::max(fastest_, std::abs(x[at(v)]));
+    }
     std::size_t next = 0;
     for (std::size_t r = 0; r < raw.t.size();) {
       std::size_t last = r;
@@ -55,10 +59,13 @@ class PhysicalTime {
       for (; next < events.size() && (events.x(next)[clock_] <= t || same_time(events.x(next)[clock_], t)); ++next) {
         here.push_back(events[next]);
       }
+      // Where a run ends in a collision no event is behind it.
+      if (!here.empty()) here.back().x_after = raw.x[last];
       const std::size_t before = run_.events.size();
       if (!here.empty()) take_events(here, t);
       const bool is_event = run_.events.size() > before;
-      if (is_event && last > r) add_row(raw, r, t);
+      if (last > r && (is_event || std::vector<double>(raw.u[r]) != std::vector<double>(raw.u[last])))
+        add_row(raw, r, t);
       const auto impulse = is_event ? run_.events[before].impulse : std::nullopt;
       add_row(raw, last, t, impulse.value_or(std::vector<std::vector<double>>()));
       r = last + 1;
@@ -79,6 +86,18 @@ class PhysicalTime {
  private:
   [[nodiscard]] bool same_time(double a, double b) const {
     return std::abs(a - b) <= std::max(standing_, 8.0 * rounding_unit * std::max(1.0, std::abs(a)));
+  }
+
+  /// Of a simulation, not of an optimum.
+  [[nodiscard]] bool has_impulses() const {
+    return !freezing_.contacts.empty() && freezing_.contacts.front().impulse >= 0;
+  }
+
+  /// Whether velocities differ.
+  [[nodiscard]] bool jumps(const std::vector<double>& x, const std::vector<double>& x_after) const {
+    double change = 0.0;
+    for (const int v : freezing_.velocities) change = std::max(change, std::abs(x_after[at(v)] - x[at(v)]));
+    return change > same_velocity * fastest_;
   }
 
   template <class Values>
@@ -208,8 +227,8 @@ class PhysicalTime {
 
   [[nodiscard]] bool take_impact(Event& event) const {
     std::vector<std::vector<double>> impulse;
+    if (!has_impulses()) return take_jump_of_velocities(event);
     for (const auto& contact : freezing_.contacts) {
-      if (contact.impulse < 0) return take_jump_of_velocities(event);
       const std::size_t state = at(contact.impulse);
       impulse.emplace_back();
       for (std::size_t k = state; k <= state + std::max(1U, static_cast<unsigned>(contact.tangents)); ++k) {
@@ -224,12 +243,7 @@ class PhysicalTime {
   }
 
   [[nodiscard]] bool take_jump_of_velocities(Event& event) const {
-    double fastest = 0.0, change = 0.0;
-    for (const int v : freezing_.velocities) {
-      fastest = std::max({fastest, std::abs(event.x[at(v)]), std::abs(event.x_after[at(v)])});
-      change = std::max(change, std::abs(event.x_after[at(v)] - event.x[at(v)]));
-    }
-    if (change <= same_velocity * fastest) return false;
+    if (!jumps(event.x, event.x_after)) return false;
     for (std::size_t i = 0; i < freezing_.contacts.size(); ++i) {
       const bool closed = freezing_.contacts.size() == 1 || event.contact_modes_after.empty() ||
                           event.contact_modes_after[i] != ContactMode::open || freezing_.contacts[i].is_elastic;
@@ -284,7 +298,7 @@ class PhysicalTime {
   const model::TimeFreezing& freezing_;
   result::Result& run_;
   std::size_t clock_ = 0;
-  double standing_ = 0.0;
+  double standing_ = 0.0, fastest_ = 0.0;
   bool shows_regions_ = true;      ///< they are the user's
   std::vector<std::size_t> kept_;  ///< columns
 };

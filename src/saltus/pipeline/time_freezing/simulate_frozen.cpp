@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/decisions.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"
@@ -27,8 +28,7 @@ Error not_frozen(std::string message, std::string remedy) {
 }
 
 /// The system that stops where its clock shows `until`.
-model::System clocked(const model::System& frozen, double from, double until) {
-  model::System system = frozen;
+model::System clocked(model::System system, double from, double until) {
   const int clock = system.freezing->clock;
   system.initial_state[at(clock)] = from;
   model::UserEvent end;
@@ -66,7 +66,8 @@ Expected<result::Result> simulate_frozen(const model::System& system, const Simu
         not_frozen("there are no sensitivities with contacts or hysteresis", "leave simulate.fesd.sensitivities out"));
   }
   const double from = options.from, until = *options.until;
-  const model::System made = clocked(*frozen, from, until);
+  const model::System made = clocked(model::with_values_of(*frozen, system), from, until);
+  if (auto error = model::find_stale(made)) return tl::unexpected(*error);
   SimulateOptions numerical = options;
   numerical.event_rows = true;
   Expected<result::Result> run = frame;

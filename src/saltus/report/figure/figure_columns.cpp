@@ -6,31 +6,46 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/report/axis_title.hpp"
 #include "saltus/report/figure/figure_columns_internal.hpp"
 
 namespace saltus::report {
 namespace {
 
-/// Rows to draw: all if they are further apart than a pixel, else the first, extreme and last ones of each pixel.
-std::vector<std::size_t> rows_of_pixels(const std::vector<double>& t, const std::vector<double>& y, double pixel) {
-  std::vector<std::size_t> rows;
+/// Appends rows [begin, end): all if they are few, else the first, extreme and last ones.
+void append_extremes(const std::vector<double>& y, std::size_t begin, std::size_t end, std::vector<std::size_t>& rows) {
+  if (end - begin <= 4) {
+    for (std::size_t row = begin; row < end; ++row) rows.push_back(row);
+    return;
+  }
+  std::size_t least = begin, greatest = begin;
+  for (std::size_t k = begin; k < end; ++k) {
+    if (y[k] < y[least] || std::isnan(y[least])) least = k;
+    if (y[k] > y[greatest] || std::isnan(y[greatest])) greatest = k;
+  }
+  std::size_t chosen[] = {begin, least, greatest, end - 1};
+  std::sort(std::begin(chosen), std::end(chosen));
+  for (const std::size_t row : chosen) {
+    if (rows.empty() || rows.back() != row) rows.push_back(row);
+  }
+}
+
+/// Rows to draw: all if they are further apart than a pixel, else the extremes of each pixel, on either side of a gap.
+/// Where there are several gaps in a pixel nobody sees them.
+/// @param is_gap  whether the curve does not go on from a row to the next
+std::vector<std::size_t> rows_of_pixels(const std::vector<double>& t, const std::vector<double>& y, double pixel,
+                                        FunctionRef<bool(std::size_t)> is_gap) {
+  std::vector<std::size_t> rows, ends;
   for (std::size_t i = 0; i < t.size();) {
-    std::size_t k = i, least = i, greatest = i;
+    ends.clear();
+    std::size_t k = i;
     for (; k < t.size() && (k == i || t[k] < t[i] + pixel); ++k) {
-      if (y[k] < y[least] || std::isnan(y[least])) least = k;
-      if (y[k] > y[greatest] || std::isnan(y[greatest])) greatest = k;
+      if (k > i && is_gap(k - 1)) ends.push_back(k);
     }
-    if (k - i <= 4) {
-      for (std::size_t row = i; row < k; ++row) rows.push_back(row);
-    } else {
-      std::size_t chosen[] = {i, least, greatest, k - 1};
-      std::sort(std::begin(chosen), std::end(chosen));
-      for (const std::size_t row : chosen) {
-        if (rows.empty() || rows.back() != row) rows.push_back(row);
-      }
-    }
-    i = k;
+    if (ends.size() > 2) ends.clear();
+    ends.push_back(k);
+    for (const std::size_t end : ends) append_extremes(y, std::exchange(i, end), end, rows);
   }
   return rows;
 }
@@ -155,7 +170,9 @@ void draw_pieces(Svg& svg, const CurvePieces& pieces, std::string_view color, st
                  double wide) {
   for (const auto& piece : pieces.lines) {
     const bool marked = piece.sliding && wide > 0.0;
-    svg.path(piece.points, {marked ? paper::sliding : color, marked ? wide : 1.6});
+    const Pen pen{marked ? paper::sliding : color, marked ? wide : 1.6};
+    if (piece.points.size() == 1) svg.disc(piece.points.front(), pen.width / 2, pen.color, "none");
+    svg.path(piece.points, pen);
   }
   for (const auto& jump : pieces.jumps) svg.path(jump, {jump_color, 1.0, "2 3"});
 }
@@ -167,21 +184,24 @@ CurvePieces curve_pieces(const result::Trajectory& trajectory, const std::vector
   const auto& t = trajectory.t;
   // A hundredth of a pixel; below it are the roundings of states that were put onto a surface.
   const double least_x = 1e-5 * (plot.x.to - plot.x.from), least_y = 1e-5 * (plot.y.to - plot.y.from);
+  const auto is_there = [&](std::size_t row) { return std::isfinite(x[row]) && std::isfinite(y[row]); };
+  const auto jumps = [&](std::size_t from, std::size_t to) {
+    return t[from] == t[to] && (std::abs(x[from] - x[to]) > least_x || std::abs(y[from] - y[to]) > least_y);
+  };
+  const auto is_gap = [&](std::size_t row) { return jumps(row, row + 1) || is_there(row) != is_there(row + 1); };
   std::size_t previous = 0;
   bool open = false;
   auto gap = left_out.begin();
-  for (const std::size_t row : rows_of_pixels(t, y, pixel)) {
+  for (const std::size_t row : rows_of_pixels(t, y, pixel, is_gap)) {
     while (gap != left_out.end() && gap->end <= row) ++gap;
     const bool is_left_out = gap != left_out.end() && gap->begin < row;
-    if (is_left_out || !std::isfinite(x[row]) || !std::isfinite(y[row])) {
+    if (is_left_out || !is_there(row)) {
       open = false;
       continue;
     }
     const Point here = plot.place(x[row], y[row]);
     const bool together = open && t[previous] == t[row];
-    const bool jumps =
-        together && (std::abs(x[previous] - x[row]) > least_x || std::abs(y[previous] - y[row]) > least_y);
-    if (jumps && !steps) {
+    if (open && jumps(previous, row) && !steps) {
       pieces.jumps.push_back({plot.place(x[previous], y[previous]), here});
       open = false;
     }

@@ -221,9 +221,9 @@ saltus.notes = (result) => {
   const lines = tolerance === 0 ?
       "" :
       `Each column is kept by the points between which lines are within ${saltus.brief(tolerance, 1)} of its range; the result file has all values. `;
-  const kept = t.length === rows ? `This page holds all ${number(rows)} rows of the trajectory. ` : [
+  const kept = t.length === rows ? `This page holds all ${number(rows)} rows of the trajectory and its events. ` : [
     `This page holds ${number(t.length)} of the ${
-        number(rows)} rows of the trajectory: the least and greatest value of`,
+        number(rows)} rows of the trajectory and its events: the least and greatest value of`,
     "every curve in each stretch, and both rows of events. The result file has all of them. "
   ].join(" ");
   const drawn = [

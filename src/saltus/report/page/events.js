@@ -28,10 +28,13 @@ saltus.regionChange = (event) => {
   return `${part(before)} → ${part(after)}`;
 };
 
+/** The name, of a hysteresis with what it turned to. */
+saltus.eventName = ({name, turned}) => [name, turned].filter((word) => word).join(" ");
+
 /** Name and surfaces; a jump is its own surface. */
 saltus.eventPlace = (event) => {
   const others = event.surfaces.filter((surface) => surface !== event.name).join(", ");
-  return event.name === null ? others : `${event.name} ${others}`.trim();
+  return `${saltus.eventName(event)} ${others}`.trim();
 };
 
 saltus.eventColumns = (result) => {
@@ -81,7 +84,7 @@ saltus.eventColumns = (result) => {
 };
 
 /** What a search looks through: number, kind, name, surfaces, reason. */
-saltus.eventText = (event, i) => [`#${i + 1}`, saltus.kindLabel(event.kind), event.name ?? "", ...event.surfaces,
+saltus.eventText = (event, i) => [`#${i + 1}`, saltus.kindLabel(event.kind), saltus.eventName(event), ...event.surfaces,
                                   event.reason, ...(event.regions_after ?? []).flat()]
                                      .join("\n")
                                      .toLowerCase();

@@ -76,7 +76,7 @@ saltus.inspector = (result, actions) => {
             button("✕", "take the flag away", () => actions.select(null))),
         saltus.element(
             "p", {}, "t = ", saltus.element("span", {class: "digits"}, saltus.exact(event.t)),
-            event.name === null ? "" : `, name: ${event.name}`,
+            event.name === null ? "" : `, name: ${saltus.eventName(event)}`,
             event.surfaces.length === 0 ? "" : `, on ${event.surfaces.join(", ")}`),
         ...(verdict === null ? [] : [verdict]), ...saltus.alternatives(event),
         ...(event.reason === "" ? [] : [saltus.element("p", {}, event.reason)]),

@@ -17,7 +17,7 @@ saltus.phaseParts = (result, columns, rows, sliding) => {
   let current = null;
   for (let n = 0; n + 1 < rows.length; n += 1) {
     const [i, k] = [rows[n], rows[n + 1]];
-    const jump = t[i] === t[k] && columns.some((column, c) => Math.abs(column[i] - column[k]) > leastJumps[c]);
+    const jump = columns.some((column, c) => saltus.jumpsBetween(t, column, i, k, leastJumps[c]));
     if (t[i] === t[k] && !jump) continue;
     const into = slides((t[i] + t[k]) / 2) ? parts.sliding : parts.free;
     if (jump || into !== current) {

@@ -90,6 +90,10 @@ saltus.leastJump = (values) => {
   return 1e-5 * (greatest - least);
 };
 
+/** Whether a curve jumps from row i to row k. */
+saltus.jumpsBetween = (t, values, i, k, leastJump) =>
+    t[i] === t[k] && values[i] !== null && values[k] !== null && Math.abs(values[k] - values[i]) > leastJump;
+
 /**
  * Pixels of [begin, end) in which a curve jumps more than once, to and fro: lines would show something slower. Each with
  * its rows, its ends in time, the least and greatest value and the mean over time of whole periods, from a jump upwards
@@ -113,7 +117,7 @@ saltus.chatteringPixels = (t, values, [begin, end], buckets, leastJump) => {
       if (value === null) continue;
       pixel.low = Math.min(pixel.low, value);
       pixel.high = Math.max(pixel.high, value);
-      if (k > i && t[k] === t[k - 1] && Math.abs(value - values[k - 1]) > leastJump) {
+      if (k > i && saltus.jumpsBetween(t, values, k - 1, k, leastJump)) {
         jumps += 1;
         if (value > values[k - 1]) rise = {t: t[k], area};
         if (value > values[k - 1]) first ??= rise;
@@ -153,6 +157,17 @@ saltus.impulseLines = (t, values, [from, to], pixels) => {
   return {x, y, jumps: {x: [], y: []}};
 };
 
+/** The same points, of which one between two gaps is a short line: alone it would not be drawn. */
+saltus.withoutLonePoints = (x, y, length) => {
+  const isLone = (i) => (y[i] ?? null) !== null && (y[i - 1] ?? null) === null && (y[i + 1] ?? null) === null;
+  if (!y.some((_, i) => isLone(i))) return {x, y};
+  const twice = (list, ends) => list.flatMap((value, i) => (isLone(i) ? ends(value) : [value]));
+  return {
+    x: twice(x, (time) => [time - length / 2, time + length / 2]),
+    y: twice(y, (value) => [value, value]),
+  };
+};
+
 /**
  * Points of one curve; a jump (two values at one time) and a missing value are gaps. `jumps` has both sides of every
  * jump with a gap behind, `envelope` what is drawn instead where it chatters. A discrete curve has no gaps: its steps are
@@ -175,7 +190,7 @@ saltus.points = (t, values, window, buckets, discrete = false) => {
     if (from >= to) return;
     const part = Math.max(10, Math.ceil((buckets * (t[to - 1] - t[from])) / (t[end - 1] - t[begin])));
     for (const i of saltus.rowsToDraw(t, [values], [from, to], chattering.length === 0 ? buckets : part)) {
-      if (previous >= 0 && t[previous] === t[i] && Math.abs(values[previous] - values[i]) > leastJump && !discrete) {
+      if (previous >= 0 && saltus.jumpsBetween(t, values, previous, i, leastJump) && !discrete) {
         x.push(t[i]);
         y.push(null);
         jumps.x.push(t[i], t[i], null);
@@ -196,7 +211,7 @@ saltus.points = (t, values, window, buckets, discrete = false) => {
   const list = (key) => chattering.map((pixel) => pixel[key]);
   const envelope =
       {x: chattering.map((pixel) => [pixel.from, pixel.to]), low: list("low"), high: list("high"), mean: list("mean")};
-  return {x, y, jumps, envelope};
+  return {...saltus.withoutLonePoints(x, y, (t[end - 1] - t[begin]) / buckets), jumps, envelope};
 };
 
 /** How often a mode changes within a pixel around a time. */

@@ -1,0 +1,69 @@
+// Sign changes of expressions and guards of [[events]]: only those count that are more than the errors of the steps.
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/event_integrator/search/event_search_internal.hpp"
+
+namespace saltus::event_integrator {
+
+bool EventSearch::is_within_errors(int function, double value, double t, const double* x) {
+  return kernel_.is_listed_only(function) &&
+         std::abs(value) <= errors_.of(function, t, x, mode_.state.alpha.data(), {t, t, x, x});
+}
+
+/// Coefficients of a function over [from, to] as `find` has them, handed to `take`.
+template <class Take>
+void EventSearch::take_coefficients(const ode::DenseStep& step, double from, double to, std::size_t i,
+                                    Take take) const {
+  const double offset = mode_.functions[i].offset;
+  const bool whole = from == 0.0 && to == 1.0;
+  if (step.is_series() && mode_.forms.has(i)) {
+    auto along = mode_.forms.along_series(i, step);
+    along.subtract(offset);
+    return take(whole ? along.coefficients : ode::part_of(along.coefficients, from, to));
+  }
+  if (mode_.forms.has(i) && whole) {
+    auto along = mode_.forms.along(i, step);
+    for (double& b : along) b -= offset;
+    return take(along);
+  }
+  std::array<double, ode::event_nodes> values;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * mode_.functions.size() + i];
+  take(ode::to_bernstein(values));
+}
+
+/// The first sign change that is more than the errors of the step: behind it the function gets beyond them, before it
+/// is beyond them on the first side again. Where the step ends before that its sign is what it was, and a later step
+/// tells. All that is left of a state that has decayed is errors of both signs.
+EventSearch::Finding EventSearch::find_clear(const ode::DenseStep& step, double from, double to, std::size_t i) {
+  Finding finding = find(step, from, to, i);
+  if (!finding.hit || !is_listed_only(i)) return finding;
+  Hit& hit = *finding.hit;
+  const auto& function = mode_.functions[i];
+  double error = 0.0;
+  for (const double theta : {from, hit.theta, to}) {  // (x - 1)^3 has no gradient at its zero
+    step.evaluate(theta, x_.data());
+    error = std::max(
+        error, errors_.of(function.index, step.t + theta * step.h, x_.data(), mode_.state.alpha.data(), range_.bounds));
+  }
+  take_coefficients(step, from, to, i, [&](const auto& coefficients) {
+    const auto change_beyond = [&](double level) {
+      return ode::first_sign_change(coefficients, hit.sign, from == 0.0 ? function.zero_order : 0,
+                                    std::max(levels_.noise[i], level));
+    };
+    const auto change = change_beyond(error);
+    if (!change) return finding.hit.reset();
+    // Of the steps of explicit methods that are too long for what decays some are off by thousands of tolerances.
+    constexpr double doubtful = 1e4;
+    hit.is_doubtful = !change_beyond(doubtful * error);
+    // A zero before it is one of a dip into the errors.
+    constexpr double bracket = 0x1p-30;
+    if (hit.theta >= from + (to - from) * (change->lower - bracket)) return;
+    const double local = 0.5 * (change->lower + change->upper);
+    hit.theta = from + (to - from) * local;
+    hit.slope = ode::derivative(coefficients, local) / ((to - from) * step.h);
+  });
+  return finding;
+}
+
+}  // namespace saltus::event_integrator

@@ -1,0 +1,16 @@
+// What was decided with the values of parameters when a system was built.
+#pragma once
+
+#include <optional>
+
+#include "saltus/base/error.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::model {
+
+/// Says why a system may not be simulated with the values it holds: as many as it has names, and of parameters those
+/// with which everything would be decided as it was: what folds, what coincides, where nothing jumps. Others have to be
+/// stated before the system is built. Cost: nothing for the values it was built with, else less than building it.
+[[nodiscard]] std::optional<Error> find_stale(const System& system);
+
+}  // namespace saltus::model
