@@ -109,8 +109,8 @@ TEST(LocalSteps, SmallerTolerancesGiveSmallerErrors) {
   EXPECT_LT(errors[1], errors[0] / 30.0);
 }
 
-/// Blocks on springs, q_i'' = q_(i-1) - 2.5 q_i + q_(i+1) - 0.1 q_i' + 1.5 sin(0.9 t + i) - sign(q_i' - 0.2): they stick
-/// and slip. With `tilt` the surfaces are those of q_i' + tilt q_i, so that what is slid on is no state.
+/// Blocks on springs, q_i'' = q_(i-1) - 2.5 q_i + q_(i+1) - 0.1 q_i' + 1.5 sin(0.9 t + i) - sign(q_i' - 0.2): they
+/// stick and slip. With `tilt` the surfaces are those of q_i' + tilt q_i, so that what is slid on is no state.
 Integration run_blocks(int blocks, double tilt, const IntegrationOptions& options) {
   Builder b("blocks");
   std::vector<SX> q, v;

@@ -144,6 +144,7 @@ class ModeField {
   void find_groups();
   [[nodiscard]] bool is_alone(std::size_t row) const;
   [[nodiscard]] std::vector<std::size_t> group_around(std::size_t row);
+  void find_moved();
   void evaluate_alone(double t, const double* x);
   void evaluate_groups(double t, const double* x);
   void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);

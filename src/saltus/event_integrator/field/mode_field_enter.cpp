@@ -5,6 +5,7 @@
 #include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/event_integrator/mode/large_system.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -66,6 +67,27 @@ void ModeField::prepare_corners() {
   for (std::size_t corner = 0; corner < 2; ++corner) {
     kernel_.prepare_field(corner_[corner].data(), constants_[corner]);
   }
+}
+
+/// Of large systems, whose fields at all corners say what f is: with one selection in a row it lies between two of
+/// them.
+void ModeField::find_moved() {
+  groups_.moved.clear();
+  const auto* structure = solve_ == SlidingSolve::decoupled && kernel_.region_groups().empty() && sliding_.size() > 1
+                              ? structure_of_large(kernel_)
+                              : nullptr;
+  if (structure == nullptr) return;
+  groups_.is_moved.resize(at(kernel_.states()), false);
+  bool several = false;
+  for (const std::size_t row : groups_.alone) {
+    for (const std::size_t state : structure->rows_of_selection[at(sliding_[row])]) {
+      several = several || groups_.is_moved[state];
+      groups_.is_moved[state] = true;
+      groups_.moved.push_back({state, row});
+    }
+  }
+  for (const auto& [state, row] : groups_.moved) groups_.is_moved[state] = false;
+  if (several) groups_.moved.clear();
 }
 
 void ModeField::resize_rows() {

@@ -56,6 +56,7 @@ void ModeField::find_groups() {
   solve_ = !affine_in_alpha_       ? SlidingSolve::nonaffine
            : groups_.lists.empty() ? SlidingSolve::decoupled
                                    : SlidingSolve::coupled;
+  find_moved();
   if (groups_.lists.empty()) return;
   groups_.speed.assign(m, not_a_number);
   groups_.kind.assign(m, std::nullopt);
@@ -241,6 +242,11 @@ void ModeField::evaluate_groups(double t, const double* x) {
     }
   }
   if (groups_.large) evaluate_large(t, x, *groups_.large);
+  if (!groups_.moved.empty() && constants_[0].motion == kernel_.motion()) {
+    for (const auto& [state, row] : groups_.moved)
+      f_[0][state] += alpha_[at(sliding_[row])] * (f_[1][state] - f_[0][state]);
+    return;
+  }
   weigh_references();
   kernel_.field(t, x, alpha_.data(), f_[0].data());
 }

@@ -32,6 +32,12 @@ struct SlidingGroups {
   std::vector<double> condition;   ///< by row: of a coupled selection
   std::vector<int> row_of;         ///< by surface while groups are found, -1 = it is not slid on
   std::vector<bool> placed;        ///< by row while groups are found
+
+  struct Moved {
+    std::size_t state, row;
+  };
+  std::vector<Moved> moved;    ///< states whose rows of f hold a selection, if all are alone and none has several
+  std::vector<bool> is_moved;  ///< by state while these are found
 };
 
 /// Holds regions of a group by `indicator` that slide, as rows, and the reference they are measured against.

@@ -4,6 +4,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/without_repeats.hpp"
+#include "saltus/event_integrator/mode/large_system.hpp"
 #include "saltus/switching/table/surface_decision.hpp"
 
 namespace saltus::event_integrator {
@@ -16,7 +17,7 @@ constexpr std::size_t largest_share = 4;
 
 bool LocalField::is_known() {
   if (structure_ != nullptr) return true;
-  structure_ = kernel_.field_structure();
+  structure_ = structure_of_large(kernel_);
   if (structure_ == nullptr) return false;
   const auto n = at(kernel_.states()), surfaces = at(kernel_.switching_functions());
   alpha_.assign(surfaces, 0.5);

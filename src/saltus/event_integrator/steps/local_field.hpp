@@ -18,7 +18,8 @@ class LocalField {
  public:
   explicit LocalField(const evaluation::ModelKernel& kernel) : kernel_(kernel) {}
 
-  /// Returns whether rows of f can be evaluated one by one. Cost: the first call finds its structure.
+  /// Returns whether the system is large, and rows of f can be evaluated one by one. Cost: the first call finds its
+  /// structure.
   [[nodiscard]] bool is_known();
   /// Calls visit(state) for the states that a surface is made of.
   template <class Visit>

@@ -9,26 +9,19 @@
 namespace saltus::event_integrator {
 namespace {
 
-/// Of fewer states all are integrated as fast.
-constexpr std::size_t fewest_states = 64;
 /// Rings of states around those that a selection moves.
 constexpr int most_rings = 8;
 
 /// Of models and options whose switches are ordinary (Run::has_ordinary_switches).
-bool is_wanted(const IntegrationOptions& options, const evaluation::ModelKernel& kernel) {
-  const bool nested = options.method == ode::Method::dopri5 || options.method == ode::Method::dop853;
-  return options.local_steps && nested && at(kernel.states()) >= fewest_states;
+bool is_wanted(const IntegrationOptions& options) {
+  return options.local_steps && (options.method == ode::Method::dopri5 || options.method == ode::Method::dop853);
 }
 
 }  // namespace
 
 LocalSteps::LocalSteps(const IntegrationOptions& options, const evaluation::ModelKernel& kernel,
                        const StepTolerances& tolerances)
-    : method_(options.method),
-      kernel_(kernel),
-      tolerances_(tolerances),
-      wanted_(is_wanted(options, kernel)),
-      field_(kernel) {}
+    : method_(options.method), kernel_(kernel), tolerances_(tolerances), wanted_(is_wanted(options)), field_(kernel) {}
 
 bool LocalSteps::applies() { return wanted_ && field_.is_known(); }
 

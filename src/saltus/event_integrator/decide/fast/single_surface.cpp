@@ -5,8 +5,8 @@
 #include <limits>
 #include <tuple>
 
-#include "saltus/evaluation/field_structure.hpp"
 #include "saltus/event_integrator/decide/projected_fields.hpp"
+#include "saltus/event_integrator/mode/large_system.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -111,10 +111,9 @@ double SingleSurface::terms_of(const SwitchingPoint& switching_point) const {
 }
 
 bool SingleSurface::has_rows(int surface) const {
-  constexpr int fewest_states = 64;  // of fewer all of f is evaluated as fast
   const auto& kernel = switching_context_.kernel;
-  return kernel.states() >= fewest_states && between_.empty() && kernel.is_affine(surface) &&
-         kernel.inner(surface).empty() && kernel.field_structure() != nullptr;
+  return between_.empty() && kernel.is_affine(surface) && kernel.inner(surface).empty() &&
+         structure_of_large(kernel) != nullptr;
 }
 
 /// Whether rows of f are enough: all of it is known, and finite.
