@@ -45,9 +45,11 @@ int degree_of(casadi_int operation, const std::vector<int>& operands) {
 
 std::vector<SX> inputs(const ModelSymbols& symbols) { return {symbols.t, symbols.x, symbols.p, symbols.alpha}; }
 
-/// The same of one output of a function of these inputs.
-std::vector<bool> affine_entries_of(const casadi::Function& tape, casadi_int output, int fixed) {
-  std::vector<bool> affine(at(tape.numel_out(output)), true);
+}  // namespace
+
+std::vector<bool> affine_entries(const SX& expression, const ModelSymbols& symbols, int fixed) {
+  std::vector<bool> affine(at(expression.numel()), true);
+  const casadi::Function tape("tape", inputs(symbols), {SX::densify(expression)});
   std::vector<int> degree(tape.sz_w(), constant_degree);
   for (casadi_int k = 0; k < tape.n_instructions(); ++k) {
     const auto operation = tape.instruction_id(k);
@@ -59,7 +61,7 @@ std::vector<bool> affine_entries_of(const casadi::Function& tape, casadi_int out
       const bool varies = in[0] == 0 || (in[0] == 1 && in[1] != fixed);
       degree[at(out[0])] = varies ? linear_degree : constant_degree;
     } else if (operation == casadi::OP_OUTPUT) {
-      if (out[0] == output) affine[at(out[1])] = degree[at(in[0])] != other_degree;
+      affine[at(out[1])] = degree[at(in[0])] != other_degree;
     } else if (operation == casadi::OP_CALL) {
       for (const auto place : out) degree[at(place)] = other_degree;
     } else {
@@ -69,12 +71,6 @@ std::vector<bool> affine_entries_of(const casadi::Function& tape, casadi_int out
     }
   }
   return affine;
-}
-
-}  // namespace
-
-std::vector<bool> affine_entries(const SX& expression, const ModelSymbols& symbols) {
-  return affine_entries_of(casadi::Function("tape", inputs(symbols), {SX::densify(expression)}), 0, -1);
 }
 
 AffineRowFunctions::AffineRowFunctions(const SX& functions, const ModelSymbols& symbols,
@@ -129,9 +125,9 @@ AffineRowFunction::AffineRowFunction(const SX& function, const SX& t, UsedSymbol
   const auto found = std::find(states_.begin(), states_.end(), static_cast<std::size_t>(fixed));
   if (fixed >= 0 && found != states_.end()) fixed_ = static_cast<int>(found - states_.begin());
   const ModelSymbols symbols{t, used.x.symbols, used.p.symbols, used.alpha.symbols};
-  const SX rate = used.time ? SX::jacobian(function, symbols.t) : SX(0.0);
-  values_ = ModelFunction("affine_row", inputs(symbols), {SX::jacobian(function, symbols.x), rate, function});
-  if (!affine_entries_of(values_.function(), 2, fixed_).front()) values_ = {};
+  if (!affine_entries(function, symbols, fixed_).front()) return;
+  values_ = ModelFunction("affine_row", inputs(symbols),
+                          {SX::jacobian(function, symbols.x), SX::jacobian(function, symbols.t), function});
 }
 
 void AffineRowFunction::fill(FixedState fixed, const double* p, const double* alpha, AffineRow& row) {

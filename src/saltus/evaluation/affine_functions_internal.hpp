@@ -15,9 +15,10 @@ namespace saltus::evaluation {
 
 using model::ModelFunction;
 
-/// Returns for every entry of `expression` whether it is affine in t and x, by the operations it is made of.
-/// Sufficient, not necessary: x * x / x is not.
-[[nodiscard]] std::vector<bool> affine_entries(const casadi::SX& expression, const ModelSymbols& symbols);
+/// Returns for every entry of `expression` whether it is affine in t and x (`fixed` >= 0: but for this component, a
+/// constant), by the operations it is made of. Sufficient, not necessary: x * x / x is not.
+[[nodiscard]] std::vector<bool> affine_entries(const casadi::SX& expression, const ModelSymbols& symbols,
+                                               int fixed = -1);
 
 /// Holds rows of the affine entries of a vector of functions.
 class AffineRowFunctions {
