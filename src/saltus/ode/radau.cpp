@@ -3,7 +3,6 @@
 #include <cmath>
 #include <complex>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,7 +22,6 @@ RadauSteps<Tableau>::RadauSteps(int n)
     : n_(n),
       start_(n),
       previous_{false, 0.0, std::vector<double>(stages * static_cast<std::size_t>(n))},
-      own_(previous_),
       systems_(n),
       z_(n, last + 1),
       w_(n, last + 1),
@@ -42,7 +40,6 @@ Attempt RadauSteps<Tableau>::attempt(const RadauTrial& trial, double* x_new, dou
   evaluations_ = &evaluations;
   if (systems_.use(trial.pattern)) jacobian_known_ = factors_.known = false;
   begin(trial);
-  own_.known = false;
   h_ = trial.h;
   converged_ = solve(trial) == Outcome::converged;
   if (!converged_) return Attempt::undefined;
@@ -64,9 +61,8 @@ void RadauSteps<Tableau>::begin(const RadauTrial& trial) {
   const bool follows = started_ && converged_ && std::abs(trial.t - end) <= 8.0 * radau_epsilon * std::abs(end);
   previous_.known = follows;
   if (follows) {
-    static_cast<void>(polynomial());
-    std::swap(previous_, own_);
     previous_.h = h_;
+    dense(previous_.polynomial.data());
   }
   if (rate_ > keep_rate || !follows) jacobian_known_ = false;
   jacobian_here_ = false;
@@ -106,7 +102,7 @@ void RadauSteps<Tableau>::start_values(double h) {
     w_.setZero();
     return;
   }
-  const Eigen::Map<const Matrix> p(previous_.coefficients.data(), n_, last + 1);
+  const Eigen::Map<const Matrix> p(previous_.polynomial.data(), n_, last + 1);
   for (Eigen::Index j = 0; j <= last; ++j) {
     const double beyond = Tableau::c[at(j)] * (h / previous_.h);
     // The nested form from its end: x(t + h) - r (p1 - s (p2 + s (p3 + r (p4 + s (p5 + ...))))), r = -beyond.
@@ -172,16 +168,14 @@ bool RadauSteps<Tableau>::evaluate(const RadauTrial& trial, double t, const Vect
 /// By divided differences of (z(theta) / theta - z(1)) / (1 - theta), whose Newton form with the nodes c is then
 /// written with the nodes 0, 1, 0, ... of the nested form: a node at a time, the last one first.
 template <class Tableau>
-const std::vector<double>& RadauSteps<Tableau>::polynomial() {
-  if (own_.known) return own_.coefficients;
-  own_.known = true;
+void RadauSteps<Tableau>::dense(double* coefficients) const {
   constexpr auto& c = Tableau::c;
   constexpr std::size_t inner = stages - 1;
   struct Differences {
     Eigen::Map<Matrix> p;
     auto operator[](std::size_t k) { return p.col(static_cast<Eigen::Index>(k + 1)); }
   };
-  Differences d{{own_.coefficients.data(), n_, last + 1}};
+  Differences d{{coefficients, n_, last + 1}};
   d.p.col(0) = z_.col(last);
   for (std::size_t k = 0; k < inner; ++k) {
     d[k] = (z_.col(static_cast<Eigen::Index>(k)) / c[k] - z_.col(last)) / (1.0 - c[k]);
@@ -195,13 +189,6 @@ const std::vector<double>& RadauSteps<Tableau>::polynomial() {
   for (std::size_t k = 0; k < inner; ++k) {
     if (sign_of_nested(k) < 0.0) d[k] = -d[k];
   }
-  return own_.coefficients;
-}
-
-template <class Tableau>
-void RadauSteps<Tableau>::dense(double* coefficients) {
-  const auto& own = polynomial();
-  std::copy(own.begin(), own.end(), coefficients);
 }
 
 std::unique_ptr<Radau> make_radau(Method method, int n) {

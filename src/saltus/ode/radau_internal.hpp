@@ -29,7 +29,7 @@ class Radau {
   virtual Attempt attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) = 0;
   [[nodiscard]] virtual double error_norm() const = 0;
   /// Evaluates coefficients 1 to s of the nested form of the collocation polynomial of the last attempt, s n doubles.
-  virtual void dense(double* coefficients) = 0;
+  virtual void dense(double* coefficients) const = 0;
   /// Forgets the Jacobian and the steps before: the right-hand side has changed.
   virtual void restart() = 0;
 };

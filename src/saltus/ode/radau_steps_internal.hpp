@@ -29,7 +29,7 @@ class RadauSteps final : public Radau {
 
   Attempt attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) override;
   [[nodiscard]] double error_norm() const override { return error_norm_; }
-  void dense(double* coefficients) override;
+  void dense(double* coefficients) const override;
   void restart() override;
 
  private:
@@ -40,7 +40,6 @@ class RadauSteps final : public Radau {
   static constexpr auto last = static_cast<Eigen::Index>(stages) - 1;
 
   void begin(const RadauTrial& trial);
-  const std::vector<double>& polynomial();
   Outcome solve(const RadauTrial& trial);
   void start_values(double h);
   void transform_start();
@@ -66,14 +65,13 @@ class RadauSteps final : public Radau {
   double h_ = 0.0;
   Vector start_;
 
-  /// As from dense().
-  struct Polynomial {
+  // The step before, whose polynomial gives starting values.
+  struct Previous {
     bool known = false;
     double h = 0.0;
-    std::vector<double> coefficients;
+    std::vector<double> polynomial;  ///< as from dense()
   };
-  Polynomial previous_;  ///< of the step before: it gives starting values
-  Polynomial own_;       ///< of the last attempt
+  Previous previous_;
 
   // Jacobian and factors.
   bool jacobian_known_ = false;
