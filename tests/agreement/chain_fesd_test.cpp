@@ -19,9 +19,11 @@ using result::Termination;
 
 class BlockChain : public testing::TestWithParam<int> {};
 
-/// Of up to 15 blocks systems are dense, beyond sparse (discretization::StagePattern).
+/// Of up to 15 blocks systems are dense, beyond sparse (discretization::StagePattern). It ends before t = 9.884, where
+/// block 29 of 50 is back at its surface without crossing it, to rounding: 2 pi / sqrt(2.5) behind the time at which it
+/// has left it between neighbours that stick.
 TEST_P(BlockChain, HasTheEventsOfTheEventEngine) {
-  const Simulator simulator = Simulator::from_text(block_chain(GetParam(), 10.0));
+  const Simulator simulator = Simulator::from_text(block_chain(GetParam(), 9.8));
   const Result exact = simulator.run(with(simulator.options(), fine));
   auto options = simulator.options();
   options.method = pipeline::Method::fesd;

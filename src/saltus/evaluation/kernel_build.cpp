@@ -32,13 +32,13 @@ std::vector<std::vector<int>> dependencies_of_rows(const SX& expression, const S
   return rows;
 }
 
-std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends) {
+std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<int>>& depends) {
   std::vector<std::vector<int>> neighbours(depends.size());
   for (std::size_t i = 0; i < depends.size(); ++i) {
-    for (std::size_t j = 0; j < depends.size(); ++j) {
-      if (i == j || !depends[i][j]) continue;
-      neighbours[i].push_back(static_cast<int>(j));
-      neighbours[j].push_back(static_cast<int>(i));
+    for (const int j : depends[i]) {
+      if (i == at(j)) continue;
+      neighbours[i].push_back(j);
+      neighbours[at(j)].push_back(static_cast<int>(i));
     }
   }
   for (auto& list : neighbours) {
@@ -162,15 +162,16 @@ void CompiledModel::find_structure(const model::System& system) {
   free.neighbours = neighbours_in(free.depends);
 }
 
-std::vector<std::vector<bool>> CompiledModel::normal_dependencies(const SX& f) const {
+std::vector<std::vector<int>> CompiledModel::normal_dependencies(const SX& f) const {
   const auto on_states = dependencies_of_rows(phi, x);
   const auto field_on_alpha = dependencies_of_rows(f, alpha);
-  std::vector<std::vector<bool>> depends(at(n_psi), std::vector<bool>(at(n_psi), false));
-  for (int i = 0; i < n_psi; ++i) {
-    for (const int component : on_states[at(i)]) {
-      for (const int j : field_on_alpha[at(component)]) depends[at(i)][at(j)] = true;
+  std::vector<std::vector<int>> depends(inner.begin(), inner.begin() + n_psi);
+  for (std::size_t i = 0; i < depends.size(); ++i) {
+    for (const int component : on_states[i]) {
+      const auto& selections = field_on_alpha[at(component)];
+      depends[i].insert(depends[i].end(), selections.begin(), selections.end());
     }
-    for (const int j : inner[at(i)]) depends[at(i)][at(j)] = true;
+    drop_repeats(depends[i]);
   }
   return depends;
 }
@@ -218,6 +219,7 @@ ModelKernel::Implementation::Implementation(std::shared_ptr<CompiledModel> model
   static_cast<KernelValues&>(*this) = compiled->start;
   free = Motion(compiled->free);
   motion = &free;
+  slope.resize(at(compiled->x.numel()));
 }
 
 Expected<ModelKernel> ModelKernel::of(std::shared_ptr<CompiledModel> model, NativeCode native) {

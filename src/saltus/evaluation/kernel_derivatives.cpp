@@ -144,13 +144,21 @@ bool ModelKernel::has_root_inside(int function, int surface) const {
   return known->second.rooted[at(surface)];
 }
 
+/// Nothing to differentiate, and the same for all selections: of functions that hold none.
+const AffineRows& ModelKernel::Implementation::gradients_of_affine() {
+  if (!constant_gradients) {
+    const std::vector<double> alpha(at(compiled->n_psi), 0.5);
+    affine_rows.fill(parameters.data(), alpha.data(), constant_gradients.emplace());
+  }
+  return *constant_gradients;
+}
+
 void ModelKernel::gradient(int function, double t, const double* x, const double* alpha, double* row,
                            double* rate) const {
   SALTUS_ASSERT(0 <= function && function < event_functions());
   auto& self = *implementation_;
-  if (is_affine(function) && inner(function).empty()) {  // nothing to differentiate
-    if (!self.constant_gradients) affine_rows(alpha, self.constant_gradients.emplace());
-    const auto& rows = *self.constant_gradients;
+  if (is_affine(function) && inner(function).empty()) {
+    const auto& rows = self.gradients_of_affine();
     std::fill_n(row, states(), 0.0);
     for (std::size_t k = rows.start[at(function)]; k < rows.start[at(function) + 1]; ++k) {
       row[rows.column[k]] = rows.coefficient[k];
@@ -243,7 +251,8 @@ const std::vector<int>& ModelKernel::neighbours(int surface) const {
   return implementation_->motion->compiled->neighbours[at(surface)];
 }
 bool ModelKernel::depends(int surface, int alpha) const {
-  return implementation_->motion->compiled->depends[at(surface)][at(alpha)];
+  const auto& selections = implementation_->motion->compiled->depends[at(surface)];
+  return std::binary_search(selections.begin(), selections.end(), alpha);
 }
 
 }  // namespace saltus::evaluation

@@ -13,6 +13,7 @@
 
 #include "saltus/evaluation/affine_functions_internal.hpp"
 #include "saltus/evaluation/cell_functions_internal.hpp"
+#include "saltus/evaluation/field_rows_internal.hpp"
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
@@ -29,16 +30,17 @@ using model::ModelFunction;
 /// lock.
 struct CompiledMotion {
   casadi::SX f;
-  ModelFunction field;      ///< of t, x and the constants
-  ModelFunction constants;  ///< of p and alpha
-  ModelFunction pressure;   ///< of the holds; null without
-  std::vector<std::vector<bool>> depends;
+  ModelFunction field;                       ///< of t, x and the constants
+  ModelFunction constants;                   ///< of p and alpha
+  ModelFunction pressure;                    ///< of the holds; null without
+  std::vector<std::vector<int>> depends;     ///< of every switching function: selections in its normal component
   std::vector<std::vector<int>> neighbours;  ///< of every switching function, those that influence it or the reverse
   std::map<std::pair<int, int>, casadi::SX> lie_expressions;
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives, lie_gradients;
   std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
   std::optional<LinearFieldFunction> linear;
-  std::optional<ModelFunction> jacobian;  ///< null where it is too large
+  std::optional<ModelFunction> jacobian;                 ///< null where it is too large
+  std::optional<std::shared_ptr<const FieldRows>> rows;  ///< once they were asked for; null where there are none
 };
 
 /// Holds a motion of one kernel: the functions that it has called, with its own work space.
@@ -56,12 +58,14 @@ struct Motion {
   std::optional<LinearFieldFunction> linear;
   std::optional<ode::LinearField> linear_always;  ///< if it is the same in all modes
   std::optional<ModelFunction> jacobian;          ///< null where it is too large
+  std::optional<std::shared_ptr<const FieldRows>> rows;
+  FieldRows::Work row_work;
 };
 
 /// Returns on which of the variables each row of an expression depends, ascending.
 [[nodiscard]] std::vector<std::vector<int>> dependencies_of_rows(const casadi::SX& expression,
                                                                  const casadi::SX& variables);
-[[nodiscard]] std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<bool>>& depends);
+[[nodiscard]] std::vector<std::vector<int>> neighbours_in(const std::vector<std::vector<int>>& depends);
 
 /// Holds the model's symbols and expressions; they never change.
 struct KernelSymbols {
@@ -124,6 +128,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   [[nodiscard]] const ModelFunction& lie_gradient(CompiledMotion& motion, int function, int order);
   [[nodiscard]] const AffineRowFunction& lie_row(CompiledMotion& motion, int function, int fixed_component);
   [[nodiscard]] const LinearFieldFunction& linear(CompiledMotion& motion);
+  [[nodiscard]] const std::shared_ptr<const FieldRows>& rows(CompiledMotion& motion);
   [[nodiscard]] const LimitedFunction& limited(int function, const std::vector<double>& fixed_values);
   [[nodiscard]] const std::optional<ode::JacobianPattern>& jacobian_pattern();
   [[nodiscard]] const ModelFunction& jacobian(CompiledMotion& motion, const ode::JacobianPattern* pattern);
@@ -139,7 +144,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   [[nodiscard]] casadi::SX sizes_of_contact_guards(const model::System& system) const;
   void compile_functions(const model::System& system);
   void find_structure(const model::System& system);
-  [[nodiscard]] std::vector<std::vector<bool>> normal_dependencies(const casadi::SX& f) const;
+  [[nodiscard]] std::vector<std::vector<int>> normal_dependencies(const casadi::SX& f) const;
   void compile_conditions(const model::System& system);
 
   std::map<std::vector<int>, CompiledMotion> held_;  ///< by event functions
@@ -151,7 +156,8 @@ struct CompiledModel : KernelSymbols, KernelStructure {
 
 /// Holds what the user of a kernel changes, and its work space.
 struct KernelContext : KernelValues {
-  FieldConstants constants;  ///< work space of field()
+  FieldConstants constants;   ///< work space of field()
+  std::vector<double> slope;  ///< work space of rate()
   /// Of functions that are affine and do not hold selections gradients are constants: these rows, once known.
   std::optional<AffineRows> constant_gradients;
   std::map<int, LimitedFunction> limited;                   ///< by event function
@@ -168,6 +174,8 @@ struct ModelKernel::Implementation : KernelFunctions, KernelContext {
   [[nodiscard]] Expected<void> start_native();
   void take_native_field();
   [[nodiscard]] bool has_small_field() const;
+  [[nodiscard]] const FieldRows* rows();
+  [[nodiscard]] const AffineRows& gradients_of_affine();
   /// Counts an interpreted call that is about to be made.
   void count(const ModelFunction& function) {
     if (native.count(function)) take_native_field();

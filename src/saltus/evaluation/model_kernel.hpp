@@ -19,6 +19,7 @@ namespace saltus::evaluation {
 
 struct ContactValues;
 struct CompiledModel;
+struct FieldStructure;
 
 /// Says whether the functions that every step needs run as native code: compiled C, cached by content. Bit-identical to
 /// the interpreter. `automatic`: from the cache, or compiled once a run is long enough that it pays; interpreted where
@@ -140,6 +141,12 @@ class ModelKernel {
     ++constants.use->evaluations;
     constants.direct(t, x, constants.values.data(), xdot);
   }
+  /// Evaluates one row of it, bit for bit; only where there is a field_structure(). Counts as no evaluation. Cost: that
+  /// of the row, interpreted.
+  [[nodiscard]] double field_row(std::size_t row, double t, const double* x, const double* alpha) const;
+  /// Returns what depends on what in f, null where its rows cannot be evaluated one by one. Stays where it is. Cost:
+  /// the operations of all rows, the first time.
+  [[nodiscard]] const FieldStructure* field_structure() const;
   /// Returns the linear part of f for these selections, null where f is not affine in t and x (by its operations,
   /// whatever the selections are). Where the selections or cells change it, it is put into `own`; otherwise it stays as
   /// it is as long as the kernel and the motion. Cost: the first call makes an expression.
@@ -159,6 +166,9 @@ class ModelKernel {
   void scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const;
   /// Evaluates the gradient row d phi_j / d x (n_x) and d phi_j / d t.
   void gradient(int function, double t, const double* x, const double* alpha, double* row, double* rate) const;
+  /// Returns grad phi_j . f + d phi_j/dt where phi_j is affine and holds no selections. Cost: the rows of f that this
+  /// needs, or all of them where these are not more.
+  [[nodiscard]] double rate(int function, double t, const double* x, const double* alpha) const;
   /// Returns the number, for lie_derivative() and lie_gradient() only (of order 0, too), of phi_j with its roots of
   /// what is 0 with a switching function 0 there, to rounding: where x is held at 0, with selections of 1/2, and beside
   /// it, v + sqrt(abs(x))*sign(x) is v. Cost: an expression, once.

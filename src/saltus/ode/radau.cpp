@@ -22,7 +22,7 @@ RadauSteps<Tableau>::RadauSteps(int n)
     : n_(n),
       start_(n),
       previous_{false, 0.0, std::vector<double>(stages * static_cast<std::size_t>(n))},
-      systems_(n, stages / 2),
+      systems_(n),
       one_column_(1),
       z_(n, last + 1),
       w_(n, last + 1),

@@ -74,22 +74,19 @@ void RadauSteps<Tableau>::solve_systems(double h) {
     for (std::size_t j = 1; j < stages; ++j) sum += weights[j] * slopes_(i, static_cast<Eigen::Index>(j));
     return sum;
   };
-  for (Eigen::Index i = 0; i < n_; ++i) work_.right[i] = mixed(0, i) - Tableau::gamma / h * w_(i, 0);
-  systems_.solve(work_.right, work_.solution);
-  corrections_.col(0) = work_.solution;
+  auto& right = work_.all_right;
+  for (Eigen::Index i = 0; i < n_; ++i) right(i, 0) = mixed(0, i) - Tableau::gamma / h * w_(i, 0);
   for (std::size_t k = 0; k < stages / 2; ++k) {
     const auto [alpha, beta] = Tableau::pairs[k];
     const auto real = static_cast<Eigen::Index>(2 * k + 1);
     for (Eigen::Index i = 0; i < n_; ++i) {
       const double u = w_(i, real);
       const double v = w_(i, real + 1);
-      work_.complex_right[i] = std::complex<double>(mixed(2 * k + 1, i) - (alpha * u - beta * v) / h,
-                                                    mixed(2 * k + 2, i) - (beta * u + alpha * v) / h);
+      right(i, real) = mixed(2 * k + 1, i) - (alpha * u - beta * v) / h;
+      right(i, real + 1) = mixed(2 * k + 2, i) - (beta * u + alpha * v) / h;
     }
-    systems_.solve(k, work_.complex_right, work_.complex_solution);
-    corrections_.col(real) = work_.complex_solution.real();
-    corrections_.col(real + 1) = work_.complex_solution.imag();
   }
+  systems_.solve_all(right, corrections_);
 }
 
 /// Makes one Newton correction; returns its largest component relative to the size of the component.

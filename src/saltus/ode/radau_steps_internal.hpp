@@ -85,17 +85,16 @@ class RadauSteps final : public Radau {
   };
   Factors factors_;
   double rate_ = 0.0;  ///< of convergence of the last iteration
-  RadauSystems systems_;
+  RadauSystems<stages / 2> systems_;
   double largest_ = 0.0;  ///< component of start_
   std::vector<std::size_t> one_column_;
 
   Matrix z_, w_, slopes_;  ///< n x stages: increments, transformed increments, f at the stages
   Matrix corrections_;     ///< of w_
   struct Work {
-    explicit Work(Eigen::Index n)
-        : argument(n), difference_slope(n), right(n), solution(n), complex_right(n), complex_solution(n) {}
+    explicit Work(Eigen::Index n) : argument(n), difference_slope(n), right(n), solution(n), all_right(n, last + 1) {}
     Vector argument, difference_slope, right, solution;
-    Eigen::VectorXcd complex_right, complex_solution;
+    Matrix all_right;
   };
   Work work_;
 };

@@ -157,7 +157,6 @@ void Stepper::follow(const DenseStep& known, double h) {
   const double theta = h_ / known.h;
   known.evaluate(0.0, start_.data());
   known.evaluate(theta, x_new_.data());
-  known.derivative(theta, stages_.data() + slope_new_);
   error_norm_ = 0.0;
 }
 

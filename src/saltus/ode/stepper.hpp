@@ -113,10 +113,12 @@ class Stepper {
                   const Tolerances& tolerances, const RightHandSideStages& stages = {});
 
   /// Does the same along a polynomial that is known, from its beginning: x_new(), dense() and bounds() are its own,
-  /// slope_new() is its derivative, error_norm() is 0. It stays where it is until the next attempt.
+  /// error_norm() is 0, and there is no slope_new(). It stays where it is until the next attempt.
   void follow(const DenseStep& known, double h);
   /// Returns whether the last attempt was one of these.
   [[nodiscard]] bool follows() const { return known_ != nullptr; }
+  /// Returns the polynomial that it has followed to its end; null where it has not.
+  [[nodiscard]] const DenseStep* followed() const { return known_ != nullptr && h_ == known_->h ? known_ : nullptr; }
 
   /// Returns which of the functions attempt() uses, null if none.
   [[nodiscard]] StagesFunction stages_function(const StagesFunctions& functions) const;

@@ -23,7 +23,7 @@ std::optional<Event> take_rest(Event& event) {
   return rest;
 }
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+bool same_bits(std::span<const double> a, std::span<const double> b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), SteadyColumn<double>::same);
 }
 
@@ -88,27 +88,48 @@ std::uint32_t Events::word(const std::string& text) {
   return place->second;
 }
 
-void Events::push_back(Event event) {
-  if (auto rest = take_rest(event)) rest_.emplace(size(), std::move(*rest));
-  Facts facts;
+void Events::append_words(const Event& event, Facts& facts) {
   facts.kind = event.kind;
   facts.unique = event.unique;
   if (event.name) facts.name = word(*event.name);
   facts.reason = word(event.reason);
   facts.surfaces = surfaces_.size();
   for (const auto& name : event.surfaces) surfaces_.push_back(word(name));
+}
+
+void Events::push_back(Event event, std::span<const double> x, std::span<const double> x_after) {
+  if (auto rest = take_rest(event)) rest_.emplace(size(), std::move(*rest));
+  Facts facts;
+  append_words(event, facts);
   facts.x = facts.x_after = states_.size();
-  states_.insert(states_.end(), event.x.begin(), event.x.end());
-  if (!same_bits(event.x, event.x_after)) {
+  states_.insert(states_.end(), x.begin(), x.end());
+  if (x.data() != x_after.data() && !same_bits(x, x_after)) {
     facts.x_after = states_.size();
-    states_.insert(states_.end(), event.x_after.begin(), event.x_after.end());
+    states_.insert(states_.end(), x_after.begin(), x_after.end());
   }
+  t_.push_back(event.t);
+  facts_.push_back(facts);
+}
+
+void Events::add_side(const ModeChanges* changes) {
+  modes_.there.push_back(changes != nullptr);
+  alphas_.there.push_back(changes != nullptr);
+  if (changes == nullptr) {
+    modes_.rows.repeat();
+    alphas_.rows.repeat();
+  } else {
+    modes_.rows.push_changes(changes->mode, changes->columns);
+    alphas_.rows.push_changes(changes->alpha, changes->columns);
+  }
+}
+
+void Events::push_back(Event event) {
   append(modes_, event.mode_before);
   append(modes_, event.mode_after);
   append(alphas_, event.alpha_before);
   append(alphas_, event.alpha_after);
-  t_.push_back(event.t);
-  facts_.push_back(facts);
+  const auto x = std::move(event.x), x_after = std::move(event.x_after);
+  push_back(std::move(event), x, x_after);
 }
 
 void Events::pop_back() {

@@ -144,6 +144,17 @@ class Events {
 
   /// @param event  its vectors as long as those of the others
   void push_back(Event event);
+  /// Holds a mode that differs from the one that was appended last in some columns at most.
+  struct ModeChanges {
+    const Mode& mode;
+    const std::vector<double>& alpha;
+    const std::vector<std::size_t>& columns;
+  };
+  /// Appends the mode before, and then that behind, an event; null: none. Cost: that of its columns.
+  void add_side(const ModeChanges* changes);
+  /// Appends the event to which both sides were added. It has neither modes nor states: these are `x` and, where it
+  /// jumps, another `x_after`.
+  void push_back(Event event, std::span<const double> x, std::span<const double> x_after);
   void pop_back();
 
  private:
@@ -174,6 +185,7 @@ class Events {
     row ? sides.rows.push_back(*row) : sides.rows.repeat();
   }
   [[nodiscard]] std::uint32_t word(const std::string& text);
+  void append_words(const Event& event, Facts& facts);
 
   std::vector<double> t_;
   std::vector<Facts> facts_;

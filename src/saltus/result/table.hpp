@@ -268,6 +268,14 @@ class SteadyTable {
   void push_back(std::initializer_list<typename RowVector<Number>::value_type> row) {
     push_back(RowVector<Number>(row));
   }
+  /// Appends a row that differs from the last one in these columns at most; the first one in all of them. Cost: that of
+  /// these columns.
+  template <class List>
+  void push_changes(const List& row, const std::vector<std::size_t>& columns) {
+    if (columns_.empty()) return push_back(row);
+    for (const std::size_t k : columns) columns_[k].set(rows_, last_[k] = static_cast<Number>(row[k]));
+    ++rows_;
+  }
   /// Appends the last row once more; without one a row that may not be read.
   void repeat() { ++rows_; }
   void pop_back() {

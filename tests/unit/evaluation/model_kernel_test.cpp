@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "blank_system.hpp"
+#include "saltus/evaluation/field_structure.hpp"
 
 namespace saltus::evaluation {
 namespace {
@@ -42,6 +43,49 @@ model::System example() {
   condition.true_at_equality = {false, true};
   s.events = {condition, zero};
   return s;
+}
+
+/// A ring of x_i' = sin(x_(i-1)) - p x_i + (2 alpha_i - 1) with affine surfaces.
+model::System ring(int n) {
+  model::System s = blank_system(0.75, n);
+  s.x = SX::sym("x", n);
+  s.alpha = SX::sym("alpha", n);
+  std::vector<SX> f;
+  for (int i = 0; i < n; ++i) {
+    s.switching.push_back(surface("s" + std::to_string(i), s.x(i) - 0.5 * s.x((i + 1) % n) - 0.25 * s.t));
+    f.push_back(sin(s.x((i + n - 1) % n)) - s.p(0) * s.x(i) + (2 * s.alpha(i) - 1));
+  }
+  s.f = s.f_as_written = SX::vertcat(f);
+  s.initial_state.assign(static_cast<std::size_t>(n), 0.0);
+  return s;
+}
+
+TEST(ModelKernel, RowsHaveTheBitsOfTheField) {
+  for (const int n : {3, 100}) {  // of which rate() evaluates all of f, and few rows
+    const auto kernel = ModelKernel::compile(ring(n));
+    ASSERT_TRUE(kernel.has_value());
+    const auto* structure = kernel->field_structure();
+    ASSERT_NE(structure, nullptr);
+    const auto last = static_cast<std::size_t>(n) - 1;
+    EXPECT_EQ(structure->states[0], (std::vector<std::size_t>{0, last}));
+    EXPECT_EQ(structure->selections[last], (std::vector<std::size_t>{last}));
+    EXPECT_EQ(structure->rows_of_state[0], (std::vector<std::size_t>{0, 1}));
+    EXPECT_EQ(structure->rows_of_selection[1], (std::vector<std::size_t>{1}));
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> number(0.0, 1.0);
+    std::vector<double> x(last + 1), alpha(last + 1), field(last + 1), row(last + 1);
+    for (auto* values : {&x, &alpha}) {
+      for (double& value : *values) value = number(random);
+    }
+    kernel->field(0.3, x.data(), alpha.data(), field.data());
+    for (std::size_t i = 0; i <= last; ++i) EXPECT_EQ(kernel->field_row(i, 0.3, x.data(), alpha.data()), field[i]);
+    for (int j = 0; j < n; ++j) {
+      double rate = 0.0;
+      kernel->gradient(j, 0.3, x.data(), alpha.data(), row.data(), &rate);
+      for (std::size_t i = 0; i <= last; ++i) rate += row[i] * field[i];
+      EXPECT_EQ(kernel->rate(j, 0.3, x.data(), alpha.data()), rate) << j;
+    }
+  }
 }
 
 TEST(ModelKernel, NumbersFunctionsAndEvaluatesThem) {

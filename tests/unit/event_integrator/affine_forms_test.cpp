@@ -62,18 +62,24 @@ TEST_F(Forms, TheirRatesAlongAFieldAreKnownWhereTheyAreMoreThanRounding) {
   EXPECT_FALSE(forms.rate_along(0, undefined));
 }
 
-TEST_F(Forms, SwappedTheyAnswerForEachOther) {
-  AffineForms other(2);
-  other.load(rows());
-  other.reset(1);
-  other.use_row(0, 3);
-  other.group();
-  other.watch(0, +1);
-  forms.swap(other);
+TEST_F(Forms, ReplacedTheyAnswerByTheirNewRow) {
   const double x[] = {1.5, 4.0};
-  EXPECT_EQ(forms.value(0, 1.0, x), 2.5);
-  EXPECT_EQ(suspects(0.0, 1.0, {0.0, 0.5}, {1.0, 2.0}), Indices{0});
-  EXPECT_EQ(other.value(1, 1.0, x), -1.5);
+  evaluation::AffineRow row{{0, 1}, {2.0, 0.0}, 0.0, 1.0};  // fewer terms than the one before
+  forms.replace(3, &row);
+  EXPECT_EQ(forms.value(3, 1.0, x), 4.0);
+  row = {{0, 1}, {2.0, 1.0}, 1.0, 1.0};
+  forms.replace(3, &row);
+  EXPECT_EQ(forms.value(3, 1.0, x), 9.0);
+  forms.replace(5, &row);  // it had none
+  EXPECT_EQ(forms.value(5, 1.0, x), 9.0);
+  forms.watch(5, +1);
+  EXPECT_EQ(suspects(0.0, 1.0, {-3.0, 0.5}, {1.0, 2.0}), Indices{5});
+  forms.ignore(5);
+  row.coefficient[1] = std::numeric_limits<double>::infinity();
+  forms.replace(5, &row);
+  EXPECT_FALSE(forms.has(5));
+  forms.replace(3, nullptr);
+  EXPECT_FALSE(forms.has(3));
 }
 
 TEST_F(Forms, LeaveTheirStartWhereNoMeanSlopeTurnsThemBack) {

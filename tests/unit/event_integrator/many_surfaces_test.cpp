@@ -67,6 +67,40 @@ TEST(ManySurfaces, AOneWayChainHasTheEventsOfItsBeginning) {
   }
 }
 
+/// x_j' = cos(t + j)/2 - sign(x_j) from 0, where sign(x_j) = cos(t + j)/2 = y_j'; and z' = sign(x_0) + sign(x_1).
+Integration run_alone(int surfaces, bool with_sum) {
+  Builder b("alone");
+  std::vector<SX> sign;
+  for (int j = 0; j < surfaces; ++j) {
+    const std::string number = std::to_string(j);
+    const SX x = b.state("x" + number, {0.0});
+    b.state("y" + number, {0.0});
+    sign.push_back(2 * b.step(b.switching("s" + number, x)) - 1);
+    b.dynamics("x" + number, 0.5 * SX::cos(b.time() + j) - sign.back());
+    b.dynamics("y" + number, sign.back());
+  }
+  if (with_sum) {
+    b.state("z", {0.0});
+    b.dynamics("z", sign[0] + sign[1]);
+  }
+  return testing::run_model(b, 5.0, {1e-9, 1e-11});
+}
+
+TEST(ManySurfaces, ThoseThatDoNotInfluenceEachOtherCostTwoEvaluationsOrThreeWhereARowHasSeveral) {
+  constexpr int surfaces = 40;
+  const auto each = run_alone(surfaces, false), sum = run_alone(surfaces, true);
+  const auto travelled = [](int j) { return 0.5 * (std::sin(5.0 + j) - std::sin(static_cast<double>(j))); };
+  for (const auto* run : {&each, &sum}) {
+    ASSERT_EQ(run->status.termination, Termination::completed) << run->status.message;
+    for (int j = 0; j < surfaces; ++j) {
+      EXPECT_EQ(run->final.x[2 * static_cast<std::size_t>(j)], 0.0);
+      EXPECT_NEAR(run->final.x[2 * static_cast<std::size_t>(j) + 1], travelled(j), 1e-8);
+    }
+  }
+  EXPECT_NEAR(sum.final.x.back(), travelled(0) + travelled(1), 1e-8);
+  EXPECT_LT(each.statistics.rhs_evaluations, 0.75 * static_cast<double>(sum.statistics.rhs_evaluations));
+}
+
 TEST(ManySurfaces, ThoseThatFeelTheirNeighboursKeepTheirBalance) {
   const auto run = run_chain({30, 0.2, 0.2});
   ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;

@@ -30,10 +30,13 @@ TEST(NormalRows, AreSolvedAsTheWholeMatrixIs) {
   const Eigen::VectorXd expected = (whole * whole.transpose()).inverse() * residual;
   ASSERT_TRUE(rows.solve(residual));
   for (Eigen::Index i = 0; i < 5; ++i) EXPECT_NEAR(residual[i], expected[i], 1e-13);
-  std::vector<double> sum;
-  rows.transposed_times(residual, sum);
   const Eigen::VectorXd product = whole.transpose() * residual;
-  for (Eigen::Index i = 0; i < 6; ++i) EXPECT_NEAR(sum[static_cast<std::size_t>(i)], product[i], 1e-13);
+  for (int pass = 0; pass < 2; ++pass) {  // the second one finds nothing left of the first
+    std::vector<double> x(6, 3.0);
+    EXPECT_TRUE(rows.subtract_transposed(residual, x.data()));
+    for (Eigen::Index i = 0; i < 6; ++i) EXPECT_NEAR(x[static_cast<std::size_t>(i)], 3.0 - product[i], 1e-13);
+    EXPECT_FALSE(rows.subtract_transposed(Eigen::VectorXd::Zero(5), x.data()));
+  }
 }
 
 TEST(NormalRows, DependentAndEmptyOnesHaveNoSolution) {

@@ -140,6 +140,72 @@ TEST(SingleSurface, DecidesBesideAnotherSurfaceOnWhichTheSolutionSlides) {
   EXPECT_GT(decided, 8);
 }
 
+/// 40 blocks with friction in a row, of which all but the first slide, at random.
+TEST(SingleSurface, RowsOfALargeFieldDecideLikeAllOfIt) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> number(-0.3, 0.3);
+  constexpr int blocks = 40;
+  auto s = testing::blank(2 * blocks, blocks);
+  std::vector<SX> f;
+  for (int i = 0; i < blocks; ++i) {
+    testing::add_surface(s, "s" + std::to_string(i), i % 2 == 0 ? s.x(2 * i + 1) : s.x(2 * i + 1) + 0.5 * s.x(2 * i));
+    const SX left = i > 0 ? s.x(2 * i - 2) : SX(0), right = i + 1 < blocks ? s.x(2 * i + 2) : SX(0);
+    f.push_back(s.x(2 * i + 1));
+    f.push_back(left + right - 2 * s.x(2 * i) - 2 * s.alpha(i) + 1);
+  }
+  testing::set_field(s, f, std::vector<double>(2 * blocks, 0.0));
+  auto kernel = evaluation::ModelKernel::compile(s);
+  ASSERT_TRUE(kernel.has_value());
+  const SwitchingContext switching_context{*kernel, s, true, {}, {}};
+  SingleSurface single(switching_context);
+  int decided = 0;
+  for (int k = 0; k < 80; ++k) {
+    std::vector<double> x(2 * blocks);
+    for (int i = 0; i < blocks; ++i) {
+      x[static_cast<std::size_t>(2 * i)] = number(random);
+      x[static_cast<std::size_t>(2 * i + 1)] = i % 2 == 0 ? 0.0 : -0.5 * x[static_cast<std::size_t>(2 * i)];
+    }
+    const int touched = k % blocks;
+    const bool leaves = k >= blocks;
+    if (leaves) {  // the field of alpha = 1 is tangent to the surface: its force is -rate of what the tilt adds
+      const auto q = [&](int i) { return i < 0 || i >= blocks ? 0.0 : x[static_cast<std::size_t>(2 * i)]; };
+      const auto own = static_cast<std::size_t>(2 * touched);
+      const double sum = q(touched - 1) + q(touched + 1) - 1.0;
+      // v' + tilt v = 0, with v = -tilt q.
+      const double tilt = touched % 2 == 0 ? 0.0 : 0.5;
+      x[own] = sum / (2.0 + tilt * tilt);
+      x[own + 1] = -tilt * x[own];
+    }
+    ModeState before;
+    before.mode.assign(blocks, 0);
+    before.alpha.assign(blocks, 0.5);
+    before.mode[static_cast<std::size_t>(touched)] = leaves ? 0 : 1;
+    for (int i = 0; i < blocks; ++i) {
+      if (before.mode[static_cast<std::size_t>(i)] == 0) before.sliding.push_back(i);
+    }
+    if (!leaves) before.alpha[static_cast<std::size_t>(touched)] = 1.0;
+    ModeField field(*kernel, true);
+    field.enter(before);
+    std::vector<double> slope(x.size());
+    field(0.0, x.data(), slope.data());
+    before.alpha = field.alpha();
+    SwitchingPoint switching_point;
+    switching_point.x = x.data();
+    switching_point.time_scale = 0.1;
+    for (int i = 0; i < blocks; ++i) switching_point.at_zero.push_back(i);
+    switching_point.touched = {touched};
+    if (leaves) switching_point.exit_above = {touched};
+    Transition by_rows, by_all;
+    const SingleSurface::Motion known{slope, field.solve()};
+    const bool decides = single.decide(before, switching_point, by_rows, &known);
+    EXPECT_EQ(decides, single.decide(before, switching_point, by_all)) << k;
+    if (!decides) continue;
+    ++decided;
+    expect_same(by_rows, by_all);
+  }
+  EXPECT_GT(decided, 30);
+}
+
 TEST(SingleSurface, LeavesWhatIsNotSimpleToTheGeneralDecision) {
   const std::vector<double> origin(3, 0.0);
   auto s = testing::blank(3, 2);

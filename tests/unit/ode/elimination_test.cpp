@@ -81,6 +81,44 @@ TEST(ShiftedFactors, SolveRandomSparseSystems) {
   }
 }
 
+TEST(DiagonalFactors, JointNumbersGiveTheBitsOfSingleOnes) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const std::size_t n = 40;
+  const auto pattern = random_pattern(n, random);
+  const auto elimination = elimination_of(pattern);
+  std::vector<double> entries(pattern.row.size());
+  for (double& entry : entries) entry = normal(random);
+  JointNumber<2> shift(30.0);
+  shift.im = {20.0, -50.0};
+  DiagonalFactors<JointNumber<2>> joint;
+  joint.use(elimination);
+  ASSERT_TRUE(joint.factorize(entries, shift));
+  std::vector<JointNumber<2>> solutions(n);
+  const auto right = [](std::size_t i) {
+    JointNumber<2> number(1.0 / static_cast<double>(i + 1));
+    number.im = {2.0, static_cast<double>(i)};
+    return number;
+  };
+  joint.solve(right, [&](std::size_t i, const auto& number) { solutions[i] = number; });
+  DiagonalFactors<double> real;
+  real.use(elimination);
+  ASSERT_TRUE(real.factorize(entries, shift.real));
+  real.solve([&](std::size_t i) { return right(i).real; },
+             [&](std::size_t i, double value) { EXPECT_EQ(value, solutions[i].real) << i; });
+  joint.solve_real([&](std::size_t i) { return right(i).real; },
+                   [&](std::size_t i, double value) { EXPECT_EQ(value, solutions[i].real) << i; });
+  for (std::size_t k = 0; k < 2; ++k) {
+    DiagonalFactors<std::complex<double>> single;
+    single.use(elimination);
+    ASSERT_TRUE(single.factorize(entries, {shift.re[k], shift.im[k]}));
+    single.solve([&](std::size_t i) { return std::complex<double>(right(i).re[k], right(i).im[k]); },
+                 [&](std::size_t i, const std::complex<double>& value) {
+                   EXPECT_EQ(value, std::complex<double>(solutions[i].re[k], solutions[i].im[k])) << i;
+                 });
+  }
+}
+
 /// (s, -1; -1, s): with s = 1e-9 along the diagonal nine digits would be lost.
 TEST(ShiftedFactors, SmallDiagonalsAreNotPivots) {
   const auto pattern = pattern_of(2, {{0, 1}, {1, 0}});

@@ -25,7 +25,7 @@ ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha
 }
 
 void ModeField::gradients(double t, const double* x) {
-  for (std::size_t row = 0; row < sliding_.size(); ++row) {
+  for (std::size_t row = 0; rows_.varying > 0 && row < sliding_.size(); ++row) {
     if (rows_.is_constant[row]) continue;
     if (!rows_.take_known(row, at(sliding_[row]))) {
       // With the mode's selections, not the last ones: the field must not depend on what was evaluated before.
@@ -89,15 +89,11 @@ const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region,
   const double side = region == Region::below ? 0.0 : 1.0;
   const bool several = sliding_.size() > 1;
   if (several && !keeps_rows()) {
-    trial_ = start_alpha_;
-    for (const int j : sliding_) trial_[at(j)] = 0.0;
+    trial_ = corner_[0];
     trial_[at(sliding_[row])] = side;
   }
   const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : trial_;
-  evaluation::FixedState fixed;
-  if (const int only = rows_.coordinate[row]; only >= 0 && rows_.rates[static_cast<Eigen::Index>(row)] == 0.0) {
-    fixed = {only, x[only]};
-  }
+  const auto fixed = kept_state(row, x);
   if (several && keeps_rows()) return exit_forms_.several.of(sliding_[row], side, fixed, start_alpha_);
   const bool is_kept = !several && keeps_rows();
   return exit_forms_.of(sliding_[row], fixed, alpha, is_kept ? constants_[0].use->motion : nullptr);

@@ -57,6 +57,10 @@ class ModeField {
   /// no selection but that of `surface`; constants are those of the other region. Allocates nothing but where a surface
   /// is not the one that was slid on last. From one region to the other one:
   void cross(std::size_t surface, const evaluation::FieldConstants& other);
+  /// Does the same with the constants to be made: by prepare(), or again in each evaluation before that.
+  void cross(std::size_t surface, double alpha);
+  /// Makes constants that are missing; returns whether there were such.
+  bool prepare();
   /// Goes from a region onto its border with the other one, which is `side` of the surface:
   void slide_from_region(std::size_t surface, double selection, Region side, const evaluation::FieldConstants& other);
   /// Goes from the only surface that is slid on to one of its sides:
@@ -67,6 +71,8 @@ class ModeField {
             FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of);
   /// Returns, while one surface is slid on, from the last evaluation the normal components of the fields of both sides.
   [[nodiscard]] const ExitValues& sides() const { return exits_.front(); }
+  /// Returns the same of all surfaces that are slid on, where they do not influence each other.
+  [[nodiscard]] const std::vector<ExitValues>& all_sides() const { return exits_; }
   /// Returns the fields themselves.
   [[nodiscard]] const std::vector<double>& field_of(Region side) const { return f_[side == Region::below ? 0 : 1]; }
   /// Evaluates the field of a side while one surface is slid on, with f affine in its selection.
@@ -99,6 +105,12 @@ class ModeField {
   /// affine in t and in all states but the one that sliding keeps constant; nullptr otherwise. The row is valid until
   /// the next call.
   [[nodiscard]] const evaluation::AffineRow* exit_row(std::size_t row, Region region, const double* x);
+  /// Returns the state that sliding on a surface keeps constant, if there is one.
+  [[nodiscard]] evaluation::FixedState kept_state(std::size_t row, const double* x) const {
+    const int only = rows_.coordinate[row];
+    if (only < 0 || rows_.rates[static_cast<Eigen::Index>(row)] != 0.0) return {};
+    return {only, x[only]};
+  }
   /// Returns, behind exits(), the size of the terms whose sum an exit function of a sliding surface is, which bounds
   /// its rounding.
   [[nodiscard]] double normal_terms(std::size_t row) const;
@@ -119,6 +131,7 @@ class ModeField {
   [[nodiscard]] const ode::LinearField* linear_field();
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
   void resize_rows();
+  void prepare_corners();
   [[nodiscard]] bool keeps_rows() const;
   void take_row(std::size_t row);
   void find_rooted_rows();
@@ -129,6 +142,9 @@ class ModeField {
   void slide(double t, const double* x, double* xdot);
   void slide_on_one(double t, const double* x, double* xdot);
   void find_groups();
+  [[nodiscard]] bool is_alone(std::size_t row) const;
+  [[nodiscard]] std::vector<std::size_t> group_around(std::size_t row);
+  void find_moved();
   void evaluate_alone(double t, const double* x);
   void evaluate_groups(double t, const double* x);
   void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
@@ -162,9 +178,9 @@ class ModeField {
   std::vector<int> sliding_;
   std::vector<double> start_alpha_;          ///< of the mode
   std::vector<double> alpha_;                ///< of the last evaluation
-  std::vector<double> corner_[2];            ///< selections of the two regions (one sliding surface)
+  std::vector<double> corner_[2];            ///< selections of two regions, of several surfaces with all at 0 and at 1
   std::vector<std::size_t> between_;         ///< where these differ: the sliding surface and functions nested around it
-  evaluation::FieldConstants constants_[2];  ///< of the mode's field; of the two regions (one sliding surface)
+  evaluation::FieldConstants constants_[2];  ///< of the mode's field; of the two regions
   std::vector<double> trial_;                ///< n_psi
   std::vector<double> f_[2];                 ///< n_x each
   std::vector<double> values_;               ///< all event functions

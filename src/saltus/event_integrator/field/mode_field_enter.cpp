@@ -5,6 +5,7 @@
 #include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/event_integrator/mode/large_system.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -40,7 +41,7 @@ void ModeField::enter(const ModeState& state) {
   }
   single_ = is_single() ? sliding_.front() : -1;
   find_rooted_rows();
-  if (sliding_.size() != 1) return;
+  if (sliding_.size() != 1) return prepare_corners();
   between_.clear();
   for (std::size_t corner = 0; corner < 2; ++corner) {
     corner_[corner] = state.corner_alpha[corner];
@@ -54,6 +55,39 @@ void ModeField::enter(const ModeState& state) {
     }
   }
   if (same_rows) refer_to_constants();
+}
+
+/// Of several sliding surfaces: all selections at 0, and those at 1 that no other one influences.
+void ModeField::prepare_corners() {
+  for (auto& corner : corner_) {
+    corner = start_alpha_;
+    for (const int j : sliding_) corner[at(j)] = 0.0;
+  }
+  for (const std::size_t row : groups_.alone) corner_[1][at(sliding_[row])] = 1.0;
+  for (std::size_t corner = 0; corner < 2; ++corner) {
+    kernel_.prepare_field(corner_[corner].data(), constants_[corner]);
+  }
+}
+
+/// Of large systems, whose fields at all corners say what f is: with one selection in a row it lies between two of
+/// them.
+void ModeField::find_moved() {
+  groups_.moved.clear();
+  const auto* structure = solve_ == SlidingSolve::decoupled && kernel_.region_groups().empty() && sliding_.size() > 1
+                              ? structure_of_large(kernel_)
+                              : nullptr;
+  if (structure == nullptr) return;
+  groups_.is_moved.resize(at(kernel_.states()), false);
+  bool several = false;
+  for (const std::size_t row : groups_.alone) {
+    for (const std::size_t state : structure->rows_of_selection[at(sliding_[row])]) {
+      several = several || groups_.is_moved[state];
+      groups_.is_moved[state] = true;
+      groups_.moved.push_back({state, row});
+    }
+  }
+  for (const auto& [state, row] : groups_.moved) groups_.is_moved[state] = false;
+  if (several) groups_.moved.clear();
 }
 
 void ModeField::resize_rows() {
@@ -74,6 +108,20 @@ void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& oth
   known_ = nullptr;
   start_alpha_[surface] = alpha_[surface] = other.alpha[surface];
   constants_[0] = other;
+}
+
+void ModeField::cross(std::size_t surface, double alpha) {
+  linear_motion_.forget();
+  known_ = nullptr;
+  start_alpha_[surface] = alpha_[surface] = constants_[0].alpha[surface] = alpha;
+  constants_[0].motion = nullptr;
+  constants_[0].direct = nullptr;
+}
+
+bool ModeField::prepare() {
+  if (constants_[0].motion != nullptr || constants_[0].alpha.empty()) return false;
+  kernel_.prepare_field(alpha_.data(), constants_[0]);
+  return true;
 }
 
 void ModeField::slide_from_region(std::size_t surface, double selection, Region side,

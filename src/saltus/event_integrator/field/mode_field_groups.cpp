@@ -36,39 +36,30 @@ switching::RootKind kind_of_mode(const switching::PairCorners& g, double alpha_1
 void ModeField::find_groups() {
   const auto m = sliding_.size();
   groups_.lists.clear();
+  groups_.alone.clear();
   groups_.size.assign(m, 0);
   groups_.condition.assign(m, 1.0);
-  groups_.speed.assign(m, not_a_number);
-  groups_.kind.assign(m, std::nullopt);
-  std::vector<bool> placed(m, false);
+  groups_.placed.assign(m, false);
   for (std::size_t row = 0; row < m; ++row) groups_.row_of[at(sliding_[row])] = static_cast<int>(row);
   for (std::size_t first = 0; first < m; ++first) {
-    if (placed[first]) continue;
-    std::vector<std::size_t> group{first};
-    placed[first] = true;
-    const auto place = [&](std::size_t other) {
-      if (placed[other]) return;
-      group.push_back(other);
-      placed[other] = true;
-    };
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      const int i = sliding_[group[k]];
-      for (const int j : kernel_.neighbours(i)) {
-        if (groups_.row_of[at(j)] >= 0) place(at(groups_.row_of[at(j)]));
-      }
-      for (std::size_t other = 0; !kernel_.region_groups().empty() && other < m; ++other) {
-        if (same_group(kernel_, i, sliding_[other])) place(other);
-      }
+    if (groups_.placed[first]) continue;
+    if (is_alone(first)) {
+      groups_.size[first] = 1;
+      groups_.alone.push_back(first);
+    } else {
+      groups_.lists.push_back(group_around(first));
+      groups_.size[first] = groups_.lists.back().size();
     }
-    std::sort(group.begin(), group.end());
-    groups_.size[first] = group.size();
-    groups_.lists.push_back(std::move(group));
   }
   find_large_groups();
   for (const int j : sliding_) groups_.row_of[at(j)] = -1;
-  solve_ = !affine_in_alpha_           ? SlidingSolve::nonaffine
-           : groups_.lists.size() == m ? SlidingSolve::decoupled
-                                       : SlidingSolve::coupled;
+  solve_ = !affine_in_alpha_       ? SlidingSolve::nonaffine
+           : groups_.lists.empty() ? SlidingSolve::decoupled
+                                   : SlidingSolve::coupled;
+  find_moved();
+  if (groups_.lists.empty()) return;
+  groups_.speed.assign(m, not_a_number);
+  groups_.kind.assign(m, std::nullopt);
   groups_.newton.assign(m, std::nullopt);
   groups_.selections.resize(m);
   for (const auto& group : groups_.lists) {
@@ -77,10 +68,42 @@ void ModeField::find_groups() {
   }
 }
 
+/// Whether no other sliding surface is connected with that of a row.
+bool ModeField::is_alone(std::size_t row) const {
+  const int i = sliding_[row];
+  const auto& neighbours = kernel_.neighbours(i);
+  const auto slides = [&](int j) { return groups_.row_of[at(j)] >= 0; };
+  if (std::any_of(neighbours.begin(), neighbours.end(), slides)) return false;
+  return kernel_.region_groups().empty() ||
+         std::none_of(sliding_.begin(), sliding_.end(), [&](int j) { return j != i && same_group(kernel_, i, j); });
+}
+
+/// The rows that a row is connected with, ascending.
+std::vector<std::size_t> ModeField::group_around(std::size_t row) {
+  std::vector<std::size_t> group{row};
+  groups_.placed[row] = true;
+  const auto place = [&](std::size_t other) {
+    if (groups_.placed[other]) return;
+    group.push_back(other);
+    groups_.placed[other] = true;
+  };
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const int i = sliding_[group[k]];
+    for (const int j : kernel_.neighbours(i)) {
+      if (groups_.row_of[at(j)] >= 0) place(at(groups_.row_of[at(j)]));
+    }
+    for (std::size_t other = 0; !kernel_.region_groups().empty() && other < sliding_.size(); ++other) {
+      if (same_group(kernel_, i, sliding_[other])) place(other);
+    }
+  }
+  std::sort(group.begin(), group.end());
+  return group;
+}
+
 /// Whether a row is in a group with several regions of one group by `indicator`: their weights follow from linear
 /// equations, and their exits are the zeros of these.
 bool ModeField::several_regions(std::size_t row) const {
-  if (ties_.regions.empty()) return false;
+  if (ties_.regions.empty() || groups_.size[row] == 1) return false;
   const auto group = std::find_if(groups_.lists.begin(), groups_.lists.end(),
                                   [&](const auto& rows) { return std::binary_search(rows.begin(), rows.end(), row); });
   return std::any_of(ties_.regions.begin(), ties_.regions.end(), [&](const SlidingRegions& regions) {
@@ -193,46 +216,37 @@ bool ModeField::has_stability(std::size_t row) const {
 
 /// Surfaces that no other sliding one influences: all at once.
 void ModeField::evaluate_alone(double t, const double* x) {
-  const auto alone = [&](const auto& group) { return group.size() == 1 && tie_of(group.front()) == nullptr; };
-  bool any = false;
-  for (const auto& group : groups_.lists) {
-    if (!alone(group)) continue;
-    trial_[at(sliding_[group.front()])] = 1.0;
-    any = true;
-  }
-  if (!any) return;
-  kernel_.field(t, x, trial_.data(), f_[1].data());
-  for (const auto& group : groups_.lists) {
-    if (!alone(group)) continue;
-    const std::size_t row = group.front();
-    const auto j = at(sliding_[row]);
-    trial_[j] = 0.0;
+  if (groups_.alone.empty()) return;
+  kernel_.prepared_field(t, x, constants_[1], f_[1].data());
+  for (const std::size_t row : groups_.alone) {
     exits_[row].above = rows_.velocity(row, f_[1]);
-    alpha_[j] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
+    alpha_[at(sliding_[row])] = switching::sliding_alpha(exits_[row].below, exits_[row].above);
   }
 }
 
 void ModeField::evaluate_groups(double t, const double* x) {
-  trial_ = start_alpha_;
-  for (const int j : sliding_) trial_[at(j)] = 0.0;
-  kernel_.field(t, x, trial_.data(), f_[0].data());
+  kernel_.prepared_field(t, x, constants_[0], f_[0].data());
   for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {rows_.velocity(row, f_[0]), 0.0, 0.0, 0.0};
   evaluate_alone(t, x);
+  if (!groups_.lists.empty()) trial_ = corner_[0];
   for (const auto& rows : groups_.lists) {
     const auto tie = std::find_if(ties_.regions.begin(), ties_.regions.end(), [&](const auto& regions) {
       return regions.tie && regions.rows.front() == rows.front();
     });
     if (tie != ties_.regions.end()) {
       evaluate_tie(t, x, *tie);
-      continue;
-    }
-    if (rows.size() == 2 && !several_regions(rows.front())) {
+    } else if (rows.size() == 2 && !several_regions(rows.front())) {
       evaluate_pair(t, x, rows);
-      continue;
+    } else if (!is_in_large(rows[0])) {
+      evaluate_many(t, x, rows);
     }
-    if (rows.size() > 1 && !is_in_large(rows[0])) evaluate_many(t, x, rows);
   }
   if (groups_.large) evaluate_large(t, x, *groups_.large);
+  if (!groups_.moved.empty() && constants_[0].motion == kernel_.motion()) {
+    for (const auto& [state, row] : groups_.moved)
+      f_[0][state] += alpha_[at(sliding_[row])] * (f_[1][state] - f_[0][state]);
+    return;
+  }
   weigh_references();
   kernel_.field(t, x, alpha_.data(), f_[0].data());
 }
@@ -379,7 +393,9 @@ void ModeField::follow(double t, const double* x) {
   const auto is_large = [&](const auto& rows) { return rows.size() > 2 || tie_of(rows.front()) != nullptr; };
   if (solve_ != SlidingSolve::coupled || std::none_of(groups_.lists.begin(), groups_.lists.end(), is_large)) return;
   select(t, x);
-  if (is_finite(alpha_)) start_alpha_ = alpha_;
+  if (!is_finite(alpha_)) return;
+  start_alpha_ = alpha_;
+  prepare_corners();
 }
 
 }  // namespace saltus::event_integrator

@@ -36,13 +36,13 @@ void ModeField::remove_normal_part(double* xdot) {
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
     rows_.residual[static_cast<Eigen::Index>(row)] = rows_.velocity(row, f_[0]);
   }
-  const bool independent = rows_.solve_normal_equations();
-  rows_.normal.transposed_times(rows_.residual, rows_.correction);
-  for (std::size_t i = 0; i < f_[0].size(); ++i) xdot[i] = independent ? f_[0][i] - rows_.correction[i] : not_a_number;
+  if (!rows_.solve_normal_equations()) return static_cast<void>(std::fill_n(xdot, f_[0].size(), not_a_number));
+  std::copy(f_[0].begin(), f_[0].end(), xdot);
+  rows_.normal.subtract_transposed(rows_.residual, xdot);
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
     const auto r = static_cast<Eigen::Index>(row);
-    if (const int only = rows_.coordinate[row]; only >= 0 && independent && std::isfinite(xdot[only])) {
-      xdot[only] = rows_.rates[r] == 0.0 ? 0.0 : -rows_.rates[r] / rows_.normal[row].value.front();
+    if (const int only = rows_.coordinate[row]; only >= 0 && std::isfinite(xdot[only])) {
+      xdot[only] = rows_.rates[r] == 0.0 ? 0.0 : -rows_.rates[r] / rows_.factor[row];
     }
   }
 }
@@ -63,13 +63,7 @@ bool ModeField::project(double t, double* x) {
     if (largest == 0.0 || !std::isfinite(largest)) return changed;
     gradients(t, x);
     if (!rows_.solve_normal_equations()) return changed;
-    bool moved = false;
-    rows_.normal.transposed_times(rows_.residual, rows_.correction);
-    for (std::size_t i = 0; i < f_[0].size(); ++i) {
-      const double next = x[i] - rows_.correction[i];
-      moved = moved || next != x[i];
-      x[i] = next;
-    }
+    const bool moved = rows_.normal.subtract_transposed(rows_.residual, x);
     changed = changed || moved;
     if (!moved) return changed;
   }

@@ -20,6 +20,7 @@ struct SlidingGroups {
   explicit SlidingGroups(std::size_t surfaces) : row_of(surfaces, -1) {}
 
   std::vector<std::vector<std::size_t>> lists;  ///< rows that influence each other, connected and ascending
+  std::vector<std::size_t> alone;               ///< the other rows, ascending
   std::vector<std::size_t> size;                ///< by row, 0 behind the first of a group
   /// By row, for the first of a pair: known once it was evaluated.
   std::vector<std::optional<switching::RootKind>> kind;
@@ -30,6 +31,13 @@ struct SlidingGroups {
   std::vector<double> scaled;      ///< G of such a group, rows over their speeds
   std::vector<double> condition;   ///< by row: of a coupled selection
   std::vector<int> row_of;         ///< by surface while groups are found, -1 = it is not slid on
+  std::vector<bool> placed;        ///< by row while groups are found
+
+  struct Moved {
+    std::size_t state, row;
+  };
+  std::vector<Moved> moved;    ///< states whose rows of f hold a selection, if all are alone and none has several
+  std::vector<bool> is_moved;  ///< by state while these are found
 };
 
 /// Holds regions of a group by `indicator` that slide, as rows, and the reference they are measured against.

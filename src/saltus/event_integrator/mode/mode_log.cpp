@@ -88,19 +88,13 @@ void ModeLog::append_changed(std::vector<std::size_t>& functions) const {
   }
 }
 
-void ModeLog::Reader::seek(std::size_t number) {
+bool ModeLog::Reader::begin_before(std::size_t number) {
   SALTUS_ASSERT(number < log_->ends_.size());
-  if (next_ == 0 || number + 1 < next_) {
-    mode_ = log_->first_mode_;
-    alpha_ = log_->first_alpha_;
-    next_ = 1;
-  }
-  for (std::size_t k = log_->ends_[next_ - 1]; k < log_->ends_[number]; ++k) {
-    const auto& change = log_->changes_[k];
-    mode_[change.function] = change.mode;
-    alpha_[change.function] = change.alpha;
-  }
-  next_ = number + 1;
+  if (next_ != 0 && number + 1 >= next_) return false;
+  mode_ = log_->first_mode_;
+  alpha_ = log_->first_alpha_;
+  next_ = 1;
+  return true;
 }
 
 }  // namespace saltus::event_integrator

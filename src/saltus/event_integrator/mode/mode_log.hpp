@@ -43,12 +43,30 @@ class ModeLog {
   class Reader {
    public:
     explicit Reader(const ModeLog& log) : log_(&log) {}
-    /// Goes to a mode. Cost: the differences on the way from the last one; from the beginning if it lies before that.
-    void seek(std::size_t number);
+    /// Goes to a mode, and calls visit(function) for those that differ from the last one at most; some twice. Cost: the
+    /// differences on the way from the last one; from the beginning if it lies before that.
+    template <class Visit>
+    void seek(std::size_t number, Visit visit) {
+      if (begin_before(number)) {
+        for (std::size_t j = 0; j < mode_.size(); ++j) visit(j);
+      }
+      for (std::size_t k = log_->ends_[next_ - 1]; k < log_->ends_[number]; ++k) {
+        const auto& change = log_->changes_[k];
+        mode_[change.function] = change.mode;
+        alpha_[change.function] = change.alpha;
+        visit(change.function);
+      }
+      next_ = number + 1;
+    }
+    void seek(std::size_t number) {
+      seek(number, [](std::size_t) {});
+    }
     [[nodiscard]] const std::vector<int>& mode() const { return mode_; }
     [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
 
    private:
+    /// Goes to the first mode if there is none yet, or this one lies before it; returns whether.
+    bool begin_before(std::size_t number);
     const ModeLog* log_;
     std::size_t next_ = 0;  ///< the number behind the one expanded; 0 = none yet
     std::vector<int> mode_;

@@ -2,60 +2,78 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 #include "saltus/base/contracts.hpp"
-#include "saltus/event_integrator/mode/mode_differences_internal.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-/// The columns of one mode after the other: what changes from each to the next is turned into columns, the rest stays.
+/// Modes and selections of functions as columns.
 class Columns {
  public:
   explicit Columns(const model::System& system) : system_(system), of_function_(system.switching.size()) {
     for (std::size_t c = 0; c < system.columns.size(); ++c) of_function_[at(system.columns[c].function)].push_back(c);
-    columns_mode_.resize(system.columns.size());
-    columns_alpha_.resize(system.columns.size());
+    mode_.resize(system.columns.size());
+    alpha_.resize(system.columns.size());
   }
 
   void set(const std::vector<int>& mode, const std::vector<double>& alpha) {
-    if (mode_.size() != mode.size()) {
-      mode_ = mode;
-      alpha_ = alpha;
-      for (std::size_t j = 0; j < mode.size(); ++j) set_function(j);
-      return;
-    }
-    const auto take = [&](std::size_t j) {
-      mode_[j] = mode[j];
-      alpha_[j] = alpha[j];
-      set_function(j);
-    };
-    for_each_difference(alpha_, alpha, take);
-    for_each_difference(mode_, mode, take);
+    for (std::size_t j = 0; j < mode.size(); ++j) set_function(j, mode[j], alpha[j]);
   }
-  [[nodiscard]] const result::Mode& mode() const { return columns_mode_; }
-  [[nodiscard]] const std::vector<double>& alpha() const { return columns_alpha_; }
-
- private:
-  void set_function(std::size_t j) {
+  void set_function(std::size_t j, int function_mode, double function_alpha) {
     // Functions of discrete states are in no mode: their sign is that of their selection.
     const bool discrete = system_.switching[j].role == model::SwitchingRole::discrete;
-    const int sign = discrete ? (alpha_[j] > 0.5 ? 1 : alpha_[j] < 0.5 ? -1 : 0) : mode_[j];
+    const int sign = discrete ? (function_alpha > 0.5 ? 1 : function_alpha < 0.5 ? -1 : 0) : function_mode;
     for (const std::size_t c : of_function_[j]) {
       const int orientation = system_.columns[c].orientation;
-      columns_mode_[c] = orientation * sign;
-      columns_alpha_[c] = orientation > 0 ? alpha_[j] : 1.0 - alpha_[j];
+      mode_[c] = orientation * sign;
+      alpha_[c] = orientation > 0 ? function_alpha : 1.0 - function_alpha;
     }
   }
+  [[nodiscard]] const std::vector<std::size_t>& of_function(std::size_t j) const { return of_function_[j]; }
+  [[nodiscard]] const result::Mode& mode() const { return mode_; }
+  [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
 
+ private:
   const model::System& system_;
   std::vector<std::vector<std::size_t>> of_function_;
-  std::vector<int> mode_;      ///< by function, as are
-  std::vector<double> alpha_;  ///< these
-  result::Mode columns_mode_;
-  std::vector<double> columns_alpha_;
+  result::Mode mode_;
+  std::vector<double> alpha_;
+};
+
+/// The columns of one mode of a log after the other: what changes from each to the next is turned into columns.
+class ColumnsInTime {
+ public:
+  ColumnsInTime(const model::System& system, const ModeLog& modes)
+      : reader_(modes), columns_(system), listed_(system.columns.size(), false) {}
+
+  void seek(std::size_t number) {
+    reader_.seek(number, [&](std::size_t j) {
+      columns_.set_function(j, reader_.mode()[j], reader_.alpha()[j]);
+      for (const std::size_t c : columns_.of_function(j)) {
+        if (!listed_[c]) changed_.push_back(c);
+        listed_[c] = true;
+      }
+    });
+  }
+  /// Columns that may have changed since forget() was called last.
+  [[nodiscard]] result::Events::ModeChanges changes() const { return {columns_.mode(), columns_.alpha(), changed_}; }
+  void forget() {
+    for (const std::size_t c : changed_) listed_[c] = false;
+    changed_.clear();
+  }
+  [[nodiscard]] const ModeLog::Reader& functions() const { return reader_; }
+  [[nodiscard]] const result::Mode& mode() const { return columns_.mode(); }
+  [[nodiscard]] const std::vector<double>& alpha() const { return columns_.alpha(); }
+
+ private:
+  ModeLog::Reader reader_;
+  Columns columns_;
+  std::vector<bool> listed_;  ///< by column
+  std::vector<std::size_t> changed_;
 };
 
 /// Names of the active modes of every group by `indicator`.
@@ -84,9 +102,8 @@ std::vector<double> region_weights(const model::System& system, const std::vecto
 }
 
 /// `count` numbers of a list from `begin` on.
-std::vector<double> part(const std::vector<double>& list, std::size_t begin, std::size_t count) {
-  const auto first = list.begin() + static_cast<std::ptrdiff_t>(begin);
-  return {first, first + static_cast<std::ptrdiff_t>(count)};
+std::span<const double> part(const std::vector<double>& list, std::size_t begin, std::size_t count) {
+  return std::span(list).subspan(begin, count);
 }
 
 /// Two columns of the result with their orientations; nullopt if one of the surfaces is in none.
@@ -140,8 +157,8 @@ void Recording::drop(std::size_t events, std::size_t rows) {
 }
 
 result::Events Recording::events(const model::System& system) const {
-  ModeLog::Reader reader(modes);
-  Columns columns(system);
+  ColumnsInTime columns(system, modes);
+  Columns of_alternatives(system);
   result::Events named;
   for (const Event& event : event_list) {
     result::Event entry;
@@ -156,27 +173,28 @@ result::Events Recording::events(const model::System& system) const {
                                : column       ? system.columns[surface].name
                                               : system.switching[surface - system.columns.size()].name);
     }
-    entry.x = part(states, event.x, n_x);
-    entry.x_after = part(states, event.x_after, n_x);
-    const auto expand = [&](std::size_t number, auto& mode, auto& alpha, auto& regions) {
-      if (number == none) return;
-      reader.seek(number);
-      columns.set(reader.mode(), reader.alpha());
-      mode = columns.mode();
-      alpha = columns.alpha();
-      if (auto active = active_regions(system, reader.mode()); !active.empty()) regions = std::move(active);
-    };
-    expand(event.mode, entry.mode_before, entry.alpha_before, entry.regions_before);
-    expand(event.mode_after, entry.mode_after, entry.alpha_after, entry.regions_after);
-    if (event.meeting != none) entry.intersection = intersection(system, meetings[event.meeting], reader.alpha());
     entry.unique = event.unique;
     for (std::size_t k = event.alternatives.begin; k < event.alternatives.end; ++k) {
       const auto& other = alternatives[k];
-      columns.set(other.mode, other.alpha);
-      entry.alternatives.push_back({columns.mode(), columns.alpha(), active_regions(system, other.mode)});
+      of_alternatives.set(other.mode, other.alpha);
+      entry.alternatives.push_back(
+          {of_alternatives.mode(), of_alternatives.alpha(), active_regions(system, other.mode)});
     }
     entry.reason = text.substr(event.reason.begin, event.reason.end - event.reason.begin);
-    named.push_back(std::move(entry));
+    const auto add_side = [&](std::size_t number, auto& regions) {
+      if (number == none) return named.add_side(nullptr);
+      columns.seek(number);
+      const auto changes = columns.changes();
+      named.add_side(&changes);
+      columns.forget();
+      if (auto active = active_regions(system, columns.functions().mode()); !active.empty())
+        regions = std::move(active);
+    };
+    add_side(event.mode, entry.regions_before);
+    add_side(event.mode_after, entry.regions_after);
+    if (event.meeting != none)
+      entry.intersection = intersection(system, meetings[event.meeting], columns.functions().alpha());
+    named.push_back(std::move(entry), part(states, event.x, n_x), part(states, event.x_after, n_x));
   }
   return named;
 }
@@ -203,8 +221,7 @@ std::vector<result::Family> Recording::listed_families(const model::System& syst
 }
 
 result::Trajectory Recording::trajectory(const model::System& system) && {
-  ModeLog::Reader reader(modes);
-  Columns columns(system);
+  ColumnsInTime columns(system, modes);
   result::Trajectory rows;
   const std::size_t count = row_times.size();
   rows.t = std::move(row_times);
@@ -220,13 +237,15 @@ result::Trajectory Recording::trajectory(const model::System& system) && {
       if (has_regions) rows.regions.repeat(), rows.theta.repeat();
       continue;
     }
-    reader.seek(row_modes[k]);
-    columns.set(reader.mode(), reader.alpha());
-    rows.alpha.push_back(columns.alpha());
-    rows.mode.push_back(columns.mode());
+    columns.seek(row_modes[k]);
+    const auto [mode, alpha, changed] = columns.changes();
+    rows.alpha.push_changes(alpha, changed);
+    rows.mode.push_changes(mode, changed);
+    columns.forget();
     if (!has_regions) continue;
-    rows.regions.push_back(active_regions(system, reader.mode()));
-    rows.theta.push_back(region_weights(system, reader.mode(), reader.alpha()));
+    const auto& functions = columns.functions();
+    rows.regions.push_back(active_regions(system, functions.mode()));
+    rows.theta.push_back(region_weights(system, functions.mode(), functions.alpha()));
   }
   return rows;
 }
@@ -237,11 +256,13 @@ result::Final Recording::last(const model::System& system) const {
   Columns columns(system);
   reader.seek(row_modes.back());
   columns.set(reader.mode(), reader.alpha());
+  const auto x = part(row_states, row_states.size() - n_x, n_x);
+  const auto outputs = part(row_outputs, row_outputs.size() - n_y, n_y);
   return {row_times.back(),
-          part(row_states, row_states.size() - n_x, n_x),
+          {x.begin(), x.end()},
           columns.mode(),
           columns.alpha(),
-          part(row_outputs, row_outputs.size() - n_y, n_y),
+          {outputs.begin(), outputs.end()},
           active_regions(system, reader.mode()),
           region_weights(system, reader.mode(), reader.alpha())};
 }

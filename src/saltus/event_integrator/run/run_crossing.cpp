@@ -49,33 +49,56 @@ bool Run::meet(const Located& located, int surface) {
   const double* x = located.x.data();
   const int mode = here_.state.mode[j];
   const double alpha = here_.state.alpha[j];
+  if (cross_locally(located, surface)) return true;
   field_(t, x, here_.slope.data());
   here_.state.alpha[j] = 1.0 - alpha;
   const auto& constants = fast_.fields.of(here_.state.alpha, steps_.memory().mark_with(j, -mode));
   here_.state.alpha[j] = alpha;
-  if (!fast_.local.slope_behind(surface, t, x, constants, here_.slope, fast_.slope_beyond)) {
-    kernel_.prepared_field(t, x, constants, fast_.slope_beyond.data());
-  }
+  kernel_.prepared_field(t, x, constants, fast_.slope_beyond.data());
   const auto decision = mode < 0 ? fast_.single.decide(here_.state, surface, t, x, here_.slope, fast_.slope_beyond)
                                  : fast_.single.decide(here_.state, surface, t, x, fast_.slope_beyond, here_.slope);
   if (!decision) return false;
   const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
   if (change.after != 0) {
-    const auto* known = fast_.local.behind(surface, t, located.x, steps_.dense(), steps_.last_error(), constants);
     field_.cross(j, constants);
-    field_.follow_known(known);
-    // Its error is of a lower order than that of the steps.
-    const double share = known != nullptr ? std::clamp(tolerances_.smallest_part(), 0.1, 1.0) : 1.0;
-    tolerances_.limit(StepTolerances::Reason::local, {share, share});
     here_.slope.swap(fast_.slope_beyond);
   } else {
-    tolerances_.lift(StepTolerances::Reason::local);
     field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
     if (!begin_at(located)) return false;
   }
   go_on_behind(located, change.after != 0 ? located.x : fast_.x, change);
-  if (field_.known() != nullptr) here_.h = field_.known()->h;
+  keep_step(surface);
   return true;
+}
+
+/// A surface of a large system that is crossed: only rows of the field are looked at. All of it is evaluated when a
+/// step of all states begins.
+bool Run::cross_locally(const Located& located, int surface) {
+  if (!fast_.local.applies() || !fast_.single.has_rows(surface)) return false;
+  const auto j = at(surface);
+  const auto decision = fast_.single.decide_by_rows(here_.state, surface, located.t, located.x.data());
+  if (!decision || decision->mode == 0) return false;
+  const SurfaceSwitch change{surface,         here_.state.mode[j], decision->mode, here_.state.alpha[j],
+                             decision->alpha, decision->reason};
+  field_.cross(j, change.alpha_after);
+  fast_.local.renew_slope(surface, located.t, located.x.data(), here_.state.alpha, here_.slope);
+  go_on_behind(located, located.x, change);
+  keep_step(surface);
+  return true;
+}
+
+/// The solution behind the switch of a surface may stay on the dense output of the step before it, but for few states.
+void Run::keep_step(int surface) {
+  const auto* known = fast_.local.behind(surface, here_.t, here_.x, steps_.dense(), steps_.last_error(), here_.state);
+  field_.follow_known(known);
+  if (known != nullptr) {
+    here_.h = known->h;
+  } else if (field_.prepare()) {
+    field_(here_.t, here_.x.data(), here_.slope.data());
+  }
+  // Its error is of a lower order than that of the steps.
+  const double share = known != nullptr ? std::clamp(tolerances_.smallest_part(), 0.1, 1.0) : 1.0;
+  tolerances_.limit(StepTolerances::Reason::local, {share, share});
 }
 
 /// A surface that is reached while the solution slides on another one.
@@ -212,6 +235,7 @@ bool Run::leave(const Located& located, const EventFunction& exit) {
   field_.leave_to(side);
   here_.slope.swap(fast_.slope_beyond);
   go_on_behind(located, located.x, {surface, 0, decision->mode, alpha, decision->alpha, decision->reason});
+  keep_step(surface);
   return true;
 }
 
@@ -244,11 +268,9 @@ void Run::begin_search(const SurfaceSwitch& change) {
   const bool crosses = change.before != 0 && change.after != 0;
   if (crosses && change.slid == nullptr) return search_.cross(j, here_.state, here_.t, here_.x.data());
   set_corner_alpha(here_.state);
-  if (crosses && search_.pass(j, here_.state, here_.t, here_.x.data())) return;
   fast_.zero_order.assign(here_.state.mode.size(), 0);
   fast_.zero_order[j] = crosses ? 1 : change.after == 0 ? 0 : 2;
-  if (crosses) return search_.enter(here_.state, fast_.zero_order, here_.t, here_.x.data());
-  search_.enter_again(here_.state, fast_.zero_order, here_.t, here_.x.data());
+  search_.enter(here_.state, fast_.zero_order, here_.t, here_.x.data());
 }
 
 }  // namespace saltus::event_integrator

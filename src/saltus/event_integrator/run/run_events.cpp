@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "saltus/base/without_repeats.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
@@ -124,7 +123,9 @@ bool Run::collect_surfaces(const Located& located) {
     }
     if (function.kind == FunctionKind::instability) switching_point.destabilised.push_back(function.index);
     if (function.kind == FunctionKind::nested && jumps_while_sliding(function.index)) return false;
-    switching_point.at_zero.push_back(function.index);
+    auto& at_zero = switching_point.at_zero;
+    const auto behind = std::lower_bound(at_zero.begin(), at_zero.end(), function.index);
+    if (behind == at_zero.end() || *behind != function.index) at_zero.insert(behind, function.index);
     switching_point.touched.push_back(function.index);
   }
   return true;
@@ -158,19 +159,21 @@ bool Run::change_mode(const Located& located) {
   SwitchingPoint& switching_point = event_.switching_point;
   const ModeState& from = touch_others();
   if (switching_point.touched.empty()) return keep_mode_in_cells();
-  drop_repeats(switching_point.at_zero);
   if (!kernel_.region_groups().empty()) complete_ties(kernel_, here_.state, switching_point);
   note_ties(kernel_, here_.state, switching_point);
   Transition& transition = event_.transition;
   const bool slope_holds = cells_.empty() && jumps_.none();  // no cell was left, and no guard released, here
-  if (!fast_.single.decide(from, switching_point, transition, slope_holds ? &here_.slope : nullptr) &&
-      !fast_.pair.decide(from, switching_point, transition)) {
+  const SingleSurface::Motion known{here_.slope, field_.solve()};
+  const bool single = fast_.single.decide(from, switching_point, transition, slope_holds ? &known : nullptr);
+  if (!single && !fast_.pair.decide(from, switching_point, transition)) {
     transition = decide_mode(switching_context_, from, switching_point);
   }
   if (transition.termination == Termination::completed) {
     other_continuations(switching_context_, from, switching_point, transition);
   }
-  return go_on();
+  if (!go_on()) return false;
+  if (single && fast_.applies) keep_step(switching_point.touched.front());
+  return true;
 }
 
 /// Into the mode that was decided at this time, with its event.
@@ -197,7 +200,9 @@ bool Run::go_on() {
     accumulates();
     return false;
   }
-  if (!enter(transition) || !find_undefined_cells()) return false;
+  if (!enter(transition)) return false;
+  event_.evaluated = true;
+  if (!find_undefined_cells()) return false;
   if (!recorder_.switched(here_.t, here_.x, event_.before, transition) && choices_.chooses(transition)) {
     // To stay on a root that has lost its stability, or to change to the other one: the branch begins like a run in a
     // forced mode.
@@ -231,7 +236,7 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
   if (!here_.state.sliding.empty() && is_finite(field_.alpha())) here_.state.alpha = field_.alpha();
   event_.before = here_.state;
   event_.x_before = here_.x;
-  event_.jumped = event_.listed_only = false;
+  event_.jumped = event_.evaluated = event_.listed_only = false;
   event_.last_bounces.clear();
   event_.cells_before = cells_.indices();
   event_.cell_change = CellChange::none;
@@ -295,11 +300,17 @@ bool Run::selections_jumped() const {
   return false;
 }
 
+/// The row behind an event: the field of the mode behind it was evaluated here, unless something jumps.
+void Run::row_behind() {
+  if (!event_.evaluated || event_.jumped) return row(here_.t, here_.x);
+  recorder_.row(here_.t, here_.x, here_.state, here_.state.sliding.empty() ? here_.state.alpha : field_.alpha());
+}
+
 /// Rows before and behind what has happened here.
 void Run::write_rows_behind(const Arrival& arrival, bool event) {
   if (event || !outcome_.running) {
     if (arrival.row == OutputRows::Arrival::missing) rows_at_event(arrival);
-    if (event) row(here_.t, here_.x);
+    if (event) row_behind();
   } else if (rows_.at_steps()) {
     // Inputs and outputs may jump here: their values before and behind.
     if (event_.cell_change == CellChange::jump || (rows_.asks_for_lines() && selections_jumped()))

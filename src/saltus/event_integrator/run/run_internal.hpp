@@ -93,6 +93,7 @@ class Run {
   [[nodiscard]] bool is_ordinary(const Located& located) const;
   bool switch_fast(const Located& located);
   bool meet(const Located& located, int surface);
+  bool cross_locally(const Located& located, int surface);
   bool pass(const Located& located, int surface);
   bool pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha);
   void pass_field(int surface, double alpha, double selection);
@@ -102,8 +103,10 @@ class Run {
   bool leave(const Located& located, const EventFunction& exit);
   void go_on_behind(const Located& located, const std::vector<double>& x, const SurfaceSwitch& change);
   void begin_search(const SurfaceSwitch& change);
+  void keep_step(int surface);
   Arrival arrive(OutputRows::Arrival row);
   void follow_change_of_mode();
+  void row_behind();
   void write_rows_behind(const Arrival& arrival, bool event);
   Step depart(const Arrival& arrival);
   [[nodiscard]] bool selections_jumped() const;
@@ -212,6 +215,7 @@ class Run {
     std::vector<long> cells_before;
     CellChange cell_change = CellChange::none;
     bool jumped = false;
+    bool evaluated = false;         ///< the field of the mode behind it, where that begins, and nothing since
     bool listed_only = false;       ///< zeros of [[events]], which change nothing
     std::vector<int> last_bounces;  ///< jumps of contacts that end in it
     std::vector<int> freed;         ///< surfaces that a guard has kept at zero, which it has released

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/without_repeats.hpp"
 #include "saltus/event_integrator/decide/sets/find_resting_surfaces.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 
@@ -97,6 +98,7 @@ const ModeState& Run::slid_on_freed(SwitchingPoint& switching_point) {
     switching_point.touched.push_back(j);
     (event_.before.alpha[at(j)] > 0.5 ? switching_point.exit_above : switching_point.exit_below).push_back(j);
   }
+  drop_repeats(switching_point.at_zero);
   set_corner_alpha(event_.slid);
   return event_.slid;
 }

@@ -131,6 +131,7 @@ Run::Step Run::accept(double t_new) {
   steps_.accepted(h);
   const bool projected = field_.project(here_.t, here_.x.data());
   const bool follows = steps_.stepper().follows();
+  if (follows) field_.prepare();
   if (holding_.project(here_.t, here_.state.alpha, here_.x) || projected || follows) {
     field_(here_.t, here_.x.data(), here_.slope.data());
   } else {
@@ -201,7 +202,8 @@ Run::Step Run::reject(double error) {
 /// The first event of the last attempt, which ends at t_new; nullopt if there is none.
 std::optional<Run::Step> Run::first_event(double t_new) {
   // Events must not depend on the rows: where nothing can vanish there is no search, with and without a dense output.
-  const bool may_vanish = search_.may_vanish(steps_.stepper());
+  // A search is as fast where that is there already.
+  const bool may_vanish = steps_.stepper().follows() || search_.may_vanish(steps_.stepper());
   if (!may_vanish && !rows_.any_before(t_new)) return std::nullopt;
   zeros_.forget();  // the search finds the roundings of functions anew
   if (!steps_.make_dense()) {
@@ -210,7 +212,8 @@ std::optional<Run::Step> Run::first_event(double t_new) {
   }
   if (!may_vanish) return std::nullopt;
   Hit hit;
-  const auto outcome = search_.search(steps_.dense(), hit);
+  const auto location = steps_.stepper().follows() ? EventSearch::Location::along : EventSearch::Location::retaken;
+  const auto outcome = search_.search(steps_.dense(), location, hit);
   if (outcome == SearchOutcome::none) return std::nullopt;
   if (outcome == SearchOutcome::unresolved) return shorten_to(0.5);
   const double h = t_new - here_.t;

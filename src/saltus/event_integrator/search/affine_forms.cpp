@@ -30,21 +30,6 @@ AffineForms::AffineForms(std::size_t states)
       lower_(states, -infinity),
       upper_(states, infinity) {}
 
-void AffineForms::swap(AffineForms& other) noexcept {
-  table_.swap(other.table_);
-  std::swap(loaded_terms_, other.loaded_terms_);
-  forms_.swap(other.forms_);
-  terms_.swap(other.terms_);
-  thresholds_.swap(other.thresholds_);
-  first_.swap(other.first_);
-  place_.swap(other.place_);
-  below_.swap(other.below_);
-  above_.swap(other.above_);
-  lower_.swap(other.lower_);
-  upper_.swap(other.upper_);
-  several_.swap(other.several_);
-}
-
 void AffineForms::load(const evaluation::AffineRows& rows) {
   terms_.clear();
   table_.clear();
@@ -65,7 +50,7 @@ void AffineForms::reset(std::size_t functions) {
 
 AffineForms::Form AffineForms::form_of(const evaluation::AffineRows& rows, std::size_t j) {
   if (!std::isfinite(rows.offset[j]) || !std::isfinite(rows.rate[j])) return {};
-  Form form{terms_.size(), 0, rows.rate[j], rows.offset[j], 0, true};
+  Form form{terms_.size(), 0, 0, rows.rate[j], rows.offset[j], 0, true};
   for (std::size_t k = rows.start[j]; k < rows.start[j + 1]; ++k) {
     if (!std::isfinite(rows.coefficient[k])) return {};
     if (rows.coefficient[k] != 0.0) terms_.push_back({rows.column[k], rows.coefficient[k]});
@@ -79,32 +64,29 @@ void AffineForms::set(std::size_t i, const evaluation::AffineRows& rows, std::si
 }
 
 void AffineForms::set(std::size_t i, const evaluation::AffineRow& row) {
-  if (!std::isfinite(row.offset) || !std::isfinite(row.rate)) return;
-  Form form{terms_.size(), 0, row.rate, row.offset, 0, true};
-  for (std::size_t k = 0; k < row.coefficient.size(); ++k) {
-    if (!std::isfinite(row.coefficient[k])) return;
-    if (row.coefficient[k] != 0.0) terms_.push_back({row.column[k], row.coefficient[k]});
-  }
-  form.count = terms_.size() - form.first;
-  forms_[i] = form;
+  forms_[i] = Form{};
+  replace(i, &row);
 }
 
-bool AffineForms::replace(std::size_t i, const evaluation::AffineRow& row) {
+void AffineForms::replace(std::size_t i, const evaluation::AffineRow* row) {
   Form& form = forms_[i];
-  if (!form.known || form.threshold || !std::isfinite(row.offset) || !std::isfinite(row.rate)) return false;
+  form.known = false;
+  if (row == nullptr || !std::isfinite(row->offset) || !std::isfinite(row->rate)) return;
   std::size_t count = 0;
-  for (const double coefficient : row.coefficient) {
-    if (!std::isfinite(coefficient)) return false;
+  for (const double coefficient : row->coefficient) {
+    if (!std::isfinite(coefficient)) return;
     count += coefficient != 0.0 ? 1 : 0;
   }
-  const Form other{form.first, count, row.rate, row.offset, form.sign, true};
-  if (count > form.count) return false;
-  form = other;
-  std::size_t place = form.first;
-  for (std::size_t k = 0; k < row.coefficient.size(); ++k) {
-    if (row.coefficient[k] != 0.0) terms_[place++] = {row.column[k], row.coefficient[k]};
+  if (count > form.room) {
+    form.first = terms_.size();
+    form.room = count;
+    terms_.resize(terms_.size() + count);
   }
-  return true;
+  form = {form.first, count, form.room, row->rate, row->offset, 0, true};
+  std::size_t place = form.first;
+  for (std::size_t k = 0; k < row->coefficient.size(); ++k) {
+    if (row->coefficient[k] != 0.0) terms_[place++] = {row->column[k], row->coefficient[k]};
+  }
 }
 
 double AffineForms::value(std::size_t i, double t, const double* x) const {
@@ -310,11 +292,15 @@ bool AffineForms::reaches_zero(const Form& form, const StepBounds& bounds) const
   const double at_begin = form.rate == 0.0 ? 0.0 : side * form.rate * bounds.begin;
   const double at_end = form.rate == 0.0 ? 0.0 : side * form.rate * bounds.end;
   double least = side * form.offset + std::min(at_begin, at_end);
-  for (std::size_t k = form.first; k < form.first + form.count; ++k) {
-    const double slope = side * terms_[k].coefficient;
-    least += slope * (slope > 0.0 ? bounds.low : bounds.high)[terms_[k].column];
+  double size = std::abs(form.offset) + std::abs(form.rate) * std::max(std::abs(bounds.begin), std::abs(bounds.end));
+  for (std::size_t k = form.first; k < form.first + form.count; ++k) {  // terms() beside it
+    const auto [column, coefficient] = terms_[k];
+    const double low = bounds.low[column], high = bounds.high[column];
+    const double slope = side * coefficient;
+    least += slope * (slope > 0.0 ? low : high);
+    size += std::abs(coefficient) * std::max(std::abs(low), std::abs(high));
   }
-  return !(least > margin * terms(form, bounds));
+  return !(least > margin * size);
 }
 
 bool AffineForms::leaves(std::size_t i, int sign, const StepBounds& mean_slopes) const {

@@ -30,7 +30,6 @@ struct StepBounds {
 class AffineForms {
  public:
   explicit AffineForms(std::size_t states);
-  void swap(AffineForms& other) noexcept;
   /// Loads the rows for use_row, which stay the same from mode to mode.
   void load(const evaluation::AffineRows& rows);
   /// Begins without forms, for `functions` functions; then use_row and set, then group.
@@ -40,9 +39,8 @@ class AffineForms {
   /// Makes the form of function i row j; nothing if that row is not affine.
   void set(std::size_t i, const evaluation::AffineRows& rows, std::size_t j);
   void set(std::size_t i, const evaluation::AffineRow& row);
-  /// Puts, behind group(), another row in the place of the form of function i, which is not watched. Returns false,
-  /// with nothing done, where that is no place for it (a threshold before or now, more terms, not finite).
-  [[nodiscard]] bool replace(std::size_t i, const evaluation::AffineRow& row);
+  /// Sets, behind group(), the form of a function that is no threshold and is not watched; null where it has none.
+  void replace(std::size_t i, const evaluation::AffineRow* row);
 
   /// Puts the thresholds of each state together when all forms are set. None is watched.
   void group();
@@ -99,6 +97,7 @@ class AffineForms {
   struct Form {
     std::size_t first = 0;  ///< term
     std::size_t count = 0;
+    std::size_t room = 0;  ///< for so many
     double rate = 0.0;
     double offset = 0.0;
     int sign = 0;  ///< 0 = not watched

@@ -92,7 +92,8 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
   for (auto* vector : {&values_.phi, &values_.magnitude, &values_.slope}) vector->resize(n_phi);
   x_.resize(at(kernel.states()));
   range_.resize(at(kernel.states()));
-  mode_.of_surface.resize(at(kernel.switching_functions()));
+  mode_.kept_states.resize(at(kernel.switching_functions()));
+  turned_.beside.resize(mode_.kept_states.size());
   entered_.assign(at(kernel.cells()), -1);
   user_.sign.assign(n_phi - at(kernel.switching_functions()) - 2 * entered_.size(), 0);
   user_.vanishes.assign(user_.sign.size(), false);
@@ -175,6 +176,8 @@ double EventSearch::value(std::size_t i, const double* x) const {
       return mode_.exits[at(function.row)].stability - function.offset;
     case FunctionKind::release:
       return held_.pressure[at(function.row)] - function.offset;
+    case FunctionKind::absent:
+      return 1.0;  // away from zero
   }
   __builtin_unreachable();
 }
@@ -232,7 +235,7 @@ bool EventSearch::specials_leave(const ode::Stepper& stepper) {
 
 bool EventSearch::may_vanish(const ode::Stepper& stepper) {
   range_.known = false;
-  if (mode_.functions.empty()) return false;
+  if (mode_.present == 0) return false;
   if (!mode_.curved.empty() || !specials_leave(stepper)) return true;
   return !range_.read(stepper) || mode_.forms.may_vanish(range_.bounds);
 }
@@ -266,8 +269,8 @@ void EventSearch::find_candidates() {
   if (candidates_.size() > 1) std::sort(candidates_.begin(), candidates_.end());
 }
 
-SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
-  if (mode_.functions.empty()) return SearchOutcome::none;
+SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location, Hit& hit) {
+  if (mode_.present == 0) return SearchOutcome::none;
   find_suspects(step);
   if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
@@ -285,7 +288,8 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Hit& hit) {
   }
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
   if (outcome == SearchOutcome::hit) {
-    if (suspects_.size() == mode_.functions.size()) {  // all of them, whatever the bounds
+    // All of them whatever the bounds, or within bounds that hold for the location.
+    if (suspects_.size() == mode_.present || location == Location::along) {
       candidates_ = suspects_;
       return outcome;
     }

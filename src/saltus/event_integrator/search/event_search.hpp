@@ -43,23 +43,20 @@ class EventSearch {
   EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
               const ode::Tolerances& tolerances);  ///< those of the steps, kept as a reference
 
-  /// Sets up the functions of a mode at (t, x). `zero_order` (n_psi): zeros that surfaces have at this point.
+  /// Sets up the functions of a mode at (t, x), behind an evaluation of the field there. `zero_order` (n_psi): zeros
+  /// that surfaces have at this point.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
-  /// Does the same, in a model without nesting, cells, regions, user functions and jumps: modes that slide on what one
-  /// of the last modes has slid on need their signs only.
-  void enter_again(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
   /// Does the same where one surface was crossed since, with no sliding before and behind; only while crosses(). Cost:
   /// O(1), and the thresholds of the same state.
   void cross(std::size_t surface, const ModeState& state, double t, const double* x);
-  /// Does the same where one surface was crossed since while the solution slides on one other, behind an evaluation of
-  /// the field here. Returns false where the mode has to be entered afresh.
-  [[nodiscard]] bool pass(std::size_t surface, const ModeState& state, double t, const double* x);
   /// Returns whether crossings change signs of surfaces only.
-  [[nodiscard]] bool crosses() const { return mode_.flips && mode_.state.sliding.empty() && held_.guards.empty(); }
+  [[nodiscard]] bool crosses() const { return mode_.plain && mode_.state.sliding.empty() && held_.guards.empty(); }
   /// Returns whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
   [[nodiscard]] bool may_vanish(const ode::Stepper& stepper);
+  /// Says how a hit is located: by steps of other lengths, or along this dense output.
+  enum class Location { retaken, along };
   /// Finds the first sign change in (0, 1] of any function.
-  SearchOutcome search(const ode::DenseStep& step, Hit& hit);
+  SearchOutcome search(const ode::DenseStep& step, Location location, Hit& hit);
   /// Returns, behind a hit, the functions that may vanish within the step, or close by; ascending.
   [[nodiscard]] const std::vector<std::size_t>& candidates() const { return candidates_; }
   /// Evaluates some functions at one point, less their offsets.
@@ -116,6 +113,7 @@ class EventSearch {
   [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
   void enter_surfaces(const ModeState& state, const std::vector<int>& zero_order);
   void enter_exits(const ModeState& state, double t, const double* x);
+  void enter_plain_exits(const double* x);
   void enter_users();
   void size_work();
   void enter_nested(const ModeState& state, const std::vector<int>& zero_order);
@@ -129,12 +127,13 @@ class EventSearch {
   void set_noise(std::size_t i, const double* x);
   void evaluate_parts(double t, const double* x, const FunctionParts& parts);
   [[nodiscard]] double value(std::size_t i, const double* x) const;
-  bool turn_exits(const double* x);
   [[nodiscard]] bool has_same_functions(const ModeState& state) const;
   void renew(const std::vector<int>& zero_order, double t, const double* x);
-  [[nodiscard]] bool may_flip(const ModeState& state) const;
-  bool flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
-  void begin_flipped(const ModeState& state, double t, const double* x);
+  [[nodiscard]] bool is_plain(const ModeState& state) const;
+  bool move(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
+  void move_exits(double t, const double* x);
+  [[nodiscard]] bool exits_change(std::size_t row, const double* x) const;
+  void renew_exits(std::size_t row, const double* x);
   void read_start(double t, const double* x);
   void read_values(double t, const double* x, const std::vector<std::size_t>& which);
   void sort(std::size_t i);
@@ -176,7 +175,6 @@ class EventSearch {
   bool five_nodes_suffice_;  ///< the dense output has degree 4: five samples determine an affine function
   StepErrors errors_;
   ModeFunctions mode_;  ///< of the mode that was entered last
-  KeptModes kept_;
   UserSigns user_;
   HeldGuards held_;
   KernelValues values_;
@@ -194,6 +192,7 @@ class EventSearch {
   std::vector<std::size_t> sampled_;     ///< of the suspects those without a form
   std::vector<std::size_t> candidates_;  ///< of this step, ascending
   std::vector<std::size_t> inspected_;   ///< at the start of a mode: those whose values matter there
+  TurnedSurfaces turned_;                ///< likewise
   bool any_nesting_ = false;             ///< some functions of the kernel hold selections
   bool only_signs_change_ = false;       ///< where the mode that was entered last begins anew
 };

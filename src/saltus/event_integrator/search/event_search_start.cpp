@@ -27,91 +27,45 @@ void EventSearch::start_at(double t) {
   user_.zeros_at = t;
 }
 
-/// Behind a crossing while sliding: the forms of the exits, whose fields are others now. Returns false where the mode
-/// has to be entered afresh.
-bool EventSearch::turn_exits(const double* x) {
-  for (std::size_t row = 0; row < mode_.state.sliding.size(); ++row) {
-    for (const auto& [i, side] :
-         {std::pair{mode_.exit_function(row), Region::below}, {mode_.exit_function(row) + 1, Region::above}}) {
-      const auto* form = field_.exit_row(row, side, x);
-      if ((form != nullptr) != mode_.forms.has(i) || (form != nullptr && !mode_.forms.replace(i, *form))) return false;
-    }
-  }
-  return true;
-}
-
 void EventSearch::cross(std::size_t surface, const ModeState& state, double t, const double* x) {
   start_at(t);
   mode_.forget_zeros(special_);
   mode_.turn(surface, state, 1);
-  const std::size_t i = mode_.of_surface[surface];
-  inspected_.assign(1, i);
+  inspected_.assign(1, surface);
   read_values(t, x, inspected_);
-  mode_.functions[i].offset = point_[i];
+  mode_.functions[surface].offset = point_[surface];
   special_ = inspected_;
 }
 
-/// Returns whether the mode has the same functions as the one that was entered last, if surfaces were crossed only.
-/// Their signs and what exits hold may differ.
-bool EventSearch::may_flip(const ModeState& state) const {
-  return mode_.flips && state.sliding == mode_.state.sliding && !state.higher && held_.nothing();
+/// Whether each surface, and each exit, has its place among the functions of a mode whose field was entered.
+bool EventSearch::is_plain(const ModeState& state) const {
+  const bool selections_are_plain = state.sliding.empty() || field_.solve() == SlidingSolve::decoupled;
+  return !any_nesting_ && selections_are_plain && !state.higher && held_.nothing() && kernel_.cells() == 0 &&
+         kernel_.region_groups().empty();
 }
 
-/// A crossing, of surfaces that nothing else of the mode depends on but the exits of what is slid on: only signs
-/// change, and these; user functions are read anew. Returns false if the mode is another one than that: it is entered
-/// afresh. Cost: O(1) for each surface crossed, but for the comparison of the modes.
-bool EventSearch::flip(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
-  if (!may_flip(state)) return false;
+/// From one plain mode to another one: surfaces that were crossed, met or left, and exits that know of that, are
+/// others; user functions are read anew. Returns false if one of the modes is not plain: it is entered afresh. Cost:
+/// some operations for each surface that is slid on, but for the comparison of the modes.
+bool EventSearch::move(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
+  if (!mode_.plain || !is_plain(state)) return false;
+  mode_.forget_zeros(special_);
   inspected_.clear();
-  bool crosses = true;
-  for_each_difference(mode_.state.mode, state.mode, [&](std::size_t j) {
-    crosses = crosses && state.mode[j] != 0 && mode_.state.mode[j] != 0;
+  turned_.surfaces.clear();
+  for_each_difference(mode_.state.mode, state.mode, [&](std::size_t j) { turned_.surfaces.push_back(j); });
+  for (const std::size_t j : turned_.surfaces) {
+    mode_.turn(j, state, zero_order[j]);
+    if (state.mode[j] != 0) inspected_.push_back(j);
+  }
+  for_each_nonzero(zero_order, [&](std::size_t j) {
+    if (state.mode[j] == 0 || std::binary_search(turned_.surfaces.begin(), turned_.surfaces.end(), j)) return;
+    mode_.turn(j, state, zero_order[j]);
     inspected_.push_back(j);
   });
-  if (!crosses) return false;
-  if (!mode_.state.sliding.empty()) field_.exits(t, x, mode_.exits.data());
-  if (!turn_exits(x)) return false;
-  for_each_nonzero(zero_order, [&](std::size_t j) {
-    if (state.mode[j] == mode_.state.mode[j]) inspected_.push_back(j);
-  });
-  mode_.forget_zeros(special_);
-  for (std::size_t& entry : inspected_) {
-    const std::size_t j = entry;
-    entry = mode_.of_surface[j];
-    mode_.turn(j, state, zero_order[j]);
-  }
-  begin_flipped(state, t, x);
-  return true;
-}
-
-bool EventSearch::pass(std::size_t surface, const ModeState& state, double t, const double* x) {
-  start_at(t);
-  if (!may_flip(state)) return false;
-  mode_.exits.assign(1, field_.sides());
-  if (!turn_exits(x)) return false;
-  mode_.forget_zeros(special_);
-  mode_.turn(surface, state, 1);
-  inspected_.assign(1, mode_.of_surface[surface]);
-  begin_flipped(state, t, x);
-  return true;
-}
-
-/// What is left to do when the surfaces of `inspected_` have been turned: exits have other fields, and user functions
-/// are read anew.
-void EventSearch::begin_flipped(const ModeState& state, double t, const double* x) {
-  for (std::size_t row = 0; row < state.sliding.size(); ++row) {
-    const int arriving = arriving_sign(mode_.exits[row]);
-    const auto j = at(state.sliding[row]);
-    mode_.state.alpha[j] = state.alpha[j];
-    for (const auto& [i, sign] :
-         {std::pair{mode_.exit_function(row), arriving}, {mode_.exit_function(row) + 1, -arriving}}) {
-      mode_.forms.ignore(i);
-      mode_.functions[i].sign = sign;
-      mode_.functions[i].zero_order = 0;
-      mode_.functions[i].offset = 0.0;
-      inspected_.push_back(i);
-    }
-  }
+  mode_.state.alpha = state.alpha;
+  mode_.state.sliding = state.sliding;
+  move_exits(t, x);
+  mode_.curved_parts = mode_.parts_of(mode_.curved);
   for (std::size_t i = mode_.users; i < mode_.users_end; ++i) {
     mode_.forms.ignore(i);
     mode_.functions[i].zero_order = 0;
@@ -121,6 +75,59 @@ void EventSearch::begin_flipped(const ModeState& state, double t, const double* 
   read_start(t, x);
   special_.clear();
   for (const std::size_t i : inspected_) sort(i);
+  return true;
+}
+
+void EventSearch::move_exits(double t, const double* x) {
+  const auto& sliding = mode_.state.sliding;
+  if (sliding.empty()) return;
+  // With user functions there may be jumps: the state is another one than at the end of the mode before.
+  const bool may_jump = mode_.users_end > mode_.users;
+  mode_.exits = field_.all_sides();
+  if (may_jump) field_.exits(t, x, mode_.exits.data());
+  const auto mark = [&](bool beside) {
+    for (const std::size_t j : turned_.surfaces) {
+      for (const int k : kernel_.neighbours(static_cast<int>(j))) turned_.beside[at(k)] = beside;
+    }
+  };
+  mark(true);
+  for (std::size_t row = 0; row < sliding.size(); ++row) {
+    if (may_jump || exits_change(row, x)) {
+      renew_exits(row, x);
+    } else {
+      const std::size_t i = mode_.exit_of(at(sliding[row]));
+      mode_.functions[i].row = mode_.functions[i + 1].row = static_cast<int>(row);
+    }
+  }
+  mark(false);
+}
+
+/// Whether exits of a surface are others than in the mode before, or may be at zero.
+bool EventSearch::exits_change(std::size_t row, const double* x) const {
+  constexpr double near = 1e-6;
+  const auto j = at(mode_.state.sliding[row]);
+  const auto& function = mode_.functions[mode_.exit_of(j)];
+  const auto& [below, above, loss, stability] = mode_.exits[row];
+  const bool is_away = std::min(std::abs(below), std::abs(above)) > near * (std::abs(below) + std::abs(above));
+  return function.kind == FunctionKind::absent || turned_.beside[j] || !is_away ||
+         function.sign != arriving_sign(mode_.exits[row]) || field_.kept_state(row, x).value != mode_.kept_states[j];
+}
+
+void EventSearch::renew_exits(std::size_t row, const double* x) {
+  const int surface = mode_.state.sliding[row];
+  const int arriving = arriving_sign(mode_.exits[row]);
+  mode_.kept_states[at(surface)] = field_.kept_state(row, x).value;
+  const auto renew_one = [&](std::size_t i, FunctionKind kind, Region side, int sign) {
+    mode_.forms.ignore(i);
+    mode_.put(i, {kind, surface, static_cast<int>(row), sign});
+    mode_.forms.replace(i, field_.exit_row(row, side, x));
+    mode_.list_curved(i);
+    mode_.prefilter[i] = five_nodes_suffice_;
+    inspected_.push_back(i);
+  };
+  const std::size_t first = mode_.exit_of(at(surface));
+  renew_one(first, FunctionKind::exit_below, Region::below, arriving);
+  renew_one(first + 1, FunctionKind::exit_above, Region::above, -arriving);
 }
 
 /// Values of the functions that are looked at where a mode starts, and what follows for those at zero.
@@ -181,17 +188,17 @@ void EventSearch::enter_surfaces(const ModeState& state, const std::vector<int>&
       kernel_.region_groups().empty() ? std::vector<bool>() : constant_beside_held(kernel_, state, rows_);
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     if (!constant.empty() && constant[at(j)]) continue;
+    if (state.mode[at(j)] == 0 && mode_.plain) mode_.functions.push_back({FunctionKind::absent, j});
     if (state.mode[at(j)] == 0 || (nesting_[at(j)] && !sliding_inside(kernel_, state, j).empty())) continue;
-    mode_.of_surface[at(j)] = mode_.functions.size();
     mode_.functions.push_back({FunctionKind::surface, j, 0, state.mode[at(j)], zero_order[at(j)]});
   }
 }
 
 /// What ends sliding: exits, and selections that cease to exist.
 void EventSearch::enter_exits(const ModeState& state, double t, const double* x) {
-  mode_.first_exit = mode_.functions.size();
   mode_.exits.resize(state.sliding.size());
   if (!state.sliding.empty()) field_.exits(t, x, mode_.exits.data());
+  if (mode_.plain) return enter_plain_exits(x);
   for (std::size_t row = 0; row < state.sliding.size(); ++row) {
     const int r = static_cast<int>(row);
     const int arriving = arriving_sign(mode_.exits[row]);
@@ -206,6 +213,22 @@ void EventSearch::enter_exits(const ModeState& state, double t, const double* x)
     if (field_.has_stability(row) && mode_.exits[row].stability > 0.0) {
       mode_.functions.push_back({FunctionKind::instability, state.sliding[row], r, 1});
     }
+  }
+}
+
+/// All of them in their places.
+void EventSearch::enter_plain_exits(const double* x) {
+  const auto& state = mode_.state;
+  for (std::size_t j = 0; j < state.mode.size(); ++j) {
+    for (int side = 0; side < 2; ++side) mode_.functions.push_back({FunctionKind::absent, static_cast<int>(j)});
+  }
+  for (std::size_t row = 0; row < state.sliding.size(); ++row) {
+    const int surface = state.sliding[row];
+    const int arriving = arriving_sign(mode_.exits[row]);
+    const std::size_t first = mode_.exit_of(at(surface));
+    mode_.functions[first] = {FunctionKind::exit_below, surface, static_cast<int>(row), arriving};
+    mode_.functions[first + 1] = {FunctionKind::exit_above, surface, static_cast<int>(row), -arriving};
+    mode_.kept_states[at(surface)] = field_.kept_state(row, x).value;
   }
 }
 
@@ -236,9 +259,10 @@ void EventSearch::size_work() {
 
 void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {
   start_at(t);
-  if (flip(state, zero_order, t, x)) return;
+  if (move(state, zero_order, t, x)) return;
   if (has_same_functions(state)) return renew(zero_order, t, x);
   mode_.state = state;
+  mode_.plain = is_plain(state);
   mode_.functions.clear();
   load_rows();
   enter_surfaces(state, zero_order);
@@ -249,17 +273,16 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   set_forms(x);
   size_work();
   inspected_.clear();
+  mode_.present = 0;
   for (std::size_t i = 0; i < mode_.functions.size(); ++i) {
     const auto kind = mode_.functions[i].kind;
-    const bool plain = kind == FunctionKind::surface || kind == FunctionKind::nested || kind == FunctionKind::loss;
-    if (!plain || mode_.functions[i].zero_order > 0) inspected_.push_back(i);
+    if (kind == FunctionKind::absent) continue;
+    ++mode_.present;
+    const bool regular = kind == FunctionKind::surface || kind == FunctionKind::nested || kind == FunctionKind::loss;
+    if (!regular || mode_.functions[i].zero_order > 0) inspected_.push_back(i);
   }
   read_start(t, x);
   sort_functions();
-  const bool selections_are_plain =
-      state.sliding.empty() || (field_.solve() == SlidingSolve::decoupled && kernel_.region_groups().empty());
-  mode_.flips =
-      !any_nesting_ && selections_are_plain && mode_.users_end == mode_.functions.size() && held_.followers.empty();
   only_signs_change_ = state.sliding.empty() && !state.higher && held_.nothing() && kernel_.cells() == 0 &&
                        kernel_.region_groups().empty();
 }
@@ -321,6 +344,10 @@ void EventSearch::set_forms(const double* x) {
   for (std::size_t i = 0; i < mode_.functions.size(); ++i) {
     const auto& function = mode_.functions[i];
     switch (function.kind) {
+      case FunctionKind::absent:
+        // A surface keeps its form, for when it is there again.
+        if (i < mode_.state.mode.size()) mode_.forms.use_row(i, at(function.index));
+        continue;
       case FunctionKind::surface:
       case FunctionKind::user:
       case FunctionKind::cell_upper:
@@ -359,6 +386,7 @@ void EventSearch::sort_functions() {
 
 void EventSearch::sort(std::size_t i) {
   const auto& function = mode_.functions[i];
+  if (function.kind == FunctionKind::absent) return;
   if (function.sign == 0 || function.zero_order != 0 || function.offset != 0.0) {
     special_.push_back(i);
   } else if (mode_.forms.has(i)) {

@@ -89,12 +89,9 @@ bool Locator::take(double h) {
   if (field_.attempt(stepper_, start_.t, start_.x, start_.slope, h, tolerances_) == ode::Attempt::undefined)
     return false;
   std::copy_n(stepper_.x_new(), n_, trial_.x.begin());
-  const bool projected = field_.project(start_.t + h, trial_.x.data());
-  if (projected && explicit_) {
-    field_(start_.t + h, trial_.x.data(), slope_.data());
-  } else {
-    std::copy_n(stepper_.slope_new(), n_, slope_.begin());
-  }
+  const bool moved = field_.project(start_.t + h, trial_.x.data()) && explicit_;
+  has_slope_ = !moved && !stepper_.follows();
+  if (has_slope_) std::copy_n(stepper_.slope_new(), n_, slope_.begin());
   evaluate(start_.t + h, trial_.x.data(), trial_.values);
   return is_finite_at(trial_);
 }
@@ -114,12 +111,23 @@ bool Locator::move(double dt) {
   return is_finite_at(moved_) && is_finite(moved_.x);
 }
 
+/// At the end of the trial, where that is not known.
+void Locator::find_slope() {
+  if (has_slope_) return;
+  if (stepper_.follows()) {
+    dense_->derivative(trial_.h / dense_->h, slope_.data());
+  } else {
+    field_(start_.t + trial_.h, trial_.x.data(), slope_.data());
+  }
+}
+
 /// Moves the trial to the event if it is close enough for that; otherwise leaves it where it is.
 bool Locator::finish(double slope) {
   if (!explicit_) return false;
   double value = trial_.values[place_];
   double dt = -value / slope;
   if (!(std::abs(dt) <= two_stages_suffice * trial_.h)) return false;
+  find_slope();
   for (int iteration = 0; iteration < 4; ++iteration) {
     if (!(trial_.h + dt > 0.0 && trial_.h + dt <= dense_->h) || !move(dt)) return false;
     const double next = moved_.values[place_];

@@ -55,6 +55,7 @@ class Locator {
   void sharpen();
   void evaluate(double t, const double* x, std::vector<double>& values);
   bool take(double h);
+  void find_slope();
   bool correct(const Hit& hit);
   bool finish(double slope);
   bool move(double dt);
@@ -88,6 +89,7 @@ class Locator {
   double left_ = 0.0;      ///< its offset, where it has moved away from the zero at the start
   Trial trial_, moved_;
   std::vector<double> slope_, slope_ahead_;  ///< f at the end of the trial, and just ahead of it
+  bool has_slope_ = false;                   ///< the first one is known
   std::vector<double> x_, beside_;
   Located located_;
 };

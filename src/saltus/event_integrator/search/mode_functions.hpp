@@ -22,6 +22,7 @@ enum class FunctionKind {
   release,      ///< what presses a held guard of [[jumps]]
   cell_upper,   ///< argument of floor, a table or a sampled input less the upper end of its cell
   cell_lower,   ///< such an argument less the lower end of its cell
+  absent,       ///< a place of a surface or an exit that is not in the mode
 };
 
 struct EventFunction {
@@ -46,7 +47,8 @@ struct FunctionParts {
   bool pressure = false;
 };
 
-/// Holds the functions of one mode; a later one with the same sliding set can use them.
+/// Holds the functions of one mode. Plain ones are surfaces, exits of surfaces that do not influence each other, and
+/// user functions: each surface and each exit then has its place, in the mode or not, and a switch changes few of them.
 struct ModeFunctions {
   explicit ModeFunctions(std::size_t states) : forms(states) {}
 
@@ -56,12 +58,12 @@ struct ModeFunctions {
   AffineForms forms;
   std::vector<std::size_t> curved;  ///< functions without an affine form
   FunctionParts curved_parts;
-  std::vector<std::size_t> of_surface;  ///< n_psi: function of a surface outside the mode
-  std::size_t first_exit = 0;           ///< where the exits of sliding surfaces begin in `functions`
-  std::size_t users = 0;                ///< the user functions among them, and their end
+  std::size_t users = 0;  ///< the user functions among them, and their end
   std::size_t users_end = 0;
-  bool flips = false;           ///< surfaces and plain exits only: crossings change little
-  std::vector<bool> prefilter;  ///< five samples may show that the function stays away from zero
+  bool plain = false;
+  std::size_t present = 0;          ///< functions that are not absent
+  std::vector<double> kept_states;  ///< of plain ones, by surface: what the forms of its exits hold
+  std::vector<bool> prefilter;      ///< five samples may show that the function stays away from zero
 
   /// Returns whether a form of one state stands for function i wherever it is evaluated.
   [[nodiscard]] bool is_threshold(std::size_t i) const {
@@ -69,22 +71,14 @@ struct ModeFunctions {
     return (kind == FunctionKind::surface || kind == FunctionKind::user) && forms.is_threshold(i);
   }
   [[nodiscard]] FunctionParts parts_of(const std::vector<std::size_t>& which) const;
-  [[nodiscard]] std::size_t exit_function(std::size_t row) const { return first_exit + 2 * row; }
+  /// Returns the place of plain exits of a surface, below; that above follows it.
+  [[nodiscard]] std::size_t exit_of(std::size_t surface) const { return state.mode.size() + 2 * surface; }
   void forget_zeros(const std::vector<std::size_t>& special);
   void turn(std::size_t surface, const ModeState& next, int zero_order);
-};
-
-/// Holds the last modes, with different sliding sets.
-class KeptModes {
- public:
-  /// Returns the one with this sliding set; nullptr where it is not kept.
-  [[nodiscard]] ModeFunctions* find(const std::vector<int>& sliding);
-  /// Keeps a copy of a mode, in place of the oldest where there are many.
-  void keep(const ModeFunctions& mode);
-
- private:
-  std::vector<ModeFunctions> modes_;
-  std::size_t next_ = 0;
+  /// Puts a function in its place, or takes it away (absent), without a form.
+  void put(std::size_t place, const EventFunction& function);
+  /// Notes, behind its form, whether a function has to be sampled.
+  void list_curved(std::size_t place);
 };
 
 }  // namespace saltus::event_integrator

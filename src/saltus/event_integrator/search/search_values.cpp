@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "saltus/event_integrator/search/event_search_internal.hpp"
 
@@ -51,7 +52,7 @@ bool StepRange::read(const ode::Stepper& stepper) {
 
 void StepRange::read(const ode::DenseStep& step) {
   bounds = {step.t, step.t + step.h, low.data(), high.data()};
-  if (!known) step.bounds(low.data(), high.data());
+  if (!std::exchange(known, false)) step.bounds(low.data(), high.data());
 }
 
 StepBounds StepRange::widened(const ode::Tolerances& tolerances) {

@@ -56,12 +56,19 @@ struct FunctionLevels {
   void set(std::size_t function, double rounding, double wanted);
 };
 
+/// Holds surfaces whose mode is another one than before, ascending, and by surface which exits may have changed with
+/// them.
+struct TurnedSurfaces {
+  std::vector<std::size_t> surfaces;
+  std::vector<bool> beside;
+};
+
 /// Holds bounds of the states over a step.
 struct StepRange {
   std::vector<double> low, high;
   std::vector<double> wide_low, wide_high;  ///< around it
   StepBounds bounds;
-  bool known = false;  ///< `bounds` are those of the dense output, before that is made
+  bool known = false;  ///< `bounds` are those of the dense output that is made next
 
   void resize(std::size_t states);
   /// Reads the bounds of the last attempt; false where there are none.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace saltus::event_integrator {
 namespace {
@@ -22,21 +23,26 @@ std::size_t root_of(std::vector<std::size_t>& parent, std::size_t row) {
 
 void NormalRows::resize(std::size_t rows, std::size_t columns) {
   columns_ = columns;
+  if (own_.size() < rows) own_.resize(rows);
   rows_.resize(rows);
-  for (auto& row : rows_) {
-    row.column.clear();
-    row.value.clear();
+  for (std::size_t row = 0; row < rows; ++row) {
+    own_[row].column.clear();
+    own_[row].value.clear();
+    rows_[row] = &own_[row];
   }
+  size_.assign(rows, 0.0);
+  sum_.resize(columns, 0.0);
   components_known_ = false;
 }
 
-void NormalRows::set(std::size_t row, const SparseRow& entries) {
-  components_known_ = components_known_ && rows_[row].column == entries.column;
-  rows_[row] = entries;
+void NormalRows::set(std::size_t row, const SparseRow& entries, double size) {
+  components_known_ = components_known_ && rows_[row]->column == entries.column;
+  rows_[row] = &entries;
+  size_[row] = size;
 }
 
 void NormalRows::set(std::size_t row, const std::vector<double>& dense) {
-  auto& [column, value] = rows_[row];
+  auto& [column, value] = own_[row];
   // Where the columns are those of before, which they mostly are, so are the components.
   bool same = true;
   std::size_t count = 0;
@@ -55,7 +61,11 @@ void NormalRows::set(std::size_t row, const std::vector<double>& dense) {
   }
   same = same && count == column.size();
   column.resize(count);
-  components_known_ = components_known_ && same;
+  components_known_ = components_known_ && same && rows_[row] == &own_[row];
+  rows_[row] = &own_[row];
+  double square = 0.0;
+  for (const double entry : value) square += entry * entry;
+  size_[row] = std::sqrt(square);
 }
 
 void NormalRows::find_components() {
@@ -63,7 +73,7 @@ void NormalRows::find_components() {
   std::iota(parent_.begin(), parent_.end(), std::size_t{0});
   first_of_column_.assign(columns_, no_row);
   for (std::size_t row = 0; row < rows_.size(); ++row) {
-    for (const std::size_t column : rows_[row].column) {
+    for (const std::size_t column : rows_[row]->column) {
       auto& first = first_of_column_[column];
       if (first == no_row) {
         first = row;
@@ -74,13 +84,20 @@ void NormalRows::find_components() {
     }
   }
   // The root of a component is its first row.
-  std::vector<std::vector<std::size_t>> components(rows_.size());
-  for (std::size_t row = 0; row < rows_.size(); ++row) components[root_of(parent_, row)].push_back(row);
+  std::vector<std::vector<std::size_t>> others(rows_.size());
   alone_.clear();
   together_.clear();
-  for (auto& component : components) {
-    if (component.size() == 1) alone_.push_back(component.front());
-    if (component.size() > 1) together_.push_back(std::move(component));
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    if (const std::size_t root = root_of(parent_, row); root != row) others[root].push_back(row);
+  }
+  for (std::size_t row = 0; row < rows_.size(); ++row) {
+    if (parent_[row] != row) continue;
+    if (others[row].empty()) {
+      alone_.push_back(row);
+    } else {
+      others[row].insert(others[row].begin(), row);
+      together_.push_back(std::move(others[row]));
+    }
   }
   components_known_ = true;
 }
@@ -89,7 +106,7 @@ bool NormalRows::solve(Eigen::VectorXd& residual) {
   if (!components_known_) find_components();
   for (const std::size_t row : alone_) {
     // As a Cholesky factorisation does it.
-    const double size = std::sqrt(product(row, row));
+    const double size = size_[row];
     if (!(size > 0.0)) return false;
     auto& r = residual[static_cast<Eigen::Index>(row)];
     r = r / size / size;
@@ -118,8 +135,8 @@ bool NormalRows::solve_component(const std::vector<std::size_t>& rows, Eigen::Ve
 }
 
 double NormalRows::product(std::size_t a, std::size_t b) const {
-  const auto& left = rows_[a];
-  const auto& right = rows_[b];
+  const auto& left = *rows_[a];
+  const auto& right = *rows_[b];
   double sum = 0.0;
   for (std::size_t i = 0, k = 0; i < left.column.size() && k < right.column.size();) {
     if (left.column[i] == right.column[k]) {
@@ -133,13 +150,31 @@ double NormalRows::product(std::size_t a, std::size_t b) const {
   return sum;
 }
 
-void NormalRows::transposed_times(const Eigen::VectorXd& z, std::vector<double>& sum) const {
-  sum.assign(columns_, 0.0);
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
+bool NormalRows::subtract_transposed(const Eigen::VectorXd& z, double* x) {
+  if (!components_known_) find_components();
+  bool changed = false;
+  const auto take = [&](std::size_t column) {
+    const double before = x[column];
+    x[column] -= std::exchange(sum_[column], 0.0);
+    changed = changed || x[column] != before;
+  };
+  const auto add = [&](std::size_t row) {
     const double factor = z[static_cast<Eigen::Index>(row)];
-    for (std::size_t k = 0; k < rows_[row].column.size(); ++k)
-      sum[rows_[row].column[k]] += rows_[row].value[k] * factor;
+    const auto& [column, value] = *rows_[row];
+    for (std::size_t k = 0; k < column.size(); ++k) sum_[column[k]] += value[k] * factor;
+  };
+  for (const std::size_t row : alone_) {
+    add(row);
+    for (const std::size_t column : rows_[row]->column) take(column);
   }
+  for (const auto& component : together_) {
+    for (const std::size_t row : component) add(row);
+    // A column of several rows is taken with the first of them: nothing is left for the others.
+    for (const std::size_t row : component) {
+      for (const std::size_t column : rows_[row]->column) take(column);
+    }
+  }
+  return changed;
 }
 
 }  // namespace saltus::event_integrator

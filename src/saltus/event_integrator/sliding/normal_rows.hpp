@@ -23,18 +23,20 @@ struct SparseRow {
 };
 
 /// Solves the normal equations of rows. Rows that share a column, directly or through others, are solved together; all
-/// others by themselves. Cost of a solution: the entries of all rows, and for each component of c > 1 rows c^3.
+/// others by themselves. Cost of a solution: O(1) for each of those, and for a component of c > 1 rows c^3.
 class NormalRows {
  public:
   void resize(std::size_t rows, std::size_t columns);
-  void set(std::size_t row, const SparseRow& entries);
+  /// Takes entries that stay where they are, of this size.
+  void set(std::size_t row, const SparseRow& entries, double size);
   void set(std::size_t row, const std::vector<double>& dense);
-  [[nodiscard]] const SparseRow& operator[](std::size_t row) const { return rows_[row]; }
+  [[nodiscard]] const SparseRow& operator[](std::size_t row) const { return *rows_[row]; }
+  [[nodiscard]] double size(std::size_t row) const { return size_[row]; }
 
   /// Solves J J^T z = r for z, in place; false where the rows of a component depend on each other.
   [[nodiscard]] bool solve(Eigen::VectorXd& residual);
-  /// Puts J^T z into `sum` (columns), row after row.
-  void transposed_times(const Eigen::VectorXd& z, std::vector<double>& sum) const;
+  /// Takes J^T z from x (columns); returns whether that has changed it. Cost: the entries of all rows.
+  bool subtract_transposed(const Eigen::VectorXd& z, double* x);
 
  private:
   void find_components();
@@ -42,11 +44,14 @@ class NormalRows {
   [[nodiscard]] double product(std::size_t a, std::size_t b) const;
 
   std::size_t columns_ = 0;
-  std::vector<SparseRow> rows_;
+  std::vector<const SparseRow*> rows_;  ///< of own_, or of somebody else
+  std::vector<SparseRow> own_;
+  std::vector<double> size_;  ///< |row|
   bool components_known_ = false;
   std::vector<std::size_t> alone_;                  ///< rows that share no column
   std::vector<std::vector<std::size_t>> together_;  ///< the other components
   std::vector<std::size_t> parent_, first_of_column_;
+  std::vector<double> sum_;  ///< columns, 0 between two calls
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd part_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;

@@ -24,16 +24,24 @@ void SurfaceRows::resize(std::size_t m, std::size_t states, bool with_dense) {
   rates.resize(rows);
   residual.resize(rows);
   coordinate.assign(m, -1);
+  factor.assign(m, 0.0);
   is_constant.assign(m, false);
+  varying = m;
+}
+
+void SurfaceRows::note(std::size_t row, bool constant) {
+  coordinate[row] = normal[row].only();
+  if (coordinate[row] >= 0) factor[row] = normal[row].value.front();
+  if (constant && !is_constant[row]) --varying;
+  is_constant[row] = constant;
 }
 
 bool SurfaceRows::take_known(std::size_t row, std::size_t surface) {
   const auto& known = known_[surface];
   if (!known.known || coordinate.size() == 1) return false;
-  normal.set(row, known.row);
+  normal.set(row, known.row, known.size);
   rates[static_cast<Eigen::Index>(row)] = known.rate;
-  coordinate[row] = known.row.only();
-  is_constant[row] = true;
+  note(row, true);
   return true;
 }
 
@@ -42,9 +50,8 @@ void SurfaceRows::take(std::size_t row, std::size_t surface, const std::vector<d
   const auto r = static_cast<Eigen::Index>(row);
   normal.set(row, gradient);
   if (dense.rows() > 0) dense.row(r) = Eigen::Map<const Eigen::RowVectorXd>(gradient.data(), dense.cols());
-  coordinate[row] = normal[row].only();
-  is_constant[row] = constant;
-  if (constant && keep) known_[surface] = {true, normal[row], rates[r]};
+  note(row, constant);
+  if (constant && keep) known_[surface] = {true, normal[row], rates[r], normal.size(row)};
 }
 
 bool SurfaceRows::solve_normal_equations() {

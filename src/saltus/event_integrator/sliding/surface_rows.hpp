@@ -32,13 +32,14 @@ class SurfaceRows {
   explicit SurfaceRows(std::size_t surfaces) : known_(surfaces) {}
 
   NormalRows normal;
-  Eigen::MatrixXd dense;           ///< m x n_x where it is asked for
-  Eigen::VectorXd rates;           ///< d psi_I/dt
-  Eigen::VectorXd residual;        ///< of the normal equations
-  double square = 0.0;             ///< |J|^2 of one row
-  std::vector<bool> is_constant;   ///< in this mode
-  std::vector<int> coordinate;     ///< the only nonzero column of a row, or -1
-  std::vector<double> correction;  ///< n_x, J^T z
+  Eigen::MatrixXd dense;          ///< m x n_x where it is asked for
+  Eigen::VectorXd rates;          ///< d psi_I/dt
+  Eigen::VectorXd residual;       ///< of the normal equations
+  double square = 0.0;            ///< |J|^2 of one row
+  std::vector<bool> is_constant;  ///< in this mode
+  std::size_t varying = 0;        ///< rows that are not
+  std::vector<int> coordinate;    ///< the only nonzero column of a row, or -1
+  std::vector<double> factor;     ///< of that column
   IndependentRows independent;
 
   void resize(std::size_t m, std::size_t states, bool with_dense);
@@ -49,17 +50,19 @@ class SurfaceRows {
   /// Returns grad psi . f + d psi/dt.
   [[nodiscard]] double velocity(std::size_t row, const std::vector<double>& f) const {
     const auto r = static_cast<Eigen::Index>(row);
-    if (const int only = coordinate[row]; only >= 0) return normal[row].value.front() * f[at(only)] + rates[r];
+    if (const int only = coordinate[row]; only >= 0) return factor[row] * f[at(only)] + rates[r];
     return normal[row].dot(f, rates[r]);
   }
   /// Sets residual = (J J^T)^-1 residual; false where rows depend on each other.
   [[nodiscard]] bool solve_normal_equations();
 
  private:
+  void note(std::size_t row, bool constant);
   struct KnownRow {
     bool known = false;
     SparseRow row = {};
     double rate = 0.0;
+    double size = 0.0;
   };
   std::vector<KnownRow> known_;  ///< by surface
 };

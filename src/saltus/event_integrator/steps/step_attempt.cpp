@@ -30,7 +30,10 @@ ode::Attempt StepAttempt::take(double t_new) {
   return field_.attempt(stepper_, here_.t, here_.x.data(), here_.slope.data(), t_new - here_.t, tolerances_.step());
 }
 
-bool StepAttempt::remake_dense() { return stepper_.dense(right_hand_side(), dense_) == ode::Attempt::finite; }
+bool StepAttempt::remake_dense() {
+  known_ = stepper_.followed();
+  return known_ != nullptr || stepper_.dense(right_hand_side(), dense_) == ode::Attempt::finite;
+}
 
 /// h |f - dx/dt| of the dense output in the middle of the last attempt, in units of the local tolerance; 0 where that
 /// is not defined. The error of the step is about the integral of f - dx/dt over it.
@@ -79,7 +82,7 @@ void StepAttempt::accepted(double h) {
 }
 
 void StepAttempt::watch_stiffness() {
-  if (!stiff_at_ && stiffness_.looks_stiff(stepper_)) stiff_at_ = here_.t;
+  if (!stiff_at_ && !stepper_.follows() && stiffness_.looks_stiff(stepper_)) stiff_at_ = here_.t;
 }
 
 void StepAttempt::begin_mode() {

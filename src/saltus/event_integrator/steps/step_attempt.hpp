@@ -45,7 +45,7 @@ class StepAttempt {
   bool make_dense() { return dense_is_last_ = dense_is_last_ || remake_dense(); }
   /// Does the same for an attempt that somebody else has taken with the stepper.
   bool remake_dense();
-  [[nodiscard]] const ode::DenseStep& dense() const { return dense_; }
+  [[nodiscard]] const ode::DenseStep& dense() const { return known_ != nullptr ? *known_ : dense_; }
   /// Returns the error norm of the last attempt over the continuous states.
   [[nodiscard]] double error_norm() const { return error_share_ * stepper_.error_norm(); }
   /// Does the same, looked at twice where the length of the step was right for another field.
@@ -91,9 +91,10 @@ class StepAttempt {
   ode::StiffnessWatch stiffness_;
   StepMemory memory_;
   ode::DenseStep dense_;
-  bool dense_is_last_ = false;           ///< dense_ is that of the last attempt
-  std::vector<std::size_t> continuous_;  ///< states that are not discrete
-  double error_share_ = 1.0;             ///< the root of the mean square over the continuous states to that over all
+  const ode::DenseStep* known_ = nullptr;  ///< in its place
+  bool dense_is_last_ = false;             ///< dense_ is that of the last attempt
+  std::vector<std::size_t> continuous_;    ///< states that are not discrete
+  double error_share_ = 1.0;               ///< the root of the mean square over the continuous states to that over all
   double length_ = 0.0;
   bool was_undefined_ = false;
   int doubts_ = 0;  ///< at this step

@@ -6,6 +6,7 @@
 #include <casadi/core/calculus.hpp>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/without_repeats.hpp"
 
 namespace saltus::model {
 
@@ -32,6 +33,16 @@ std::shared_ptr<const Program> Program::of(const casadi::Function& function) {
     program->instructions_.push_back(instruction);
   }
   return program;
+}
+
+std::vector<std::size_t> Program::inputs(int argument) const {
+  std::vector<std::size_t> places;
+  for (const auto& instruction : instructions_) {
+    const bool is_it = instruction.operation == casadi::OP_INPUT && instruction.operands.first == argument;
+    if (is_it) places.push_back(at(instruction.operands.second));
+  }
+  drop_repeats(places);
+  return places;
 }
 
 /// The usual operations here, the others by CasADi's function: a call costs as much as several of them.

@@ -1,6 +1,7 @@
 // The operations of a function of scalars as data that never changes: any number of threads runs it at a time.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -18,6 +19,8 @@ class Program {
   /// Evaluates with the signature of CasADi: null arguments are zeros, null results are left out; `work` has room for
   /// sz_w() numbers.
   void operator()(const double* const* arguments, double* const* results, double* work) const;
+  /// Returns the places of an argument that it reads, ascending.
+  [[nodiscard]] std::vector<std::size_t> inputs(int argument) const;
 
  private:
   friend class ProgramParts;

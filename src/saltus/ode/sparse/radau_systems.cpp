@@ -5,7 +5,8 @@
 
 namespace saltus::ode {
 
-bool RadauSystems::use(const JacobianPattern* pattern) {
+template <std::size_t pairs>
+bool RadauSystems<pairs>::use(const JacobianPattern* pattern) {
   if (started_ && pattern == pattern_) return false;
   started_ = true;
   pattern_ = pattern;
@@ -17,12 +18,14 @@ bool RadauSystems::use(const JacobianPattern* pattern) {
   groups_ = column_groups(*pattern);
   entries_.assign(pattern->row.size(), 0.0);
   elimination_ = elimination_of(*pattern);
+  joint_.use(elimination_);
   sparse_real_.use(*pattern, elimination_);
   for (Pair& pair : pairs_) pair.sparse.use(*pattern, elimination_);
   return true;
 }
 
-bool RadauSystems::set_column(Eigen::Index column, const Vector& difference, double increment) {
+template <std::size_t pairs>
+bool RadauSystems<pairs>::set_column(Eigen::Index column, const Vector& difference, double increment) {
   if (pattern_ == nullptr) {
     jacobian_.col(column) = difference / increment;
     return jacobian_.col(column).allFinite();
@@ -36,39 +39,92 @@ bool RadauSystems::set_column(Eigen::Index column, const Vector& difference, dou
   return finite;
 }
 
-bool RadauSystems::factorize(const Shifts& shifts) {
+template <std::size_t pairs>
+bool RadauSystems<pairs>::factorize(const Shifts& shifts) {
   if (pattern_ != nullptr) {
+    Joint shift;
+    shift.real = shifts.real;
+    for (std::size_t k = 0; k < pairs; ++k) {
+      shift.re[k] = shifts.complex[k].real();
+      shift.im[k] = shifts.complex[k].imag();
+    }
+    along_diagonal_ = joint_.factorize(entries_, shift);
+    if (along_diagonal_) return true;
     if (!sparse_real_.factorize(entries_, shifts.real)) return false;
-    for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      if (!pairs_[k].sparse.factorize(entries_, shifts.pairs[k])) return false;
+    for (std::size_t k = 0; k < pairs; ++k) {
+      if (!pairs_[k].sparse.factorize(entries_, shifts.complex[k])) return false;
     }
     return true;
   }
   real_matrix_ = -jacobian_;
   real_matrix_.diagonal().array() += shifts.real;
   real_.compute(real_matrix_);
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+  for (std::size_t k = 0; k < pairs; ++k) {
     complex_matrix_ = -jacobian_.cast<std::complex<double>>();
-    complex_matrix_.diagonal().array() += shifts.pairs[k];
+    complex_matrix_.diagonal().array() += shifts.complex[k];
     pairs_[k].dense.compute(complex_matrix_);
   }
   return true;
 }
 
-void RadauSystems::solve(const Vector& right, Vector& solution) {
-  if (pattern_ != nullptr) {
-    sparse_real_.solve(right, solution);
-  } else {
+template <std::size_t pairs>
+void RadauSystems<pairs>::solve(const Vector& right, Vector& solution) {
+  if (pattern_ == nullptr) {
     solution = real_.solve(right);
+  } else if (along_diagonal_) {
+    joint_.solve_real([&](std::size_t i) { return right[index(i)]; },
+                      [&](std::size_t i, double value) { solution[index(i)] = value; });
+  } else {
+    sparse_real_.solve(right, solution);
   }
 }
 
-void RadauSystems::solve(std::size_t pair, const ComplexVector& right, ComplexVector& solution) {
-  if (pattern_ != nullptr) {
-    pairs_[pair].sparse.solve(right, solution);
-  } else {
-    solution = pairs_[pair].dense.solve(right);
+template <std::size_t pairs>
+void RadauSystems<pairs>::solve_joint(const Matrix& right, Matrix& solution) {
+  const auto read = [&](std::size_t i) {
+    Joint number;
+    const auto row = index(i);
+    number.real = right(row, 0);
+    for (std::size_t k = 0; k < pairs; ++k) {
+      number.re[k] = right(row, index(2 * k + 1));
+      number.im[k] = right(row, index(2 * k + 2));
+    }
+    return number;
+  };
+  joint_.solve(read, [&](std::size_t i, const Joint& number) {
+    const auto row = index(i);
+    solution(row, 0) = number.real;
+    for (std::size_t k = 0; k < pairs; ++k) {
+      solution(row, index(2 * k + 1)) = number.re[k];
+      solution(row, index(2 * k + 2)) = number.im[k];
+    }
+  });
+}
+
+template <std::size_t pairs>
+void RadauSystems<pairs>::solve_all(const Matrix& right, Matrix& solution) {
+  if (pattern_ != nullptr && along_diagonal_) return solve_joint(right, solution);
+  part_ = right.col(0);
+  part_solution_.resize(n_);
+  solve(part_, part_solution_);
+  solution.col(0) = part_solution_;
+  complex_part_.resize(n_);
+  complex_solution_.resize(n_);
+  for (std::size_t k = 0; k < pairs; ++k) {
+    complex_part_.real() = right.col(index(2 * k + 1));
+    complex_part_.imag() = right.col(index(2 * k + 2));
+    if (pattern_ != nullptr) {
+      pairs_[k].sparse.solve(complex_part_, complex_solution_);
+    } else {
+      complex_solution_ = pairs_[k].dense.solve(complex_part_);
+    }
+    solution.col(index(2 * k + 1)) = complex_solution_.real();
+    solution.col(index(2 * k + 2)) = complex_solution_.imag();
   }
 }
+
+template class RadauSystems<1>;
+template class RadauSystems<2>;
+template class RadauSystems<3>;
 
 }  // namespace saltus::ode

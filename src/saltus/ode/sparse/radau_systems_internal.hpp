@@ -1,9 +1,9 @@
 // The linear systems of the iterations of Radau methods: dense, or sparse where the Jacobian has few entries.
 #pragma once
 
+#include <array>
 #include <complex>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,17 +15,18 @@
 namespace saltus::ode {
 
 /// Solves (real / h - J) x = b and ((re + i im) / h - J) x = b, one of these for each pair of eigenvalues. The sparse
-/// ones are analysed once per pattern; all storage is kept.
+/// ones are analysed once per pattern, and all of them are solved in one pass; all storage is kept.
+template <std::size_t pairs>
 class RadauSystems {
  public:
   using Vector = Eigen::VectorXd;
-  using ComplexVector = Eigen::VectorXcd;
+  using Matrix = Eigen::MatrixXd;
   struct Shifts {
     double real;
-    std::span<const std::complex<double>> pairs;
+    std::array<std::complex<double>, pairs> complex;
   };
 
-  RadauSystems(Eigen::Index n, std::size_t pairs) : n_(n), pairs_(pairs) {}
+  explicit RadauSystems(Eigen::Index n) : n_(n) {}
 
   /// Takes the pattern; null: dense. The same address is the same pattern. Returns whether it is another one than
   /// before, whose Jacobian and factors are not known.
@@ -40,27 +41,37 @@ class RadauSystems {
   [[nodiscard]] bool set_column(Eigen::Index column, const Vector& difference, double increment);
   /// Factorizes; returns false where a matrix is singular.
   [[nodiscard]] bool factorize(const Shifts& shifts);
+  /// Solves the real one.
   void solve(const Vector& right, Vector& solution);
-  void solve(std::size_t pair, const ComplexVector& right, ComplexVector& solution);
+  /// Solves all of them. Columns: the real one, then real and imaginary part of each other one.
+  void solve_all(const Matrix& right, Matrix& solution);
 
  private:
+  using Joint = JointNumber<pairs>;
+  using ComplexVector = Eigen::VectorXcd;
+  void solve_joint(const Matrix& right, Matrix& solution);
+
   Eigen::Index n_;
   const JacobianPattern* pattern_ = nullptr;
   bool started_ = false;
   std::vector<std::vector<std::size_t>> groups_;
   // Dense.
-  Eigen::MatrixXd jacobian_, real_matrix_;
+  Matrix jacobian_, real_matrix_;
   Eigen::MatrixXcd complex_matrix_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> real_;
+  Eigen::PartialPivLU<Matrix> real_;
   // Sparse: entries of J in the order of the pattern.
   std::vector<double> entries_;
   Elimination elimination_;
+  DiagonalFactors<Joint> joint_;
+  bool along_diagonal_ = false;  ///< joint_ holds all of them; otherwise each has factors of its own
   ShiftedFactors<double> sparse_real_;
   struct Pair {
     Eigen::PartialPivLU<Eigen::MatrixXcd> dense;
     ShiftedFactors<std::complex<double>> sparse;
   };
-  std::vector<Pair> pairs_;
+  std::array<Pair, pairs> pairs_;
+  Vector part_, part_solution_;
+  ComplexVector complex_part_, complex_solution_;
 };
 
 }  // namespace saltus::ode

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "saltus/event_integrator/decide/projected_fields.hpp"
+#include "saltus/event_integrator/mode/large_system.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -57,11 +59,11 @@ bool SingleSurface::applies(const ModeState& before, const SwitchingPoint& switc
   const int j = switching_point.touched.front();
   const bool arrives = before.mode[at(j)] != 0;
   if (switching_point.at_zero.size() != before.sliding.size() + (arrives ? 1 : 0)) return false;
-  for (const int k : before.sliding) {
-    const auto& kernel = switching_context_.kernel;
-    if (k != j && (is_inner_[at(k)] || kernel.depends(j, k) || kernel.depends(k, j) || same_group(kernel, j, k)))
-      return false;
-  }
+  const auto& kernel = switching_context_.kernel;
+  const auto slides = [&](int k) { return std::binary_search(before.sliding.begin(), before.sliding.end(), k); };
+  const auto interferes = [&](int k) { return k != j && (is_inner_[at(k)] || same_group(kernel, j, k)); };
+  if (std::any_of(kernel.neighbours(j).begin(), kernel.neighbours(j).end(), slides)) return false;
+  if (!between_.empty() && std::any_of(before.sliding.begin(), before.sliding.end(), interferes)) return false;
   if (is_inner_[at(j)] || switching_context_.system.switching[at(j)].role == model::SwitchingRole::discrete)
     return false;
   const auto exits = switching_point.exit_below.size() + switching_point.exit_above.size();
@@ -97,25 +99,59 @@ double SingleSurface::along_row(const std::vector<double>& f, double rate) const
 /// decides nothing.
 bool SingleSurface::moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
                                                 const SwitchingPoint& switching_point) const {
+  const double fastest = std::max(std::abs(situation.below.velocity), std::abs(situation.above.velocity));
+  return fastest * switching_point.time_scale <= 8.0 * rounding_unit * terms_of(switching_point);
+}
+
+/// The size of the terms of psi, whose gradient is in row_.
+double SingleSurface::terms_of(const SwitchingPoint& switching_point) const {
   double terms = 0.0;
   for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * switching_point.x[i]);
-  const double fastest = std::max(std::abs(situation.below.velocity), std::abs(situation.above.velocity));
-  return fastest * switching_point.time_scale <= 8.0 * rounding_unit * terms;
+  return terms;
+}
+
+bool SingleSurface::has_rows(int surface) const {
+  const auto& kernel = switching_context_.kernel;
+  return between_.empty() && kernel.is_affine(surface) && kernel.inner(surface).empty() &&
+         structure_of_large(kernel) != nullptr;
+}
+
+/// Whether rows of f are enough: all of it is known, and finite.
+bool SingleSurface::by_rows(int surface, const Motion* known) const {
+  return known != nullptr && has_rows(surface) && is_finite(known->slope);
+}
+
+/// grad psi . f + d psi/dt, not finite where a row that holds this selection is not.
+double SingleSurface::velocity_by_rows(int surface, double t, const double* x, const std::vector<double>& alpha) const {
+  const auto& kernel = switching_context_.kernel;
+  for (const std::size_t row : kernel.field_structure()->rows_of_selection[at(surface)]) {
+    if (!std::isfinite(kernel.field_row(row, t, x, alpha.data()))) return std::numeric_limits<double>::quiet_NaN();
+  }
+  return kernel.rate(surface, t, x, alpha.data());
 }
 
 /// Normal components of both fields at the touched surface. Outside of surfaces the side that the solution comes from
 /// is that of its own field.
-void SingleSurface::find_velocities(const ModeState& before, const SwitchingPoint& switching_point,
-                                    const std::vector<double>* slope, switching::SurfaceSituation& situation) {
+void SingleSurface::find_velocities(const ModeState& before, const SwitchingPoint& switching_point, const Motion* known,
+                                    switching::SurfaceSituation& situation) {
   const int j = switching_point.touched.front();
   alpha_ = before.alpha;
   for (const int i : between_) {
     if (before.mode[at(i)] != 0) alpha_[at(i)] = before.mode[at(i)] > 0 ? 1.0 : 0.0;
   }
-  const int known = slope != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
+  if (by_rows(j, known)) {
+    const auto& [t, x] = std::tie(switching_point.t, switching_point.x);
+    switching_context_.kernel.gradient(j, t, x, alpha_.data(), row_.data(), &rate_);
+    alpha_[at(j)] = 0.0;
+    situation.below.velocity = velocity_by_rows(j, t, x, alpha_);
+    alpha_[at(j)] = 1.0;
+    situation.above.velocity = velocity_by_rows(j, t, x, alpha_);
+    return;
+  }
+  const int from = known != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
   const auto velocity_of = [&](int side, double selection) {
-    return known == side ? velocity(switching_point.t, switching_point.x, j, alpha_, *slope)
-                         : velocity(switching_point, j, selection);
+    return from == side ? velocity(switching_point.t, switching_point.x, j, alpha_, known->slope)
+                        : velocity(switching_point, j, selection);
   };
   situation.below.velocity = velocity_of(-1, 0.0);
   situation.above.velocity = velocity_of(+1, 1.0);
@@ -123,28 +159,63 @@ void SingleSurface::find_velocities(const ModeState& before, const SwitchingPoin
 
 /// Where the field goes that ends the sliding. The point is located to rounding on its tangency, so that a later
 /// derivative says it.
-void SingleSurface::find_tangent_drift(const SwitchingPoint& switching_point, int exit,
+void SingleSurface::find_tangent_drift(const SwitchingPoint& switching_point, int exit, const Motion* known,
                                        switching::SurfaceSituation& situation) {
   const int j = switching_point.touched.front();
   alpha_[at(j)] = exit > 0 ? 1.0 : 0.0;
   auto& tangent = exit > 0 ? situation.above : situation.below;
   const auto& other = exit > 0 ? situation.below : situation.above;
+  if (by_rows(j, known)) {
+    if (const auto drift = drift_by_rows(switching_point, j)) {
+      tangent = {0.0, *drift};
+      return;
+    }
+  }
   tangent =
       ProjectedFields(switching_context_.kernel, switching_point).motion(alpha_, j, 0.0, std::abs(other.velocity)).side;
 }
 
+/// The only state in psi, if sliding on it keeps that constant.
+evaluation::FixedState SingleSurface::kept_state(const double* x) const {
+  const auto is_there = [](double entry) { return entry != 0.0; };
+  const auto first = std::find_if(row_.begin(), row_.end(), is_there);
+  if (rate_ != 0.0 || first == row_.end() || std::any_of(first + 1, row_.end(), is_there)) return {};
+  const auto component = first - row_.begin();
+  return {static_cast<int>(component), x[component]};
+}
+
+/// The sign of the second derivative of psi along the field of alpha_, where L psi is affine and that is clear: of what
+/// makes ProjectedFields::motion look further.
+std::optional<Drift> SingleSurface::drift_by_rows(const SwitchingPoint& switching_point, int surface) {
+  const auto& kernel = switching_context_.kernel;
+  const auto& [t, x] = std::tie(switching_point.t, switching_point.x);
+  if (!kernel.lie_row(surface, kept_state(x), alpha_.data(), lie_row_)) return std::nullopt;
+  double bend = lie_row_.rate, sizes = std::abs(lie_row_.rate);
+  for (std::size_t k = 0; k < lie_row_.column.size(); ++k) {
+    if (lie_row_.coefficient[k] == 0.0) continue;
+    const double term = lie_row_.coefficient[k] * kernel.field_row(lie_row_.column[k], t, x, alpha_.data());
+    bend += term;
+    sizes += std::abs(term);
+  }
+  constexpr double clear = 1e3 * std::numeric_limits<double>::epsilon();
+  const double moved = 0.5 * std::abs(bend) * switching_point.time_scale * switching_point.time_scale;
+  const double noise = 8.0 * rounding_unit * terms_of(switching_point);
+  if (!(std::abs(bend) > clear * sizes) || !(moved > 2.0 * noise) || !std::isfinite(moved)) return std::nullopt;
+  return bend > 0.0 ? Drift::up : Drift::down;
+}
+
 bool SingleSurface::decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
-                           const std::vector<double>* slope) {
+                           const Motion* known) {
   if (!applies(before, switching_point)) return false;
   const int j = switching_point.touched.front();
   const bool slides = before.mode[at(j)] == 0;
   if (slides && switching_context_.kernel.has_root(j)) return false;  // explicit steps do not leave it
   switching::SurfaceSituation situation;
-  find_velocities(before, switching_point, slope, situation);
+  find_velocities(before, switching_point, known, situation);
   if (!find_drifts(situation) || moves_no_more_than_rounding(situation, switching_point)) return false;
   situation.arrival = slides ? switching::Arrival::along : arrival_from(before.mode[at(j)]);
   const int exit = !slides ? 0 : switching_point.exit_above.empty() ? -1 : 1;  // to the side that ends the sliding
-  if (slides) find_tangent_drift(switching_point, exit, situation);
+  if (slides) find_tangent_drift(switching_point, exit, known, situation);
   if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return false;
   const auto decision = switching::decide_surface(situation);
   if (!is_plain(decision, before.mode[at(j)]) || (exit != 0 && decision.mode != exit)) return false;
@@ -152,7 +223,13 @@ bool SingleSurface::decide(const ModeState& before, const SwitchingPoint& switch
   if (decision.mode == 0 && switching_context_.system.switching[at(j)].is_kink()) return false;
   fill(before, switching_point, decision, transition);
   const bool alone = before.sliding.size() == (exit != 0 ? 1U : 0U);
-  return alone || select_others(switching_point, transition.state);
+  return alone || complete(switching_point, known, transition.state);
+}
+
+/// The selections of the other surfaces, which are those before where they have a closed form.
+bool SingleSurface::complete(const SwitchingPoint& switching_point, const Motion* known, ModeState& state) {
+  const bool same = by_rows(switching_point.touched.front(), known) && known->solve == SlidingSolve::decoupled;
+  return same ? are_within_bounds(state) : select_others(switching_point, state);
 }
 
 std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState& before, int surface, double t,
@@ -164,11 +241,30 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
   switching_context_.kernel.gradient(surface, t, x, before.alpha.data(), row_.data(), &rate);
   situation.below.velocity = along_row(below, rate);
   situation.above.velocity = along_row(above, rate);
+  return decide_arrival(situation, surface, before.mode[at(surface)]);
+}
+
+std::optional<switching::SurfaceDecision> SingleSurface::decide_by_rows(ModeState& before, int surface, double t,
+                                                                        const double* x) {
+  switching::SurfaceSituation situation;
+  double& alpha = before.alpha[at(surface)];
+  const double own = alpha;
+  alpha = 0.0;
+  situation.below.velocity = velocity_by_rows(surface, t, x, before.alpha);
+  alpha = 1.0;
+  situation.above.velocity = velocity_by_rows(surface, t, x, before.alpha);
+  alpha = own;
+  return decide_arrival(situation, surface, before.mode[at(surface)]);
+}
+
+/// Velocities tell what a surface does that the solution meets from beside it; nullopt where that is not clear.
+std::optional<switching::SurfaceDecision> SingleSurface::decide_arrival(switching::SurfaceSituation& situation,
+                                                                        int surface, int mode) const {
   if (!find_drifts(situation)) return std::nullopt;
   if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return std::nullopt;
-  situation.arrival = arrival_from(before.mode[at(surface)]);
+  situation.arrival = arrival_from(mode);
   auto decision = switching::decide_surface(situation);
-  if (!is_plain(decision, before.mode[at(surface)])) return std::nullopt;
+  if (!is_plain(decision, mode)) return std::nullopt;
   if (decision.mode == 0 && switching_context_.system.switching[at(surface)].is_kink()) return std::nullopt;
   return decision;
 }
@@ -208,12 +304,13 @@ bool SingleSurface::select_others(const SwitchingPoint& switching_point, ModeSta
   field_.enter(state);
   field_(switching_point.t, switching_point.x, f_.data());
   if (!is_finite(f_)) return false;
-  for (const int k : state.sliding) {
-    const double selection = field_.alpha()[at(k)];
-    if (!(selection >= 0.0 && selection <= 1.0)) return false;
-    state.alpha[at(k)] = selection;
-  }
-  return true;
+  for (const int k : state.sliding) state.alpha[at(k)] = field_.alpha()[at(k)];
+  return are_within_bounds(state);
+}
+
+bool SingleSurface::are_within_bounds(const ModeState& state) {
+  return std::all_of(state.sliding.begin(), state.sliding.end(),
+                     [&](int k) { return state.alpha[at(k)] >= 0.0 && state.alpha[at(k)] <= 1.0; });
 }
 
 void SingleSurface::fill(const ModeState& before, const SwitchingPoint& switching_point,

@@ -18,16 +18,22 @@ namespace saltus::event_integrator {
 ///   later
 ///     derivative of the tangent one).
 /// Cost: one evaluation of f, or two where the mode before slides, one of the sliding field if there are other
-/// surfaces; at an exit a second derivative, too. Owns its work space.
+/// surfaces; at an exit a second derivative, too. In large systems, where f is known at the point, few rows of f. Owns
+/// its work space.
 class SingleSurface {
  public:
   explicit SingleSurface(const SwitchingContext& switching_context);
 
+  /// Holds the field of the mode before at the switching point, of which `before` has the selections.
+  struct Motion {
+    const std::vector<double>& slope;
+    SlidingSolve solve;
+  };
   /// Fills `transition`, whose storage is used again.
-  /// @param slope  the field of the mode before at the switching point, if it is known
+  /// @param known  null where the mode before, or the field, has changed at the point
   /// @return whether the switching point is of this kind; if not, `transition` is in no particular state.
   [[nodiscard]] bool decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
-                            const std::vector<double>* slope = nullptr);
+                            const Motion* known = nullptr);
 
   /// Gives the same answer where the solution slides on nothing, in a model without nesting, regions and discrete
   /// states. It needs the fields of both sides, f(alpha_surface = 0) and f(alpha_surface = 1), n_x each. Returns
@@ -35,6 +41,12 @@ class SingleSurface {
   [[nodiscard]] std::optional<switching::SurfaceDecision> decide(const ModeState& before, int surface, double t,
                                                                  const double* x, const std::vector<double>& below,
                                                                  const std::vector<double>& above);
+  /// Returns whether decide_by_rows() knows the surface: it is affine, and the system large.
+  [[nodiscard]] bool has_rows(int surface) const;
+  /// Does the same where f is finite on both sides, but perhaps in rows that hold the selection; `before` is the same
+  /// behind it. Cost: few rows of f.
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_by_rows(ModeState& before, int surface, double t,
+                                                                         const double* x);
   /// Returns whether the selection of what was slid on lies within its bounds at an exit, to rounding: away from them
   /// it may have been lost in a two-fold point, where the full decision looks closer.
   [[nodiscard]] static bool is_within_bounds(double alpha) {
@@ -62,16 +74,26 @@ class SingleSurface {
  private:
   [[nodiscard]] bool moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
                                                  const SwitchingPoint& switching_point) const;
+  [[nodiscard]] evaluation::FixedState kept_state(const double* x) const;
+  [[nodiscard]] double terms_of(const SwitchingPoint& switching_point) const;
+  [[nodiscard]] static bool are_within_bounds(const ModeState& state);
   [[nodiscard]] bool applies(const ModeState& before, const SwitchingPoint& switching_point) const;
-  void find_velocities(const ModeState& before, const SwitchingPoint& switching_point, const std::vector<double>* slope,
+  [[nodiscard]] bool by_rows(int surface, const Motion* known) const;
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_arrival(switching::SurfaceSituation& situation,
+                                                                         int surface, int mode) const;
+  void find_velocities(const ModeState& before, const SwitchingPoint& switching_point, const Motion* known,
                        switching::SurfaceSituation& situation);
-  void find_tangent_drift(const SwitchingPoint& switching_point, int exit, switching::SurfaceSituation& situation);
+  [[nodiscard]] double velocity_by_rows(int surface, double t, const double* x, const std::vector<double>& alpha) const;
+  void find_tangent_drift(const SwitchingPoint& switching_point, int exit, const Motion* known,
+                          switching::SurfaceSituation& situation);
+  [[nodiscard]] std::optional<switching::Drift> drift_by_rows(const SwitchingPoint& switching_point, int surface);
   [[nodiscard]] double along_row(const std::vector<double>& f, double rate) const;
   double velocity(const SwitchingPoint& switching_point, int surface, double selection);
   double velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
                   const std::vector<double>& f);
   void fill(const ModeState& before, const SwitchingPoint& switching_point, const switching::SurfaceDecision& decision,
             Transition& transition) const;
+  bool complete(const SwitchingPoint& switching_point, const Motion* known, ModeState& state);
   bool select_others(const SwitchingPoint& switching_point, ModeState& state);
 
   const SwitchingContext& switching_context_;
@@ -79,6 +101,8 @@ class SingleSurface {
   std::vector<int> between_;    ///< functions whose selection outside the mode may lie between 0 and 1
   std::vector<double> alpha_;   ///< n_psi
   std::vector<double> f_, row_;
+  double rate_ = 0.0;              ///< d psi/dt, beside row_ = grad psi, where rows of f are looked at
+  evaluation::AffineRow lie_row_;  ///< L psi
   ModeField field_;
 };
 
