@@ -17,7 +17,6 @@ ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha
       exit_forms_(kernel) {
   const auto n_psi = at(kernel.switching_functions());
   for (auto& f : f_) f.resize(at(kernel.states()));
-  rows_.correction.resize(at(kernel.states()));
   for (auto& corner : corner_) corner.resize(n_psi);
   trial_.resize(n_psi);
   alpha_.resize(n_psi);
