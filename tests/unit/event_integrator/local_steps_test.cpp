@@ -176,7 +176,7 @@ TEST(LocalSteps, WhatSlidesBehindCrossingsHasTheFieldsOfBothSides) {
   Builder b("behind crossings");
   const SX z = b.state("z", {0.0}), w = b.state("w", {-0.1});
   b.state("y", {0.0});
-  const SX sign = 2 * b.step(b.switching("w", w)) - 1;
+  const SX sign = 2 * b.step(b.switching("speed", w)) - 1;
   b.dynamics("z", 1.0);
   b.dynamics("w", SX::cos(b.time()) - 2 * sign);
   b.dynamics("y", sign);
