@@ -169,6 +169,32 @@ TEST(LocalSteps, WhatSlidesOnASurfaceThatIsNotAffineFollowsASwitch) {
   expect_same(run_followers(40, with(ode::Method::dopri5, 1e-8, true)), exact, 2e-7);
 }
 
+/// z = t switches one u_i after the other, while w' = cos(t) - 2 sign(w) from -0.1 comes to slide on 0, and y' =
+/// sign(w).
+TEST(LocalSteps, WhatSlidesBehindCrossingsHasTheFieldsOfBothSides) {
+  constexpr double end = 0.6;
+  Builder b("behind crossings");
+  const SX z = b.state("z", {0.0}), w = b.state("w", {-0.1});
+  b.state("y", {0.0});
+  const SX sign = 2 * b.step(b.switching("speed", w)) - 1;
+  b.dynamics("z", 1.0);
+  b.dynamics("w", SX::cos(b.time()) - 2 * sign);
+  b.dynamics("y", sign);
+  for (int i = 0; i < 68; ++i) {
+    const std::string number = std::to_string(i);
+    const SX u = b.state("u" + number, {0.0});
+    b.dynamics("u" + number, b.step(b.switching("s" + number, z - 0.01 * (i + 1))) - u);
+  }
+  auto options = with(ode::Method::dopri5, 1e-8, true);
+  options.until = end;
+  const auto run = testing::run_model(b, options);
+  ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
+  double reached = 0.03;  // sin(t) + 2 t = 0.1
+  for (int k = 0; k < 20; ++k) reached -= (std::sin(reached) + 2 * reached - 0.1) / (std::cos(reached) + 2);
+  EXPECT_EQ(run.final.x[1], 0.0);
+  EXPECT_NEAR(run.final.x[2], -reached + 0.5 * (std::sin(end) - std::sin(reached)), 1e-9);
+}
+
 TEST(LocalSteps, SmallSystemsHaveTheSameBitsWithAndWithout) {
   const Network network{30, 0.3, 2};
   const auto all = run(network, with(ode::Method::dopri5, 1e-8, false));

@@ -57,7 +57,8 @@ class ModeField {
   /// no selection but that of `surface`; constants are those of the other region. Allocates nothing but where a surface
   /// is not the one that was slid on last. From one region to the other one:
   void cross(std::size_t surface, const evaluation::FieldConstants& other);
-  /// Does the same with the constants to be made: by prepare(), or again in each evaluation before that.
+  /// Does the same with the constants to be made: by prepare(), which has to be called before anything slides, or again
+  /// in each evaluation before that.
   void cross(std::size_t surface, double alpha);
   /// Makes constants that are missing; returns whether there were such.
   bool prepare();

@@ -120,6 +120,7 @@ void ModeField::cross(std::size_t surface, double alpha) {
 
 bool ModeField::prepare() {
   if (constants_[0].motion != nullptr || constants_[0].alpha.empty()) return false;
+  SALTUS_ASSERT(sliding_.empty());
   kernel_.prepare_field(alpha_.data(), constants_[0]);
   return true;
 }

@@ -50,6 +50,7 @@ bool Run::meet(const Located& located, int surface) {
   const int mode = here_.state.mode[j];
   const double alpha = here_.state.alpha[j];
   if (cross_locally(located, surface)) return true;
+  field_.prepare();
   field_(t, x, here_.slope.data());
   here_.state.alpha[j] = 1.0 - alpha;
   const auto& constants = fast_.fields.of(here_.state.alpha, steps_.memory().mark_with(j, -mode));
