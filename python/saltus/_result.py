@@ -216,7 +216,7 @@ class Result(Facts):
     def __call__(self, t: typing.Any, side: str = "right") -> Array:
         """The state at any time, or at several, from the polynomials of the steps; at an event `side` says which of both.
 
-        The model is simulated once more with rows at these times: ask for many at once. Of one time an array (n_x,), of
+        The model is simulated once more, up to the last of these times: ask for many at once. Of one time an array (n_x,), of
         several (number, n_x).
 
         >>> r = saltus.catalogue("stick-slip").simulate(until=10)

@@ -56,6 +56,21 @@ TEST(ValuesAt, AreTheRowsAtTheseTimesInTheirOrder) {
   EXPECT_NEAR(values->x[1][0], 1.0 - 0.5 * 9.81 * 0.0625, 1e-12);
 }
 
+TEST(ValuesAt, AreSimulatedNoFurtherThanToTheLastOfThem) {
+  auto [system, options] = model_of(ball);
+  options.until = 1e9;
+  double reached = 0.0;
+  const auto values =
+      values_at(system, options, {0.25, 0.5}, SideOfEvent::behind, {.on_step = [&](const StepRecord& step) {
+                  reached = step.t;
+                  return Proceed::on;
+                }});
+  ASSERT_TRUE(values) << to_text(values.error());
+  EXPECT_LT(reached, 2.0);
+  options.until = 2.0;
+  EXPECT_NEAR(values->x[1][0], values_at(system, options, {0.25, 0.5})->x[1][0], 1e-9);
+}
+
 TEST(ValuesAt, HaveTwoSidesAtAnEvent) {
   const auto [system, options] = model_of(ball);
   const auto run = simulate(system, options);

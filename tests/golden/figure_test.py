@@ -81,6 +81,17 @@ class Figure(tool.ToolTest):
         self.assertEqual(len(jumps[0]), 1)
         self.assertEqual(jumps[0], jumps[1])
 
+    def test_events_closer_than_their_lines_have_none(self):
+        """Some of them at equal distances would look like a slower switching."""
+        self.write("fast.toml", "[model]\nname = \"fast\"\n[states]\nx = 1\nv = 0\n[dynamics]\nx = \"v\"\n"
+                   "v = \"if(t < 1, 0, -1e6*x)\"\n[outputs]\nu = \"sign(x)\"\n[simulate]\nuntil = 3\n")
+        self.run_tool("simulate", "fast.toml", "--out", "r.json", "--quiet", code=0)
+        events = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["events"]
+        self.assertGreater(len(events), 500)
+        self.run_tool("report", "r.json", "--figure", "a.svg", code=0)
+        lines = [mark for mark in self.marks("a.svg", "path", "stroke", "#8d97a5") if mark.get("stroke-width") == "0.6"]
+        self.assertLess(len(lines), 3)
+
     def test_edges_of_a_relay_are_all_drawn_alike(self):
         """Rows closer than pixels do not join the sides of a jump; legends tell its thresholds apart."""
         self.write("servo.toml", SERVO)

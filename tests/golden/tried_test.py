@@ -158,6 +158,12 @@ class Tried(tool.ToolTest):
         before = [row for row in zip(result["trajectory"]["t"], result["trajectory"]["x"]) if row[0] < 1.0]
         self.assertTrue(all(abs(x[0]) < 1e-9 and abs(x[1]) < 1e-9 for _, x in before))
 
+    def test_sides_of_a_kink_are_no_other_solutions(self):
+        result, _, _ = self.simulated(PWM.replace("+ pwm", "+ u"))
+        held = result["events"][1]
+        self.assertEqual((held["kind"], held["unique"]), ("enter_sliding", True))
+        self.assertAlmostEqual(held["alpha_after"][0], 0.44, delta=1e-7)
+
     def test_a_control_from_a_file_may_go_through_a_table(self):
         self.write("u.csv", "t,u\n0,0.25\n1,0.75\n")
         result, _, _ = self.simulated(TABLE_OF_INPUT)

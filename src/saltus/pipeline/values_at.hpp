@@ -20,7 +20,7 @@ enum class SideOfEvent { before, behind };
 /// the same times bit for bit, and no polynomials are kept in memory.
 /// @param times  in any order, within [from, until], and not behind the end of a run that stops early
 /// @return one row per time, in their order; an Error for a time that is NaN or outside, and for options that do not
-///         fit. Cost: that of the simulation, for all times together.
+///         fit. Cost: that of the simulation up to the last time, for all times together.
 [[nodiscard]] Expected<result::Trajectory> values_at(const model::System& system, const SimulateOptions& options,
                                                      const std::vector<double>& times,
                                                      SideOfEvent side = SideOfEvent::behind,

@@ -123,9 +123,21 @@ void Decider::take(const std::vector<int>& group, const std::vector<int>& mode, 
   }
 }
 
+/// Whether a mode differs from what was taken by sides of kinks at most: f is one and the same on both.
+bool Decider::is_same_motion(const std::vector<int>& group, const auto& mode) const {
+  const auto taken = decisions_.end() - static_cast<std::ptrdiff_t>(group.size());
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    if (s_.system.switching[at(group[k])].is_kink()) continue;
+    const auto& decision = taken[static_cast<std::ptrdiff_t>(k)].second;
+    if (mode.mode[k] != decision.mode || std::abs(mode.alpha[k] - decision.alpha) > 1e-6) return false;
+  }
+  return true;
+}
+
 /// The other admissible modes of two surfaces.
 void Decider::note_others(const std::vector<int>& group, const switching::PlaneModes& others) {
   for (const auto& other : others) {
+    if (is_same_motion(group, other)) continue;
     transition_.unique = false;
     transition_.other_choices.push_back(
         {{group[0], other.mode[0], other.alpha[0]}, {group[1], other.mode[1], other.alpha[1]}});
@@ -151,7 +163,7 @@ void Decider::note_others(const std::vector<int>& group, const switching::Hidden
   const std::size_t taken = find_chosen(chosen, modes);
   for (std::size_t i = 0; i < modes.size(); ++i) {
     const auto& other = modes[i];
-    if (i == taken || is_vanishing(group, other)) continue;
+    if (i == taken || is_vanishing(group, other) || is_same_motion(group, other)) continue;
     transition_.unique = false;
     std::vector<GivenMode> choice;
     for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], other.mode[k], other.alpha[k]});

@@ -204,6 +204,7 @@ class Decider {
   void note_others(const std::vector<int>& group, const switching::PlaneModes& others);
   void note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen,
                    const std::vector<switching::GroupMode>& modes);
+  [[nodiscard]] bool is_same_motion(const std::vector<int>& group, const auto& mode) const;
   [[nodiscard]] bool is_vanishing(const std::vector<int>& group, const auto& mode) const;
   bool spiral_out(const std::vector<int>& group, const switching::PlaneTable& table, switching::PlaneDecision decision);
   double velocity_ahead(ModeField& field, const std::vector<double>& xdot, int surface);

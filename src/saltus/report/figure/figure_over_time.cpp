@@ -134,16 +134,21 @@ std::size_t count_of_moving(const result::Result& result) {
   return count;
 }
 
-/// Events as thin lines from the top to the bottom, of many one for some pixels; those that are not unique always.
+/// Events as thin lines from the top to the bottom; those that are not unique always, of many only those that stand
+/// alone: one for some pixels would look like a slower switching.
 void draw_events(Svg& svg, const result::Result& result, const Plot& time, double top, double bottom) {
-  const double apart = result.events.size() > 200 ? 6.0 : 1.0;
-  double last = -apart;
-  for (const auto& event : result.events) {
-    const double x = time.place(event.t, 0.0).x;
+  const double apart = result.events.size() > 200 ? 6.0 : 0.0;
+  std::vector<double> places;
+  for (const auto& event : result.events) places.push_back(time.place(event.t, 0.0).x);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto& event = result.events[i];
     const bool alarming = event.unique == false;
-    if (x - last < apart && !alarming) continue;
-    last = x;
-    svg.path({{x, top}, {x, bottom}}, alarming ? alarm_line : is_jump(event.kind) ? jump_line : event_line);
+    const bool crowded =
+        (i > 0 && places[i] - places[i - 1] < apart) || (i + 1 < places.size() && places[i + 1] - places[i] < apart);
+    if (crowded && !alarming) continue;
+    svg.path({{places[i], top}, {places[i], bottom}}, alarming              ? alarm_line
+                                                      : is_jump(event.kind) ? jump_line
+                                                                            : event_line);
   }
 }
 
