@@ -47,11 +47,11 @@ Expected<result::Trajectory> values_at(const model::System& system, const Simula
   AtTimes rows{times};
   drop_repeats(rows.times);
   again.output = std::move(rows);
-  const double last = times.empty() ? again.from : *std::max_element(times.begin(), times.end());
+  const double latest = times.empty() ? again.from : *std::max_element(times.begin(), times.end());
   Observers watching = observers;
   watching.on_step = [&](const StepRecord& step) {
     const auto wanted = observers.on_step ? observers.on_step(step) : Proceed::on;
-    return step.t > last ? Proceed::stop : wanted;  // a shorter span would have another last step
+    return step.t > latest ? Proceed::stop : wanted;  // a shorter span would have another last step
   };
   const auto run = simulate(system, again, watching);
   if (!run) return tl::unexpected(run.error());
