@@ -146,9 +146,9 @@ class ContactFreezing {
     return std::nullopt;
   }
 
-  /// A constant force stops the gap's rate v_n while a depth y falls with it, y' = v_n, and e^2 of it takes y back to
-  /// 0, where v_n is -e of what it was: y is quadratic, and exact in schemes of order 2. Positions stand, so that
-  /// normal and mass are constants.
+  /// A constant force stops the gap's rate v_n, while a depth y falls with it, y' = v_n. Then e^2 of the force takes y
+  /// back to 0, where v_n is -e of what it was. So y is quadratic, and exact in schemes of order 2. Positions stand,
+  /// so that normal and mass are constants.
   std::optional<Error> take_elastic(std::size_t k) {
     const auto i = static_cast<casadi_int>(k);
     auto& made = plan_.made.contacts[k];
