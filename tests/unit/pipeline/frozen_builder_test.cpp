@@ -114,7 +114,7 @@ TEST(FrozenBuilderTest, ComparedHysteresis) {
     const SX heating = m.hysteresis("heating", x, {.on = 18.0, .off = 20.0, .initial = 1.0});
     m.dynamics("x", rate(m, heating, x) - 0.5 * (x - 15));
     m.mode(model::equal(heating, 1), {{"y", 1}});
-    m.mode(model::equal(heating, 0), {{"y", 0}});
+    m.otherwise({{"y", 0}});
     const auto system = made(m);
     const auto exact = end_of(system, by(Method::event, 3.0)), frozen = end_of(system, by(Method::fesd, 3.0));
     EXPECT_NEAR(exact.x.at(0), 19.0778725174, 1e-8);

@@ -120,6 +120,8 @@ class Recognition {
   using MakeSelection = FunctionRef<Expected<SXElem>(const SXElem&, const std::string&)>;
   /// Returns what is made of e, or of e with every value of the two-valued states in it, blended.
   [[nodiscard]] Expected<SXElem> blended(const SXElem& e, const std::string& name, MakeSelection make);
+  /// Returns those whose psi has a two-valued state in it, also by its selections.
+  [[nodiscard]] std::vector<int> functions_of_two_valued() const;
   [[nodiscard]] std::string text_at(const std::string& name, const BothValues& both, int value) const;
   [[nodiscard]] Expected<Truth> comparison_truth(TruthDiagram& diagram, const Comparison& comparison);
   [[nodiscard]] Expected<Truth> truth_at_both(TruthDiagram& diagram, const Comparison& comparison,

@@ -75,16 +75,19 @@ Expected<bool> Recognition::changes_by_jumps_only(const SXElem& expression) {
 }
 
 Expected<std::vector<std::pair<SXElem, SXElem>>> Recognition::restated_selections() {
+  const std::vector<int> compare = functions_of_two_valued();
+  // What is restated is met no more: surfaces of the states, on which they wait, are functions of their own.
+  index_ = {};
+  for (int i = 0; i < static_cast<int>(functions_.size()); ++i) {
+    if (std::find(compare.begin(), compare.end(), i) == compare.end()) {
+      index_.insert(graph.tape(), functions_[at(i)].psi_node, i);
+    }
+  }
   std::vector<std::pair<SXElem, SXElem>> restated;
-  const std::size_t count = functions_.size();
-  for (std::size_t i = 0; i < count; ++i) {
-    const MetFunction met = functions_[i];  // a copy: more may be met below
-    if (std::find(two_valued_.begin(), two_valued_.end(), static_cast<int>(i)) != two_valued_.end()) continue;
+  for (const int i : compare) {
+    const MetFunction met = functions_[at(i)];  // a copy: more may be met below
     casadi::SX psi = met.psi;
     for (const auto& [before, now] : restated) psi = casadi::SX::substitute(psi, before, now);
-    const auto both = both_values(psi.scalar());
-    if (!both) return tl::unexpected(both.error());
-    if (!*both) continue;
     const auto make = [&](const SXElem& e, const std::string& name) -> Expected<SXElem> {
       const auto made = selection(e, name, met.alpha_at_zero);
       if (!made) return tl::unexpected(made.error());
@@ -96,6 +99,20 @@ Expected<std::vector<std::pair<SXElem, SXElem>>> Recognition::restated_selection
     restated.emplace_back(met.alpha, *now);
   }
   return restated;
+}
+
+std::vector<int> Recognition::functions_of_two_valued() const {
+  std::vector<int> found;
+  for (int i = 0; i < static_cast<int>(functions_.size()); ++i) {
+    if (std::find(two_valued_.begin(), two_valued_.end(), i) != two_valued_.end()) continue;
+    const int psi = functions_[at(i)].psi_node;
+    const auto cone = graph.tape().cone(std::span(&psi, 1), Links::through_alpha);
+    const bool compares = std::any_of(two_valued_.begin(), two_valued_.end(), [&](int function) {
+      return std::find(cone.begin(), cone.end(), functions_[at(function)].alpha_node) != cone.end();
+    });
+    if (compares) found.push_back(i);
+  }
+  return found;
 }
 
 }  // namespace saltus::model

@@ -31,7 +31,7 @@ std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& sc
     Range range = Range::positive;
   };
   double initial = 0.0;
-  for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n}, Key{"stiffness", stated.stiffness, numbers.stiffness},
+  for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n},
                           Key{"stabilisation", stated.stabilisation, numbers.stabilisation, Range::not_negative},
                           Key{"stabilisation.initial", stated.stabilisation_initial, initial, Range::not_negative},
                           Key{"transfer", stated.transfer, numbers.transfer}, Key{"eps_t", stated.eps_t, numbers.eps_t},
@@ -77,7 +77,7 @@ std::optional<Error> find_mistake(const FreezingNumbers& numbers) {
     Range range = Range::positive;
   };
   for (const auto& key :
-       {Key{"a_n", numbers.a_n}, Key{"stiffness", numbers.stiffness}, Key{"transfer", numbers.transfer},
+       {Key{"a_n", numbers.a_n}, Key{"transfer", numbers.transfer},
         Key{"stabilisation", numbers.stabilisation, Range::not_negative},
         Key{"stabilisation_initial", numbers.stabilisation_initial.value_or(0.0), Range::not_negative},
         Key{"eps_t", numbers.eps_t}, Key{"correction", numbers.correction, Range::not_negative},

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -147,8 +146,9 @@ class ContactFreezing {
     return std::nullopt;
   }
 
-  /// The depth y and its rate v_n are those of the oscillator y'' = -k y - d y' whatever mass and gap are: positions
-  /// stand, so that normal and mass are constants. It comes back to y = 0 with -e v_n.
+  /// A constant force stops the gap's rate v_n, while a depth y falls with it, y' = v_n. Then e^2 of the force takes y
+  /// back to 0, where v_n is -e of what it was. So y is quadratic, and exact in schemes of order 2. Positions stand,
+  /// so that normal and mass are constants.
   std::optional<Error> take_elastic(std::size_t k) {
     const auto i = static_cast<casadi_int>(k);
     auto& made = plan_.made.contacts[k];
@@ -157,15 +157,19 @@ class ContactFreezing {
           fmt::format("the contact '{}' has friction and restitution: time-freezing covers one of both", made.name),
           "simulate with method = \"event\", or leave one of them out");
     }
-    const SX depth(statement_.states[at(plan_.depth[k])].symbol), rate = system_.velocity(i);
+    const SX depth(statement_.states[at(plan_.depth[k])].symbol);
     const auto open = selection(system_.gap(i) + depth, made.name + ".gap", made.gap);
     if (!open) return open.error();
-    const double stiffness = plan_.numbers.stiffness, log_e = std::log(plan_.restitution[k]);
-    const double damping = -2.0 * log_e * std::sqrt(stiffness / (std::numbers::pi * std::numbers::pi + log_e * log_e));
-    const SX inverse_mass = SX::mtimes(system_.rows(i, casadi::Slice()), response(i));
-    const SX normal = (1.0 - *open) * (-stiffness * depth - damping * rate) / inverse_mass;
+    const double e = plan_.restitution[k];
+    SX part = 1.0;
+    if (e != 1.0) {
+      const auto opens = selection(system_.velocity(i), made.name + ".rate", made.normal);
+      if (!opens) return opens.error();
+      part = 1.0 - (1.0 - e * e) * *opens;
+    }
+    const SX normal = plan_.numbers.a_n * part * (1.0 - *open);
     plan_.moves *= *open;
-    plan_.added.push_back({plan_.depth[k], plan_.waits * (1.0 - *open) * rate});
+    plan_.added.push_back({plan_.depth[k], plan_.waits * (1.0 - *open) * system_.velocity(i)});
     add_to(system_.velocities, response(i) * normal);
     add_outputs(k, normal, SX(0, 1));
     return std::nullopt;
@@ -180,7 +184,7 @@ class ContactFreezing {
           {fmt::format("{}({}){}", kind, made.name, tangent), SX::densify(value).scalar()});
     };
     add("gap", system_.gap(static_cast<casadi_int>(k)));
-    add("force", made.is_elastic ? SX(0.0) : plan_.waits * normal);
+    add("force", plan_.waits * normal);
     for (int j = 0; j < made.tangents; ++j) {
       add("friction", plan_.waits * tangential(j), made.tangents < 2 ? "" : j == 0 ? "[1]" : "[2]");
     }

@@ -12,7 +12,7 @@ namespace saltus::model {
 
 /// Holds numbers of [time_freezing] (docs/model-file.md).
 struct FreezingNumbers {
-  double a_n = 100.0, stiffness = 10.0, stabilisation = 0.0, transfer = 1.0;
+  double a_n = 100.0, stabilisation = 0.0, transfer = 1.0;
   /// An optimisation begins with this and follows it to `stabilisation`; absent: it is fixed.
   std::optional<double> stabilisation_initial{};
   double eps_t = 1e-7;                            ///< tangential speed up to which a contact with two tangents sticks
@@ -31,12 +31,13 @@ struct FrozenSelection {
 };
 
 /// Holds a contact of a frozen system. Inelastic, it is open where its gap is positive or opens, and else a force along
-/// the normal stops it, or holds the gap. Elastic, an oscillator of the depth takes the velocity and gives it back.
+/// the normal stops it, or holds the gap. Elastic, a force stops it, too, and a smaller one takes
+/// the depth back to 0.
 struct FrozenContact {
   std::string name;
   bool is_elastic = false;
   FrozenSelection gap{};      ///< of the gap, elastic: of gap + depth
-  FrozenSelection normal{};   ///< of the gap's rate; none if elastic
+  FrozenSelection normal{};   ///< of the gap's rate; none with restitution 1
   FrozenSelection tangent{};  ///< of the tangential velocity, with two tangents of its size; none without friction
   int tangents = 0;           ///< with friction
   int impulse = -1;     ///< state: sum of normal impulses, and behind it of tangential ones; -1 in an optimisation

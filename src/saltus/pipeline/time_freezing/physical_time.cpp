@@ -160,7 +160,7 @@ class PhysicalTime {
   [[nodiscard]] std::vector<ContactMode> contact_modes(const Mode& mode) const {
     std::vector<ContactMode> modes;
     for (const auto& contact : freezing_.contacts) {
-      const bool closed = !contact.is_elastic && mode_of(contact.normal, mode) == 0 && mode_of(contact.gap, mode) <= 0;
+      const bool closed = mode_of(contact.normal, mode) == 0 && mode_of(contact.gap, mode) <= 0;
       const bool sticks = contact.tangent.function >= 0 && mode_of(contact.tangent, mode) == 0;
       modes.push_back(!closed                        ? ContactMode::open
                       : contact.tangent.function < 0 ? ContactMode::closed

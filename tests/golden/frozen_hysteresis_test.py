@@ -1,0 +1,130 @@
+"""Hysteresis where time stands still: the method fesd, and saltus optimize. Event-driven runs are the truth."""
+
+import json
+
+import time_freezing_test
+import tool
+
+HEAD = time_freezing_test.HEAD
+
+RELAYS = HEAD + """[states]
+v = 0
+y = 0
+[dynamics]
+v = "1 - 2*third"
+y = "first + 10*second - 3*third"
+[[hysteresis]]
+name = "first"
+input = "v"
+on = 1
+off = 0.5
+[[hysteresis]]
+name = "second"
+input = "v"
+on = 2
+off = 0.25
+[[hysteresis]]
+name = "third"
+input = "v"
+on = 3
+off = 0.1
+[simulate]
+until = 9
+"""
+
+# A room whose heating is compared; without it its rate is 10 heating - (x - 15)/2, written as a factor.
+ROOM = HEAD + """[states]
+x = 15
+y = 0
+[dynamics]
+x = "RATE"
+y = "x - 15"
+[[hysteresis]]
+name = "heating"
+input = "x"
+on = 18
+off = 20
+initial = 1
+[simulate]
+until = 3
+"""
+
+ROOMS = {
+    "a factor": "10*heating - 0.5*(x - 15)",
+    "greater": "if(heating > 0.5, 10 - 0.5*(x - 15), -0.5*(x - 15))",
+    "greater than 0": "if(heating > 0, 10, 0) - 0.5*(x - 15)",
+    "less": "if(heating < 0.3, 0, 10) - 0.5*(x - 15)",
+    "equal": "if(heating == 1, 10, 0) - 0.5*(x - 15)",
+    "not equal": "if(heating != 0, 10, 0) - 0.5*(x - 15)",
+    "sign": "5 + 5*sign(heating - 0.5) - 0.5*(x - 15)",
+    "step": "10*step(2*heating - 1) - 0.5*(x - 15)",
+    "max": "20*max(heating - 0.5, 0) - 0.5*(x - 15)",
+    "abs": "20*abs(0.5 - heating) * heating - 0.5*(x - 15)",
+    "and": "if(heating > 0.5 and x > 10, 10, 0) - 0.5*(x - 15)",
+    "or": "if(heating > 0.5 or x > 100, 10, 0) - 0.5*(x - 15)",
+    "a limit": "if(x < 19 + 2*heating - y/100, 10*heating, 0) - 0.5*(x - 15)",
+    "another limit": "if(x < 18.5 + 2.5*heating, 10*heating, -1) - 0.5*(x - 15)",
+    "nested": "if(x < if(heating == 1, 21, 18.5), 10*heating, -1) - 0.5*(x - 15)",
+}
+# Motions of their own, and a surface for every value of the hysteresis.
+OTHER_ROOMS = {"a limit", "another limit", "nested"}
+
+
+class FrozenHysteresis(time_freezing_test.FrozenTest):
+    def test_automaton_of_nested_thresholds(self):
+        _, frozen = self.assert_agree(RELAYS, 1e-8)
+        self.assertEqual([e["name"] for e in frozen["events"]], 3 * ["first", "second", "third"])
+
+    def test_a_hysteresis_is_compared(self):
+        exact = self.simulated(ROOM.replace("RATE", ROOMS["a factor"]), "event")["final"]["x"]
+        self.assertAlmostEqual(exact[0], 19.0778725174, delta=1e-7)
+        for what, rate in ROOMS.items():
+            with self.subTest(what):
+                model = ROOM.replace("RATE", rate)
+                if what in OTHER_ROOMS:
+                    event, frozen = (self.simulated(model, method) for method in ("event", "fesd"))
+                    jumps = lambda run: [e["t"] for e in run["events"] if e["kind"] == "jump"]
+                    for a, b in zip(jumps(event) + event["final"]["x"], jumps(frozen) + frozen["final"]["x"], strict=True):
+                        self.assertAlmostEqual(a, b, delta=1e-5)
+                    continue
+                event, frozen = self.assert_agree(model, 1e-5)
+                for a, b in zip(exact, event["final"]["x"]):
+                    self.assertAlmostEqual(a, b, delta=1e-6)
+
+    def test_a_surface_with_a_number_is_shown(self):
+        _, frozen = self.assert_agree(ROOM.replace("RATE", "12*heating - if(x > 17.5, 2, 0) - 0.5*(x - 15)"), 1e-5)
+        self.assertEqual(frozen["events"][0]["surfaces"], ["x-17.5"])
+
+    def test_modes_of_an_automaton(self):
+        modes = RELAYS.replace("[dynamics]\n", "", 1).replace('v = "1 - 2*third"\ny = "first + 10*second - 3*third"\n', """
+[[modes]]
+when = "third == 1"
+dynamics = { v = -1, y = "first + 10*second - 3" }
+[[modes]]
+when = "otherwise"
+dynamics = { v = 1, y = "if(first + second >= 2, 11, if(first + second == 1, first + 10*second, 0))" }
+""")
+        expected, frozen = self.assert_agree(RELAYS, 1e-8)[0], self.assert_agree(modes, 1e-8)[1]
+        for a, b in zip(expected["final"]["x"], frozen["final"]["x"]):
+            self.assertAlmostEqual(a, b, delta=1e-8)
+
+    def test_hysteresis_of_a_car_is_optimised(self):
+        text = (tool.SOURCE / "examples/contacts/turbo-hysteresis.toml").read_text(encoding="utf-8")
+        self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertAlmostEqual(result["objective"], 10.2292578, delta=1e-5)
+        self.assertEqual(result["states"], ["q", "v", "turbo"])
+        self.assertEqual([e["name"] for e in result["events"]], ["turbo", "turbo"])
+        self.assertAlmostEqual(result["events"][0]["t"], 3.0, delta=1e-7)
+        self.assertLess(result["verification"]["interval_defect"], 1e-9)
+        # Compared, the turbo is the same factor.
+        compared = self.optimised(text.replace("u*(1 + 2*turbo)", "u*if(turbo == 1 and q > -1, 3, 1)"))
+        self.assertAlmostEqual(compared["objective"], 10.2292578, delta=1e-5)
+        # Results are in physical time, without the clock, and can be started from all the same.
+        file = self.write("m.toml", text)
+        _, err = self.run_tool("optimize", file, "--quiet", "--start", "r.json", "--time-limit", "0.01", code=3)
+        self.assertIn("time", err)
+
+
+if __name__ == "__main__":
+    tool.main()
