@@ -119,6 +119,25 @@ TEST(Stiff, ExplicitMethodsPointToRadau5) {
   }
 }
 
+/// It hardly moves, and its steps are near the limit of stability, but no method may take longer ones.
+TEST(Stiff, NoFalseAlarmWhereStepsAreAsLongAsTheyMayBe) {
+  const Simulator model = Simulator::from_text(R"(
+[model]
+name = "rest"
+[states]
+x = 1
+[dynamics]
+x = "1e-7*sin(10*t) + 10 - 10*x"
+[simulate]
+until = 100
+event.max_step = 0.1
+)");
+  for (const Integrator integrator : {Integrator::dopri5, Integrator::dop853}) {
+    const Result result = model.run(with(model.options(), {integrator, 1e-6, 1e-8}));
+    EXPECT_EQ(result.status.message, "");
+  }
+}
+
 TEST(Stiff, NoFalseAlarmInTheCatalogue) {
   for (const std::string& name : catalogue()) {
     const Simulator model = Simulator::from_catalogue(name);

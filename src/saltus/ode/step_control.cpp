@@ -157,7 +157,7 @@ double StepControl::rejected(double error_norm) {
   return factor;
 }
 
-bool StiffnessWatch::looks_stiff(const Stepper& stepper) {
+bool StiffnessWatch::looks_stiff(const Stepper& stepper, const Tolerances& tolerances) {
   // Without suspicion a sample is enough.
   constexpr long interval = 16;
   constexpr int enough = 15;
@@ -165,9 +165,9 @@ bool StiffnessWatch::looks_stiff(const Stepper& stepper) {
   if (suspicions_ == 0 && ++steps_ % interval != 0) return false;
   // What turns to and fro below the tolerances, as dry friction does, keeps the ratio below 1 and the state in its
   // place.
-  constexpr double turns = 0.25, stays = 1e-6;
+  constexpr double turns = 0.25;
   const double ratio = stepper.stability_ratio();
-  if (ratio > 1.0 || (ratio > turns && stepper.relative_change() < stays)) {
+  if (ratio > 1.0 || (ratio > turns && stepper.change(tolerances) < 1.0)) {
     innocent_ = 0;
     return ++suspicions_ == enough;
   }
