@@ -164,10 +164,10 @@ bool StiffnessWatch::looks_stiff(const Stepper& stepper, const Tolerances& toler
   constexpr int acquitted = 6;
   if (suspicions_ == 0 && ++steps_ % interval != 0) return false;
   // What turns to and fro below the tolerances, as dry friction does, keeps the ratio below 1 and the state in its
-  // place.
+  // place. Below atol all is small, and may change by its own size.
   constexpr double turns = 0.25;
   const double ratio = stepper.stability_ratio();
-  if (ratio > 1.0 || (ratio > turns && stepper.change(tolerances) < 1.0)) {
+  if (ratio > 1.0 || (ratio > turns && stepper.change({tolerances.rtol, 0.0}) < 1.0)) {
     innocent_ = 0;
     return ++suspicions_ == enough;
   }
