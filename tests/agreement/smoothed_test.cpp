@@ -95,7 +95,7 @@ TEST(SmoothedRun, HoldsTheIntersectionOfTwoSurfaces) {
   }
 }
 
-// Cycles that tighten until the layers are reached say nothing about the steps behind them: a million was not enough.
+// Cycles that contract until the layers are reached say nothing about the steps behind them: a million was not enough.
 TEST(SmoothedRun, ASpiralThatEndsInItsLayersGoesOnWithTheTolerancesOfTheRun) {
   const Result result = run_smoothed(Simulator::from_catalogue("slow-spiral"), 1e-4);
   EXPECT_NEAR(result.final.x[0], 0.0, 1e-4);

@@ -174,7 +174,7 @@ void expect_error_of_the_layer(const std::vector<double>& epsilons, const std::v
   }
 }
 
-// Tolerances that do not see the layer are tightened in it. Without that the relay ended at errors from 0.06 to 1000
+// Tolerances that do not see the layer are lowered in it. Without that the relay ended at errors from 0.06 to 1000
 // for epsilon below 30 to 1000 times atol, and nothing said so.
 TEST(SmoothedTolerances, LooseOnesLeaveTheErrorOfTheLayer) {
   expect_error_of_the_layer({1e-5, 1e-6, 1e-7, 1e-8}, {1e-5, 1e-6, 1e-7, 1e-8});

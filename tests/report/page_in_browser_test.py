@@ -138,6 +138,41 @@ class Columns(Page):
         self.assertEqual(self.panels(), ["v, q", "α(slip)"])
         self.assertEqual(self.value("document.querySelector('.timeline').layout.xaxis.range"), [5, 20])
 
+    def drag(self, drawing):
+        """Draws a frame within a drawing with the mouse."""
+        left, top, width, height = self.value(
+            f"(() => {{ const drawing = document.querySelector('{drawing}'); drawing.scrollIntoView({{block: 'center'}});"
+            " const frame = drawing.querySelector('.nsewdrag').getBoundingClientRect();"
+            " return [frame.x, frame.y, frame.width, frame.height]; })()")
+        self.browser.act(f"drag {left + 0.2 * width} {top + 0.3 * height} {left + 0.5 * width} {top + 0.6 * height}")
+
+    def test_what_was_zoomed_to_by_the_mouse_is_left_again(self):
+        self.show("stick-slip")
+        whole = self.value("document.querySelector('.timeline').layout.xaxis.range.slice()")
+        self.drag(".timeline")
+        window = "document.querySelector('.timeline').layout.xaxis.range.map((t) => Math.round(t))"
+        self.becomes(window, [8, 20])
+        self.becomes("location.hash.startsWith('#t=')", True)
+        self.value("[...document.querySelectorAll('button')].find((one) => one.textContent === 'whole time').click()")
+        self.becomes("document.querySelector('.timeline').layout.xaxis.range", whole)
+        self.becomes("location.hash", "")
+
+        ranges = f"(({PLANE}).layout.xaxis.range.concat(({PLANE}).layout.yaxis.range).map((one) => +one.toFixed(6)))"
+        plane = self.value(ranges)
+        self.drag(".phase-plot")
+        self.becomes(f"JSON.stringify({ranges}) !== '{json.dumps(plane, separators=(',', ':'))}'", True)
+        self.value(f"({PLANE}).emit('plotly_doubleclick')")
+        self.becomes(ranges, plane)
+
+    def test_scales_of_the_plane_are_kept_in_the_address(self):
+        self.show("stick-slip")
+        self.value("[...document.querySelectorAll('.phase label')].find((one) => one.textContent === 'log x')"
+                   ".querySelector('input').click()")
+        self.becomes("location.hash", "#scales=log-x")
+        address = self.value("location.href")
+        self.browser.open(address, 1366, 768, "light")
+        self.assertEqual(self.value(PLANE + ".layout.xaxis.type"), "log")
+
     def test_selections_and_time_are_axes_of_the_plane(self):
         self.show("stick-slip")
         for place, name in ((0, "α(slip)"), (1, "t")):

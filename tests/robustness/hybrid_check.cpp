@@ -38,7 +38,7 @@ double slope(const Course& course, double t) {
 /// A stretch of one mode: its laws' signs (0: sticks), and the walls that hold.
 class Stretch {
  public:
-  /// A wall holds where the state is at rest on it at both ends. Cycles that tighten have turning points 1e-13 before
+  /// A wall holds where the state is at rest on it at both ends. Cycles that contract have turning points 1e-13 before
   /// it.
   Stretch(const Hybrid& hybrid, std::vector<int> signs, const State& x, const State& x_next)
       : hybrid_(hybrid), signs_(std::move(signs)) {

@@ -54,7 +54,7 @@ struct IntegrationOptions {
   /// Ascending: what to go on with instead of what is decided. The result begins at the last of these decisions.
   std::vector<Choice> choices;
   bool local_steps = true;  ///< where a switch moves few states of many, only these are integrated anew behind it
-  ThinLayers layers;        ///< inside them tolerances are tightened to what they bear
+  ThinLayers layers;        ///< inside them tolerances are lowered to what they allow
 };
 
 using result::Continue;

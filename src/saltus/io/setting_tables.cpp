@@ -67,6 +67,8 @@ Expected<void> set_table(ModelFile& model, std::string_view key, std::string_vie
   const auto& entries = std::get<TomlTable>(section.value.value);
   if (section.key == "optimize") {
     read_optimize_key(reader, entries.front(), model);
+  } else if (section.key == "time_freezing") {
+    read_time_freezing(reader, section, model);
   } else {
     withdraw_inputs(model.description, entries);
     read_simulate(reader, section, model);

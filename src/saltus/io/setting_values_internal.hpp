@@ -24,7 +24,7 @@ void withdraw_input(model::Description& description, std::string_view name);
 
 /// Reads a table behind --set: what is written there replaces what the model has, and the rest stays. Errors are those
 /// of the same table in a file.
-/// @param key  below [simulate], or a table of [optimize] that read_optimize_key reads; the model has that one
+/// @param key  below [simulate] or [time_freezing], or of [optimize], which the model has (read_optimize_key)
 [[nodiscard]] Expected<void> set_table(ModelFile& model, std::string_view key, std::string_view value);
 
 }  // namespace saltus::io

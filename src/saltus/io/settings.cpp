@@ -148,8 +148,7 @@ constexpr std::array settable{
 };
 
 /// Tables of a model file whose entries have no name of their own, or that --set does not reach for another reason.
-constexpr std::array fixed{"modes",    "events",        "jumps",       "tables",    "mechanics",
-                           "contacts", "time_freezing", "sensitivity", "hysteresis"};
+constexpr std::array fixed{"modes", "events", "jumps", "tables", "mechanics", "contacts", "sensitivity", "hysteresis"};
 
 tl::unexpected<Error> not_settable(std::string_view key, std::string_view table) {
   if (std::find(fixed.begin(), fixed.end(), table) != fixed.end()) {
@@ -162,7 +161,7 @@ tl::unexpected<Error> not_settable(std::string_view key, std::string_view table)
     return refused_setting(key, ErrorCode::unknown_name, fmt::format("'{}' is a table of [simulate]", table),
                            fmt::format("write simulate.{}", key));
   }
-  std::vector<std::string> known{"simulate", "optimize"};
+  std::vector<std::string> known{"simulate", "optimize", "time_freezing"};
   for (const auto& candidate : settable) known.emplace_back(candidate.name);
   return refused_setting(key, ErrorCode::unknown_name, fmt::format("'{}' is no table of a model file", table),
                          suggest(std::string(table), known));
@@ -250,6 +249,8 @@ Expected<ModelFile> with_setting(ModelFile model, std::string_view key, std::str
     done = set_option(model, key, value, place_of_setting(key));
   } else if (table == "optimize") {
     done = set_optimize(model, key, value);
+  } else if (table == "time_freezing" && dot < key.size()) {
+    done = set_table(model, key, is_table_text(value) ? std::string(value) : fmt::format("\"{}\"", value));
   } else {
     const auto same = [&](const auto& candidate) { return candidate.name == table; };
     const auto* found = std::find_if(settable.begin(), settable.end(), same);

@@ -197,7 +197,7 @@ void restate(const Regularisation& regularisation, result::Events& events, resul
     restated.push_back(std::move(event));
   }
   events = std::move(restated);
-  // Corners have one continuation, unless rounding hides it; and what a layer bears may be less than rounding.
+  // Corners have one continuation, unless rounding hides it; and the error that a layer allows may be below rounding.
   const bool lost = status.termination == Termination::outside_class ||
                     status.termination == Termination::no_admissible_mode ||
                     status.termination == Termination::step_size_too_small;

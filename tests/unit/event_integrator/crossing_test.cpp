@@ -157,7 +157,7 @@ TEST(FastPath, CrossesWhileSlidingWhereTheMatrixChangesAsTheFullDecision) {
   }
 }
 
-/// Switches that tighten towards an equilibrium: cycles, tolerances that follow them, and the limit.
+/// Switches that contract towards an equilibrium: cycles, tolerances that follow them, and the limit.
 TEST(FastPath, FollowsAccumulationsAsTheFullDecision) {
   auto system = testing::blank(2, 2);
   testing::add_surface(system, "x", system.x(0));

@@ -203,7 +203,8 @@ TEST(TomlModel, NamesAndTablesCarryTheirPositions) {
 }
 
 TEST(TomlModel, TooManyRowsAreToldAtTheirOption) {
-  const auto checked = check_options(parsed_file("[model]\nname='m'\n[simulate]\nuntil = 1\noutput = { every = 1e-9 }\n"));
+  const auto checked =
+      check_options(parsed_file("[model]\nname='m'\n[simulate]\nuntil = 1\noutput = { every = 1e-9 }\n"));
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().location.line, 5);
   EXPECT_NE(checked.error().message.find("1e+09 rows"), std::string::npos) << checked.error().message;
@@ -286,6 +287,21 @@ TEST(Settings, ReachOptionsInputsAndExpressions) {
   EXPECT_EQ(model.description.inclusion, model::Inclusion::filippov);
 }
 
+TEST(Settings, ReachHowTimeStandsStillWhetherTheFileSaysItOrNot) {
+  auto model = with_setting(parsed_file(whole), "time_freezing.a_n", "5*mu");
+  ASSERT_TRUE(model) << to_text(model.error());
+  model = with_setting(std::move(*model), "time_freezing.stabilisation", "{ initial = 10, final = 2 }");
+  model = with_setting(std::move(*model), "time_freezing.penetration", "infinity");
+  ASSERT_TRUE(model) << to_text(model.error());
+  EXPECT_EQ(expression::to_text(*model->description.clock->a_n), "5*mu");
+  EXPECT_EQ(expression::to_text(*model->description.clock->stabilisation_initial), "10");
+  model = with_setting(std::move(*model), "time_freezing.stabilisation", "3");
+  ASSERT_TRUE(model) << to_text(model.error());
+  EXPECT_EQ(model->description.clock->stabilisation_initial, nullptr);
+  EXPECT_EQ(expression::to_text(*model->description.clock->stabilisation), "3");
+  EXPECT_EQ(expression::to_text(*model->description.clock->a_n), "5*mu");
+}
+
 TEST(Settings, ReachListsAndNamesWithDots) {
   const auto options = with_option({}, "simulate.output.times", "[0, 1/2, 1]");
   ASSERT_TRUE(options);
@@ -330,6 +346,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, RefusedSetting,
                                          Refused{"jumps.dose.delay", "1", "nothing in 'jumps' can be set"},
                                          Refused{"spam.z", "1", "'spam' is no table of a model file"},
                                          Refused{"simulate.fesd.lifting", "1", "from 2 to 64"},
+                                         Refused{"time_freezing.a_n", "-1", "it is a positive number"},
+                                         Refused{"time_freezing.stifness", "1", "did you mean 'stiffness'"},
                                          Refused{"statess.z", "1", "did you mean 'states'"},
                                          Refused{"dynamics.a", "1 +", "--set dynamics.a:1:"},
                                          Refused{"model.inclusion", "filipov", "did you mean 'filippov'"}));

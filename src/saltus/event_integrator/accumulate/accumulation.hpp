@@ -84,7 +84,7 @@ class EventSeries {
   [[nodiscard]] std::optional<double> closed_cycle() const;
   /// Returns how long the last cycle of a shrinking sequence was; nullopt outside of one.
   [[nodiscard]] std::optional<double> last_cycle() const;
-  /// Starts cycles anew, behind a limit, or where guards came to rest. Rattling is followed through such rests.
+  /// Starts cycles anew, behind a limit, or where guards came to rest. Chattering is followed through such rests.
   void clear_cycles();
   void clear();
   [[nodiscard]] bool empty() const { return entries_.empty(); }

@@ -195,7 +195,7 @@ class Run {
   [[nodiscard]] bool reaches_cell_end(const Located& located) const;
   void fail(result::Termination termination, std::string message);
   void row(double t, const std::vector<double>& x) { rows_.write(t, x); }
-  /// For the steps of the mode behind an event. While switches tighten no step is like one before.
+  /// For the steps of the mode behind an event. While cycles contract no step is like one before.
   void restart_control() {
     steps_.restart_control(switches_.empty() ? StepAttempt::Steps::may_repeat : StepAttempt::Steps::are_new);
   }

@@ -16,7 +16,7 @@ class StepErrors {
   StepErrors(const evaluation::ModelKernel& kernel, const ode::Tolerances& tolerances)
       : kernel_(kernel), run_(tolerances), now_(tolerances), gradient_(static_cast<std::size_t>(kernel.states())) {}
 
-  /// Returns the tolerances of the run, before anything tightens them.
+  /// Returns the tolerances of the run, before anything lowers them.
   [[nodiscard]] const ode::Tolerances& of_run() const { return run_; }
   /// Returns what the errors of a step may have changed an event function by, as far as its gradient at (t, x) says:
   /// 0 where that is not finite, and for functions of time. Cost: a gradient.

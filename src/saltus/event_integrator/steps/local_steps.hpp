@@ -14,9 +14,9 @@
 namespace saltus::event_integrator {
 
 /// LocalSteps keeps the step in which a surface is crossed. It integrates the states that the selection moves, and as
-/// many around them as feel that within the tolerance. It does so from the switch to the end of the step, along the
-/// dense output of the others, which stay on it. Where a selection moves nothing beside its own rows that is exact, but
-/// for the error of the dense output. Source: docs/adr/0025-local-steps.md.
+/// many around them as that changes by more than the tolerance. It does so from the switch to the end of the step,
+/// along the dense output of the others, which stay on it. Where a selection moves nothing beside its own rows that is
+/// exact, but for the error of the dense output. Source: docs/adr/0025-local-steps.md.
 class LocalSteps {
  public:
   LocalSteps(const IntegrationOptions& options, const evaluation::ModelKernel& kernel,

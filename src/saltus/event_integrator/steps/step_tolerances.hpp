@@ -1,4 +1,4 @@
-// The tolerances of a step: those of the run, tightened by the mode and by what is near.
+// The tolerances of a step: those of the run, lowered by the mode and by what is near.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace saltus::event_integrator {
 
-/// StepTolerances is the one budget of errors. A mode may tighten what the run asks for, and each reason leaves a part
+/// StepTolerances is the one budget of errors. A mode may lower what the run asks for, and each reason leaves a part
 /// of that: step = mode * product of the parts.
 class StepTolerances {
  public:

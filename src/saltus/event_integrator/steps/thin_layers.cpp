@@ -9,7 +9,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-/// Lowers tolerances to what one layer after the other bears.
+/// Lowers tolerances to what one layer after the other allows.
 class ToleranceLimits {
  public:
   ToleranceLimits(const evaluation::ModelKernel& kernel, const ThinLayers& layers, const ode::Tolerances& wanted,

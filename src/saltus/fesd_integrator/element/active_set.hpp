@@ -35,7 +35,7 @@ struct Condition {
   int selection = 0;
 };
 
-/// Holds the active set of an element, eq. (25) and (30) of [nurkanovic2024]: of a step selection the sign of its
+/// Holds the active set of an element, see (25) and (29) of [nurkanovic2024]: of a step selection the sign of its
 /// switching function, or 0 while it slides; of a region 0 while it is active, and -1.
 class ActiveSet {
  public:

@@ -11,7 +11,7 @@
 namespace saltus::fesd_integrator {
 
 /// Solves the Runge-Kutta equations of the complementarity system with the complementarities of every stage for itself
-/// and no others: time-stepping, of order 1 through switches whatever the method ([nurkanovic2024], section 3).
+/// and no others: time-stepping, of order 1 through switches whatever the method ([nurkanovic2024], section 4.1).
 ///
 /// The sets are found by pivoting from those of the element before, and regions likewise:
 /// - a function on the wrong side changes to the other one;

@@ -45,7 +45,7 @@ class SparseSystem {
   std::vector<Eigen::Index> slot_;  ///< where in the matrix
   std::size_t next_ = 0;
   bool analysed_ = false, factorised_ = false;
-  bool is_diagonal_ = false;  ///< as where sliding surfaces do not feel each other
+  bool is_diagonal_ = false;  ///< as where sliding surfaces do not influence each other
   Eigen::SparseMatrix<double> matrix_;
   Eigen::VectorXd right_, column_sizes_;
   Factors factors_;

@@ -284,6 +284,7 @@ void read_freezing_number(TomlReader& reader, const TomlEntry& field, expression
 /// A number, or { initial = a, final = b }.
 void read_stabilisation(TomlReader& reader, const TomlEntry& field, model::ClockDescription& clock) {
   const auto* table = std::get_if<TomlTable>(&field.value.value);
+  clock.stabilisation_initial = nullptr;
   if (table == nullptr) return read_freezing_number(reader, field, clock.stabilisation);
   for (const auto& entry : *table) {
     if (entry.key == "initial") {
@@ -306,7 +307,7 @@ void read_stabilisation(TomlReader& reader, const TomlEntry& field, model::Clock
 void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "the table [time_freezing]");
   if (table == nullptr) return;
-  model::ClockDescription clock;
+  auto clock = model.description.clock.value_or(model::ClockDescription{});
   clock.location = entry.location;
   for (const auto& field : *table) {
     if (field.key == "clock") {

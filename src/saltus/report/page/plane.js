@@ -112,7 +112,7 @@ saltus.scaleOf = (range, values, log) => {
   return {type: "log", range: saltus.roomyRange(positive.map(Math.log10))};
 };
 
-saltus.planeLayout = (result, choice, view, holder, palette, {equal, logs}) => {
+saltus.planeLayout = (result, choice, view, holder, palette, {equal, logs, resets}) => {
   const axis = (i, automargin) => ({
     title: {text: saltus.plain(saltus.shorten(saltus.axisLabel(result, choice[i]), 48)), standoff: 6},
     ...saltus.scaleOf(view.box[i], view.rows.map((row) => view.columns[i][row]), logs[i]),
@@ -131,8 +131,8 @@ saltus.planeLayout = (result, choice, view, holder, palette, {equal, logs}) => {
     margin: {l: 60, r: 16, t: 44, b: 48},
     hovermode: "closest",
     separators: ".",
-    // What the reader has zoomed to stays until other states or another time are chosen.
-    uirevision: JSON.stringify([choice, view.box, equal, logs]),
+    // What the reader has zoomed to stays until other states or another time are chosen, or a double click.
+    uirevision: JSON.stringify([choice, view.box, equal, logs, resets]),
     paper_bgcolor: "rgba(0,0,0,0)",
     plot_bgcolor: palette.panel,
     font: {family: "system-ui, sans-serif", size: 12, color: palette.text},
@@ -151,20 +151,28 @@ saltus.phasePlane = (result, timeline, select, address) => {
     address.set("plane", choice.join(","));
     draw();
   };
-  const box = (text, title) => {
-    const input = saltus.element("input", {type: "checkbox", onchange: () => draw()});
+  const asked = (address.get("scales") ?? "").split("+");
+  const box = (text, title, onchange = () => draw()) => {
+    const input = saltus.element("input", {type: "checkbox", onchange});
+    input.checked = asked.includes(text.replace(" ", "-"));
     return {input, label: saltus.element("label", {class: "controls", title}, input, text)};
   };
-  const equal = box("equal scales", "one unit is as long on both axes");
+  const scaled = () => {
+    const checked = [...logs, equal].filter(({input}) => input.checked).map(({label}) => label.textContent);
+    address.set("scales", checked.length > 0 ? checked.join("+").replaceAll(" ", "-") : null);
+    draw();
+  };
+  const equal = box("equal scales", "one unit is as long on both axes", scaled);
   const field = box("vector field", "where solutions go, at the end of the run; for models with two states");
   field.input.checked = true;
   field.label.hidden = result.vector_field === null;
-  const logs = ["log x", "log y"].map((text) => box(text, "a logarithmic axis; shows what is positive"));
+  const logs = ["log x", "log y"].map((text) => box(text, "a logarithmic axis; shows what is positive", scaled));
+  let resets = 0;
   const draw = () => {
     const palette = saltus.palette();
     const view = saltus.phaseView(result, timeline, choice, sliding, 1500);
     if (view === null) return Plotly.purge(holder);
-    const scales = {equal: equal.input.checked, logs: logs.map(({input}) => input.checked)};
+    const scales = {equal: equal.input.checked, logs: logs.map(({input}) => input.checked), resets};
     const surfaces = saltus.planeSurfaces(result, choice, view, palette, scales.logs);
     note.textContent = saltus.surfaceNote({...surfaces, absent: saltus.surfacesNotDrawn(result, choice)}, view.at);
     return Plotly.react(
@@ -176,7 +184,7 @@ saltus.phasePlane = (result, timeline, select, address) => {
   const element = saltus.element(
       "section", {class: "card phase"},
       saltus.element(
-          "header", {}, saltus.element("h2", {title: "within the time shown above"}, "Phase plane"),
+          "header", {}, saltus.element("h2", {title: "within the time shown above; drag to zoom, double click to see all"}, "Phase plane"),
           saltus.element("span", {class: "controls"}, second, " over ", first), ...logs.map(({label}) => label),
           equal.label, field.label, saltus.element("span", {class: "controls grow"}),
           ...saltus.saveButtons(result, holder, "phase-plane")),
@@ -186,7 +194,10 @@ saltus.phasePlane = (result, timeline, select, address) => {
     holder.on("plotly_click", ({points}) => {
       if (points[0].customdata !== undefined) select(points[0].customdata);
     });
-    holder.on("plotly_doubleclick", draw);
+    holder.on("plotly_doubleclick", () => {
+      resets += 1;
+      draw();
+    });
   };
   return {element, draw, start};
 };

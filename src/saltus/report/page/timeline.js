@@ -17,10 +17,11 @@ saltus.timeline = (result, holder, listeners, address) => {
   let ranges = {};
   let stack = null;
 
+  // Copies of the window are given away: plotly writes into ranges.
   const view = () => {
     const marks = saltus.visibleMarks(result, shown, window_);
     const pixels = Math.max(200, holder.clientWidth);
-    return {window: window_, ranges, selected, branch, sliding, marks, pixels, palette: saltus.palette()};
+    return {window: [...window_], ranges, selected, branch, sliding, marks, pixels, palette: saltus.palette()};
   };
 
   const draw = () => {
@@ -126,7 +127,7 @@ saltus.timeline = (result, holder, listeners, address) => {
       address.set("c", saltus.panelsText(choice));
       draw();
     },
-    window: () => window_,
+    window: () => [...window_],
     shown: () => shown,
     selected: () => selected,
     panels: () => stack,

@@ -44,7 +44,7 @@ struct HiddenDecision {
   long evaluations = 0;                       ///< of g or of its table
 };
 
-/// Decides m surfaces by following the hidden dynamics u_j' = kappa_j g_j(pi(u)), pi(u) = min(max(u, 0), 1), eq. (2.9)
+/// Decides m surfaces by following the hidden dynamics u_j' = kappa_j g_j(pi(u)), pi(u) = min(max(u, 0), 1), eq. (2.8)
 /// of [guglielmi2022], to its limit set.
 ///
 /// Start: u_j = 0 or 1 on the side of arrival; u_j = alpha_j while sliding. Several arrivals at once are unfolded in

@@ -67,7 +67,7 @@ struct PlaneDecision {
 /// Returns why; the text has static duration.
 [[nodiscard]] std::string_view reason_of_passage();
 
-/// Decides where sliding on one surface arrives at the other (Figs. 5 and 6; Theorems 6.1, 6.2 of [guglielmi2022]).
+/// Decides where sliding on one surface arrives at the other (Figs. 5 and 6 of [guglielmi2022]).
 /// @param incoming  0 for the surface that is slid on, the side it comes from for the other
 [[nodiscard]] PlaneDecision decide_entering(const PlaneTable& table, PlaneMode incoming,
                                             SelectionPolicy policy = SelectionPolicy::active_dominant);
