@@ -119,6 +119,41 @@ TEST(Stiff, ExplicitMethodsPointToRadau5) {
   }
 }
 
+/// No method may take longer steps.
+constexpr auto at_rest = R"toml(
+[model]
+name = "at rest"
+[states]
+x = 1
+[dynamics]
+x = "10*(1 + 1e-8*sin(10*t) - x)"
+[simulate]
+until = 100
+event.max_step = 0.1
+)toml";
+
+/// It empties below the tolerances.
+constexpr auto tank = R"toml(
+[model]
+name = "tank"
+[states]
+h = 1
+[dynamics]
+h = "if(h > 0, -sqrt(abs(h)), 1)"
+[simulate]
+until = 3
+)toml";
+
+TEST(Stiff, NoFalseAlarmWhereThereIsLittleMotion) {
+  for (const char* text : {at_rest, tank}) {
+    const Simulator model = Simulator::from_text(text);
+    for (const Integrator integrator : {Integrator::dopri5, Integrator::dop853}) {
+      const Result result = model.run(with(model.options(), {integrator, 1e-8, 1e-10}));
+      EXPECT_EQ(result.status.message, "");
+    }
+  }
+}
+
 TEST(Stiff, NoFalseAlarmInTheCatalogue) {
   for (const std::string& name : catalogue()) {
     const Simulator model = Simulator::from_catalogue(name);

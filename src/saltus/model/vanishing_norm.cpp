@@ -57,8 +57,7 @@ std::string vanishing_norm(const System& system, double t, const std::vector<dou
     const auto& contacts = system.contacts.contacts;
     if (std::any_of(contacts.begin(), contacts.end(), [](const auto& contact) { return contact.in_plane; })) {
       return "; a slip with two tangents begins or ends here, so slowly that its direction is hardly resolved: "
-             "integrator "
-             "= \"radau5\" follows it in few steps, larger rtol and atol in fewer than now";
+             "integrator = \"radau5\" follows it in few steps, larger rtol and atol in fewer than now";
     }
     return fmt::format(
         "; a norm of {0} vanishes here, and its direction with it, as in planar friction (the force along -v/|v|): use "

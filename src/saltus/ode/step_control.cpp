@@ -157,17 +157,17 @@ double StepControl::rejected(double error_norm) {
   return factor;
 }
 
-bool StiffnessWatch::looks_stiff(const Stepper& stepper) {
+bool StiffnessWatch::looks_stiff(const Stepper& stepper, const Tolerances& tolerances) {
   // Without suspicion a sample is enough.
   constexpr long interval = 16;
   constexpr int enough = 15;
   constexpr int acquitted = 6;
   if (suspicions_ == 0 && ++steps_ % interval != 0) return false;
   // What turns to and fro below the tolerances, as dry friction does, keeps the ratio below 1 and the state in its
-  // place.
-  constexpr double turns = 0.25, stays = 1e-6;
+  // place. Below atol all is small, and may change by its own size.
+  constexpr double turns = 0.25;
   const double ratio = stepper.stability_ratio();
-  if (ratio > 1.0 || (ratio > turns && stepper.relative_change() < stays)) {
+  if (ratio > 1.0 || (ratio > turns && stepper.change({tolerances.rtol, 0.0}) < 1.0)) {
     innocent_ = 0;
     return ++suspicions_ == enough;
   }

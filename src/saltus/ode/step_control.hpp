@@ -40,11 +40,11 @@ class StepControl {
 
 /// Tells whether stability limits the accepted steps of an explicit method: 15 suspicious ones, and not six others in a
 /// row between them (codes DOPRI5 and DOP853 of Hairer & Wanner; here one step of 16 is looked at while there is no
-/// suspicion). So are steps nearly as long that leave the state where it is.
+/// suspicion). So are steps nearly as long that change the state by less than its tolerance.
 class StiffnessWatch {
  public:
   /// Is asked after every accepted step; true once, when the suspicion is enough.
-  [[nodiscard]] bool looks_stiff(const Stepper& stepper);
+  [[nodiscard]] bool looks_stiff(const Stepper& stepper, const Tolerances& tolerances);
   /// Begins with a new right-hand side.
   void reset() { *this = StiffnessWatch{}; }
 

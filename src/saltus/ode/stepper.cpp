@@ -181,13 +181,12 @@ double Stepper::stability_ratio() const {
   return explicit_ != nullptr ? explicit_->stability_ratio(explicit_step()) : 0.0;
 }
 
-double Stepper::relative_change() const {
-  double way = 0.0, size = 0.0;  // squares
+double Stepper::change(const Tolerances& tolerances) const {
+  double largest = 0.0;
   for (std::size_t i = 0; i < start_.size(); ++i) {
-    way += (x_new_[i] - start_[i]) * (x_new_[i] - start_[i]);
-    size += x_new_[i] * x_new_[i];
+    largest = std::max(largest, std::abs(x_new_[i] - start_[i]) / error_scale(tolerances, start_[i], x_new_[i]));
   }
-  return size > 0.0 ? std::sqrt(way / size) : 1.0;
+  return largest;
 }
 
 bool Stepper::bounds(double* low, double* high) const {

@@ -161,8 +161,8 @@ class Stepper {
   /// Radau methods.
   [[nodiscard]] double stability_ratio() const;
 
-  /// Returns the way of the last attempt, which was finite, over the size of its end, both Euclidean.
-  [[nodiscard]] double relative_change() const;
+  /// Returns the largest change of a component in the last attempt, which was finite, in units of its tolerance.
+  [[nodiscard]] double change(const Tolerances& tolerances) const;
 
   [[nodiscard]] long evaluations() const { return evaluations_; }  ///< of f, since construction
 

@@ -331,13 +331,14 @@ TEST_P(EachRadauMethod, StartsAtTheEdgeOfItsDomain) {
 int stiff_after(Method method, RightHandSide f, std::vector<double> x, int steps, double h) {
   Stepper stepper(method, static_cast<int>(x.size()));
   StiffnessWatch watch;
+  const Tolerances tolerances{1e-6, 1e-8};
   std::vector<double> slope(x.size());
   f(0.0, x.data(), slope.data());
   for (int k = 0; k < steps; ++k) {
-    stepper.attempt(f, k * h, x.data(), slope.data(), h, {});
+    stepper.attempt(f, k * h, x.data(), slope.data(), h, tolerances);
     std::copy_n(stepper.x_new(), x.size(), x.begin());
     std::copy_n(stepper.slope_new(), x.size(), slope.begin());
-    if (watch.looks_stiff(stepper)) return k;
+    if (watch.looks_stiff(stepper, tolerances)) return k;
   }
   return -1;
 }

@@ -70,9 +70,11 @@ class Contacts {
                                                   std::vector<double>& x);
   /// Says what is wrong where steps become ever smaller as a contact slips under a force that grows without bound.
   [[nodiscard]] std::optional<std::string> jam(const ContactMoment& moment, const std::vector<double>& x);
+  enum class Slips { kept, free };
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
+  /// @param slips  in a plane: kept as they are, or as free as all that is not held
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x,
-               const std::vector<int>& touching = {});
+               const std::vector<int>& touching = {}, Slips slips = Slips::kept);
   /// Returns whether a jump of a contact has only bounded the speed of a slip in a plane anew.
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
   /// Returns their names, for messages.
@@ -151,7 +153,7 @@ class Contacts {
                   bool is_free, std::vector<double>& x);
   void correct_positions(const std::vector<int>& touching, std::vector<double>& x) const;
   void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x) const;
-  void correct_velocities(const Eigen::VectorXd& velocity, std::vector<double>& x) const;
+  void correct_velocities(const Eigen::VectorXd& velocity, Slips slips, std::vector<double>& x) const;
   void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;
   [[nodiscard]] std::vector<int> held_rows(const std::vector<double>& x) const;
 

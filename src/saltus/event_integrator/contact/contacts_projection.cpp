@@ -60,13 +60,13 @@ void Contacts::change_velocities(const std::vector<int>& rows, const VectorXd& c
   }
 }
 
-/// @param velocity  before positions were corrected: slips in a plane stay what they were. The smaller they are, the
-///                  more would another velocity turn them, and forces with them.
-void Contacts::correct_velocities(const VectorXd& velocity, std::vector<double>& x) const {
+/// @param velocity  before positions were corrected: slips in a plane stay what they were, if they are to be kept. The
+///                  smaller they are, the more would another velocity turn them, and forces with them.
+void Contacts::correct_velocities(const VectorXd& velocity, Slips slips, std::vector<double>& x) const {
   auto rows = held_rows(x);
   if (values_.velocity(rows).isZero(0.0) && values_.velocity == velocity) return;
   const std::size_t held = rows.size();
-  keep_slips(x, rows);
+  if (slips == Slips::kept) keep_slips(x, rows);
   VectorXd change = -values_.velocity(rows);
   for (std::size_t r = held; r < rows.size(); ++r) change(static_cast<Eigen::Index>(r)) += velocity(rows[r]);
   const auto before = x;
@@ -101,7 +101,7 @@ void Contacts::keep_slips(const std::vector<double>& x, std::vector<int>& rows) 
 }
 
 bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<double>& x,
-                       const std::vector<int>& touching) {
+                       const std::vector<int>& touching, Slips slips) {
   if (none() || held_rows(x).empty()) return false;
   const auto before = x;
   VectorXd velocity;
@@ -113,7 +113,7 @@ bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<d
     correct_positions(touching, x);
     if (x == x_before) break;
   }
-  correct_velocities(velocity, x);
+  correct_velocities(velocity, slips, x);
   return x != before;
 }
 

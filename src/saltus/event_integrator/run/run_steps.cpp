@@ -148,7 +148,8 @@ Run::Step Run::accept(double t_new) {
   if (here_.t < options_.until && here_.t == jumps_.next_time()) here_.h = std::max(here_.h, steps_.length());
   steps_.memory().accepted(here_.h);
   switches_.end_if_over(roots_of_cycles());
-  steps_.watch_stiffness();
+  // Where steps are as long as they may be there are none longer.
+  if (!options_.max_step || h < 0.5 * *options_.max_step) steps_.watch_stiffness();
   if (search_.settle(here_.t, here_.x.data())) {
     // What a user function turns to from a zero at the start is its first sign, not a change of it.
     static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));

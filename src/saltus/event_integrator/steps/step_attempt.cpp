@@ -82,7 +82,7 @@ void StepAttempt::accepted(double h) {
 }
 
 void StepAttempt::watch_stiffness() {
-  if (!stiff_at_ && !stepper_.follows() && stiffness_.looks_stiff(stepper_)) stiff_at_ = here_.t;
+  if (!stiff_at_ && !stepper_.follows() && stiffness_.looks_stiff(stepper_, tolerances_.step())) stiff_at_ = here_.t;
 }
 
 void StepAttempt::begin_mode() {

@@ -113,7 +113,7 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
     }
     std::copy_n(stepper.slope_new(), m_, v_.begin());
     h *= control.accepted(stepper.error_norm());
-    if (!stiff_ && watch.looks_stiff(stepper)) {
+    if (!stiff_ && watch.looks_stiff(stepper, tolerances)) {
       stiff_ = true;
       control = ode::StepControl(ode::Method::radau5);
     }
