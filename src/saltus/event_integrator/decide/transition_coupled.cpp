@@ -295,7 +295,12 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   } else if (transition_.unique == true) {
     transition_.unique = std::nullopt;
   }
-  if (hidden.structurally_unstable) transition_.unique = false;
+  if (hidden.structurally_unstable) {
+    // A kink that rests beside a surface decides nothing: no other solution is known.
+    const bool beside_kink =
+        std::any_of(group.begin(), group.end(), [&](int j) { return s_.system.switching[at(j)].is_kink(); });
+    transition_.unique = beside_kink && transition_.unique == true ? std::nullopt : std::optional<bool>(false);
+  }
   for (const auto& mode : hidden.other_modes) {
     std::vector<GivenMode> choice;
     for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], mode[k], not_a_number});
