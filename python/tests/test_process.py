@@ -159,7 +159,7 @@ def test_who_stops_a_comparison_does_not_wait_for_another_run():
             raise KeyboardInterrupt
 
     many = str(10**9)
-    options = [("simulate.until", "3000", "u"), ("simulate.max_events", many, "e"), ("simulate.max_steps", many, "s")]
+    options = [("simulate.until", "30000", "u"), ("simulate.max_events", many, "e"), ("simulate.max_steps", many, "s")]
     with pytest.raises(KeyboardInterrupt) as stopped:
         model._core.compare([], options, tell, [])
     reference, second, *_ = json.loads(stopped.value.result.json(False))["comparison"]["runs"]

@@ -90,6 +90,7 @@ struct ClockDescription {
   std::string clock;                                 ///< the state that is physical time; empty: there is none by hand
   expression::NodePtr speed_lower, speed_upper;      ///< null: 1
   expression::NodePtr a_n, stabilisation, transfer;  ///< null: the default
+  expression::NodePtr stiffness;                     ///< of elastic contacts in earlier versions; has no effect
   /// { initial = a, final = b }: an optimisation begins with a, and `stabilisation` is b; null: it is fixed.
   expression::NodePtr stabilisation_initial;
   expression::NodePtr eps_t;  ///< tangential speed up to which a contact with two tangents sticks; null: the default

@@ -222,6 +222,7 @@ Json time_freezing_schema() {
                 {"speed", table({{"lower", expression}, {"upper", expression}}, "bounds of the speed of time",
                                 {"lower", "upper"})},
                 {"a_n", described(expression, "rate of the auxiliary dynamics")},
+                {"stiffness", described(expression, "of elastic impacts in earlier versions; has no effect")},
                 {"stabilisation", or_table(table({{"initial", expression}, {"final", expression}},
                                                  "followed down by the homotopy", {"initial"}))},
                 {"transfer", described(expression, "length of a switch of [[hysteresis]] in numerical time")},

@@ -257,8 +257,8 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 /// A key of [time_freezing] that is a number or an expression of parameters; nothing if it is no such key.
 expression::NodePtr* freezing_number(model::ClockDescription& clock, const std::string& key) {
-  for (const auto& [name, node] : {std::pair{"a_n", &clock.a_n}, std::pair{"transfer", &clock.transfer},
-                                   std::pair{"penetration", &clock.penetration},
+  for (const auto& [name, node] : {std::pair{"a_n", &clock.a_n}, std::pair{"stiffness", &clock.stiffness},
+                                   std::pair{"transfer", &clock.transfer}, std::pair{"penetration", &clock.penetration},
                                    std::pair{"correction", &clock.correction}, std::pair{"eps_t", &clock.eps_t}}) {
     if (key == name) return node;
   }
@@ -320,8 +320,8 @@ void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& m
     } else if (auto* number = freezing_number(clock, field.key)) {
       read_freezing_number(reader, field, *number);
     } else {
-      reader.unknown_key(field,
-                         {"clock", "speed", "a_n", "stabilisation", "eps_t", "transfer", "penetration", "correction"});
+      reader.unknown_key(field, {"clock", "speed", "a_n", "stiffness", "stabilisation", "eps_t", "transfer",
+                                 "penetration", "correction"});
     }
   }
   model.description.clock = std::move(clock);

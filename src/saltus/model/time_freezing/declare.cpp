@@ -30,8 +30,8 @@ std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& sc
     double& number;
     Range range = Range::positive;
   };
-  double initial = 0.0;
-  for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n},
+  double initial = 0.0, stiffness = 0.0;
+  for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n}, Key{"stiffness", stated.stiffness, stiffness},
                           Key{"stabilisation", stated.stabilisation, numbers.stabilisation, Range::not_negative},
                           Key{"stabilisation.initial", stated.stabilisation_initial, initial, Range::not_negative},
                           Key{"transfer", stated.transfer, numbers.transfer}, Key{"eps_t", stated.eps_t, numbers.eps_t},
@@ -113,6 +113,10 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
                                     Statement& statement, FreezingPlan& plan) {
   if (description.clock) {
     if (auto error = take_numbers(*description.clock, scope, plan.numbers)) return error;
+    if (const auto& stiffness = description.clock->stiffness) {
+      statement.warnings.push_back(
+          located(stiffness->location, "`stiffness` has no effect: the force a_n turns elastic contacts, exactly"));
+    }
   }
   for (const auto& entry : description.hysteresis) {
     plan.made.hysteresis.push_back({entry.name, declare_state(recognition, statement, entry.name, entry.location)});
