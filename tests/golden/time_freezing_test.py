@@ -185,9 +185,14 @@ until = 0.53
         outputs = dict(zip(frozen["outputs"], frozen["final"]["outputs"]))
         self.assertAlmostEqual(outputs["force(ground)"], 10.0, delta=1e-9)
 
+    def test_the_key_of_earlier_versions_is_read(self):
+        _, err = self.run_tool("simulate", "elastic-ball", "--method", "fesd", "--set", "time_freezing.stiffness=20", code=0)
+        self.assertIn("`stiffness` has no effect", err)
+
     def test_bad_input(self):
         for change, line in (
             (("[simulate]", "[time_freezing]\na_n = 0\n[simulate]"), "a_n is 0"),
+            (("[simulate]", "[time_freezing]\nstiffness = -1\n[simulate]"), "stiffness is -1"),
             (("[simulate]", "[time_freezing]\ntransfer = 0\n[simulate]"), "transfer is 0"),
             (("[simulate]", "[time_freezing]\npenetration = 0\n[simulate]"), "penetration is 0"),
             (("[simulate]", "[time_freezing]\nstabilisation = -1\n[simulate]"), "stabilisation is -1"),
