@@ -39,6 +39,14 @@ void subtract(const switching::MultiAffine& ahead, double time, switching::Multi
   }
 }
 
+/// A kink that rests beside a surface decides nothing: no other solution is known.
+std::optional<bool> unique_if_unstable(const model::System& system, const std::vector<int>& group,
+                                       std::optional<bool> unique) {
+  const bool beside_kink =
+      std::any_of(group.begin(), group.end(), [&](int j) { return system.switching[at(j)].is_kink(); });
+  return beside_kink && unique == true ? std::nullopt : std::optional<bool>(false);
+}
+
 /// Which of the modes is the one that was chosen: of two roots of a mode the nearer one, as behind the end of sliding
 /// the hidden dynamics has the fields of a little later; one past the last if none is.
 std::size_t find_chosen(const switching::HiddenDecision& chosen, const auto& modes) {
@@ -295,12 +303,7 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   } else if (transition_.unique == true) {
     transition_.unique = std::nullopt;
   }
-  if (hidden.structurally_unstable) {
-    // A kink that rests beside a surface decides nothing: no other solution is known.
-    const bool beside_kink =
-        std::any_of(group.begin(), group.end(), [&](int j) { return s_.system.switching[at(j)].is_kink(); });
-    transition_.unique = beside_kink && transition_.unique == true ? std::nullopt : std::optional<bool>(false);
-  }
+  if (hidden.structurally_unstable) transition_.unique = unique_if_unstable(s_.system, group, transition_.unique);
   for (const auto& mode : hidden.other_modes) {
     std::vector<GivenMode> choice;
     for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], mode[k], not_a_number});

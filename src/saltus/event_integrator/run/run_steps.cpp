@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -149,7 +150,7 @@ Run::Step Run::accept(double t_new) {
   steps_.memory().accepted(here_.h);
   switches_.end_if_over(roots_of_cycles());
   // Where steps are as long as they may be there are none longer.
-  if (!options_.max_step || h < 0.5 * *options_.max_step) steps_.watch_stiffness();
+  if (h < 0.5 * options_.max_step.value_or(std::numeric_limits<double>::infinity())) steps_.watch_stiffness();
   if (search_.settle(here_.t, here_.x.data())) {
     // What a user function turns to from a zero at the start is its first sign, not a change of it.
     static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));

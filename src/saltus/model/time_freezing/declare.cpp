@@ -113,10 +113,6 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
                                     Statement& statement, FreezingPlan& plan) {
   if (description.clock) {
     if (auto error = take_numbers(*description.clock, scope, plan.numbers)) return error;
-    if (const auto& stiffness = description.clock->stiffness) {
-      statement.warnings.push_back(
-          located(stiffness->location, "`stiffness` has no effect: the force a_n turns elastic contacts, exactly"));
-    }
   }
   for (const auto& entry : description.hysteresis) {
     plan.made.hysteresis.push_back({entry.name, declare_state(recognition, statement, entry.name, entry.location)});
