@@ -129,7 +129,10 @@ Interval drawn_range(const result::Result& result, int state) {
 std::vector<result::Surface> surfaces(const model::System& system, const result::Result& result) {
   std::vector<result::Surface> surfaces;
   int with_curves = 0;
+  const auto is_hidden = [&](int state) { return at(state) >= result.states.size(); };
   for (const auto& function : evaluation::surface_functions(system)) {
+    // The depth in an elastic contact is a state of the frozen system, and none of the result.
+    if (std::any_of(function.states.begin(), function.states.end(), is_hidden)) continue;
     result::Surface surface;
     surface.name = function.name;
     surface.role = role_of(function.owner);
