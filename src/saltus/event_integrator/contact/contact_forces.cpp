@@ -147,7 +147,8 @@ void take_best(const ContactPoint& point, const std::vector<int>& resting, Conta
     while (low > -widest && margin_at(low) > margin_at(0.5 * low)) low *= 2.0;
     for (int step = 0; step < refinements; ++step) {
       const double right = low + golden * (high - low), left = high - golden * (high - low);
-      (margin_at(left) < margin_at(right) ? low : high) = margin_at(left) < margin_at(right) ? left : right;
+      const bool rises = margin_at(left) < margin_at(right);
+      (rises ? low : high) = rises ? left : right;
     }
     if (!(margin_at(0.5 * (low + high)) > start.margin)) result = start;
   }

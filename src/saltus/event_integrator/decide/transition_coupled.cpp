@@ -142,14 +142,13 @@ bool Decider::is_same_motion(const std::vector<int>& group, const auto& mode) co
   return true;
 }
 
-/// The other admissible modes of two surfaces.
-void Decider::note_others(const std::vector<int>& group, const switching::PlaneModes& others) {
-  for (const auto& other : others) {
-    if (is_same_motion(group, other)) continue;
-    transition_.unique = false;
-    transition_.other_choices.push_back(
-        {{group[0], other.mode[0], other.alpha[0]}, {group[1], other.mode[1], other.alpha[1]}});
-  }
+/// Another admissible mode of a group, unless it is the same motion.
+void Decider::note_other(const std::vector<int>& group, const auto& mode) {
+  if (is_same_motion(group, mode)) return;
+  transition_.unique = false;
+  std::vector<GivenMode> choice;
+  for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], mode.mode[k], mode.alpha[k]});
+  transition_.other_choices.push_back(std::move(choice));
 }
 
 /// Whether it is sliding on, at the double root that is the last of this sliding. As its time is known to 1e-12 the two
@@ -165,24 +164,18 @@ bool Decider::is_vanishing(const std::vector<int>& group, const auto& mode) cons
   return vanishes;
 }
 
-/// The same of any number of surfaces.
-void Decider::note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen,
-                          const std::vector<switching::GroupMode>& modes) {
+/// All admissible modes but the chosen one, and the sliding that ends here.
+void Decider::note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen, const auto& modes) {
   const std::size_t taken = find_chosen(chosen, modes);
   for (std::size_t i = 0; i < modes.size(); ++i) {
-    const auto& other = modes[i];
-    if (i == taken || is_vanishing(group, other) || is_same_motion(group, other)) continue;
-    transition_.unique = false;
-    std::vector<GivenMode> choice;
-    for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], other.mode[k], other.alpha[k]});
-    transition_.other_choices.push_back(std::move(choice));
+    if (i != taken && !is_vanishing(group, modes[i])) note_other(group, modes[i]);
   }
 }
 
 bool Decider::accept(const std::vector<int>& group, const PlaneDecision& decision) {
   const auto& chosen = decision.chosen;
   take(group, {chosen.mode[0], chosen.mode[1]}, {chosen.alpha[0], chosen.alpha[1]});
-  note_others(group, decision.others);
+  for (const auto& other : decision.others) note_other(group, other);
   if (decision.ambiguous || decision.spirals_out) transition_.unique = false;
   group_reasons_.push_back(names(s_.system, group));
   append_leaf(decision.leaf, decision.reason, group_reasons_.back());
@@ -291,13 +284,7 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   }
   take(group, hidden.mode, hidden.alpha);
   if (plane) {
-    switching::PlaneModes others;
-    const auto modes = switching::admissible_modes(switching::plane_table(table));
-    const std::size_t taken = find_chosen(hidden, modes);
-    for (std::size_t i = 0; i < modes.size(); ++i) {
-      if (i != taken && !is_vanishing(group, modes[i])) others.push(modes[i]);
-    }
-    note_others(group, others);
+    note_others(group, hidden, switching::admissible_modes(switching::plane_table(table)));
   } else if (s_.affine_in_alpha && group.size() <= at(switching::largest_enumerated)) {
     note_others(group, hidden, switching::admissible_modes(table));
   } else if (transition_.unique == true) {

@@ -201,9 +201,8 @@ class Decider {
   void note_scales(const std::vector<int>& group, const switching::CornerTable& table);
   void note_meeting(const std::vector<int>& group, const switching::CornerTable& table);
   void take(const std::vector<int>& group, const std::vector<int>& mode, const std::vector<double>& alpha);
-  void note_others(const std::vector<int>& group, const switching::PlaneModes& others);
-  void note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen,
-                   const std::vector<switching::GroupMode>& modes);
+  void note_other(const std::vector<int>& group, const auto& mode);
+  void note_others(const std::vector<int>& group, const switching::HiddenDecision& chosen, const auto& modes);
   [[nodiscard]] bool is_same_motion(const std::vector<int>& group, const auto& mode) const;
   [[nodiscard]] bool is_vanishing(const std::vector<int>& group, const auto& mode) const;
   bool spiral_out(const std::vector<int>& group, const switching::PlaneTable& table, switching::PlaneDecision decision);

@@ -40,6 +40,10 @@ Truth TruthDiagram::conjunction(Truth a, Truth b) {
 
 Truth TruthDiagram::disjunction(Truth a, Truth b) { return negation(conjunction(negation(a), negation(b))); }
 
+Truth TruthDiagram::choice(Truth condition, Truth a, Truth b) {
+  return disjunction(conjunction(condition, a), conjunction(negation(condition), b));
+}
+
 Truth TruthDiagram::table(std::span<const int> literals, const std::vector<bool>& entries) {
   if (literals.empty()) return entries.front() ? constant_true() : constant_false();
   std::vector<bool> halves[2];

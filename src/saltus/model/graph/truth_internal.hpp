@@ -31,6 +31,8 @@ class TruthDiagram {
   Truth negation(Truth a);
   Truth conjunction(Truth a, Truth b);
   Truth disjunction(Truth a, Truth b);
+  /// Returns `a` where the condition holds, else `b`.
+  Truth choice(Truth condition, Truth a, Truth b);
   /// Returns the table of a function of the literals: entry i has bit k of i as the value of literals[k]; literals
   /// ascending.
   Truth table(std::span<const int> literals, const std::vector<bool>& entries);

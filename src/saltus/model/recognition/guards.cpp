@@ -72,8 +72,7 @@ Expected<Truth> Guards::truth_at_both(Comparison comparison, const BothValues& b
   const auto zero = comparison_truth(comparison);
   if (!zero) return zero;
   const int psi = recognition_.functions()[at(both.function)].psi_node;
-  const Truth state = diagram_.literal(guard(psi, AtEquality::is_false));
-  return diagram_.disjunction(diagram_.conjunction(state, *one), diagram_.conjunction(diagram_.negation(state), *zero));
+  return diagram_.choice(diagram_.literal(guard(psi, AtEquality::is_false)), *one, *zero);
 }
 
 }  // namespace saltus::model

@@ -56,8 +56,7 @@ Expected<Truth> Recognition::truth_at_both(TruthDiagram& diagram, const Comparis
   if (!one) return one;
   const auto zero = truth_at(both.at_zero, 0);
   if (!zero) return zero;
-  const Truth state = diagram.literal(both.function);
-  return diagram.disjunction(diagram.conjunction(state, *one), diagram.conjunction(diagram.negation(state), *zero));
+  return diagram.choice(diagram.literal(both.function), *one, *zero);
 }
 
 Expected<bool> Recognition::changes_by_jumps_only(const SXElem& expression) {
