@@ -139,9 +139,9 @@ TEST(SwitchAccumulation, FollowsCyclesToTheirLimit) {
     const int surface = k % 2;
     scene.here.t = 1.0 - std::ldexp(1.0, -k);
     set_surface(scene.here.state, surface, -before.mode[static_cast<std::size_t>(surface)], 0.5);
-    switches.series().note(scene.here.t, static_cast<std::size_t>(surface),
-                           before.mode[static_cast<std::size_t>(surface)]);
-    switches.note(before);
+    const ModeChange change{.mode_before = &before, .mode_after = &scene.here.state};
+    switches.series().note(scene.here.t, change);
+    switches.note(change);
     switches.limit_tolerances(SwitchAccumulation::Roots::none);
     EXPECT_LE(scene.tolerances.part(Reason::cycles).atol, share);
     share = scene.tolerances.part(Reason::cycles).atol;

@@ -14,7 +14,7 @@ TEST(SwitchSeries, CyclesThatHalveUntilNoModelLivesThereHaveALimit) {
   SwitchSeries series(10.0);
   double cycle = 1e-10;
   double t = 1.0;
-  for (int k = 0; k < 8; ++k, cycle *= 0.5) series.note(t += cycle, 0, k % 2 == 0 ? 1 : -1);
+  for (int k = 0; k < 8; ++k, cycle *= 0.5) series.note(t += cycle, {.surface = 0, .before = k % 2 == 0 ? 1 : -1});
   EXPECT_TRUE(series.shrinks(t));
 }
 
@@ -22,14 +22,14 @@ TEST(SwitchSeries, CyclesThatTimeDoesNotResolveHaveALimitHoweverTheyAreRounded) 
   SwitchSeries series(10.0);
   const double cycles[] = {1.0, 0.1, 20.0 * epsilon, 24.0 * epsilon, 20.0 * epsilon, 24.0 * epsilon};
   double t = 4.0;
-  for (const double cycle : cycles) series.note(t += 4.0 * cycle, 0, 1);
+  for (const double cycle : cycles) series.note(t += 4.0 * cycle, {.surface = 0, .before = 1});
   EXPECT_TRUE(series.shrinks(t));
 }
 
 TEST(SwitchSeries, CyclesOfOneLengthThatTimeResolvesHaveNone) {
   SwitchSeries series(10.0);
   double t = 4.0;
-  for (int k = 0; k < 20; ++k) series.note(t += 1e-11, 0, 1);
+  for (int k = 0; k < 20; ++k) series.note(t += 1e-11, {.surface = 0, .before = 1});
   EXPECT_FALSE(series.shrinks(t));
 }
 
@@ -39,7 +39,7 @@ TEST(SwitchSeries, CyclesThatShrinkALittleAreTakenForASpiralOnceTheyHaveHalved) 
   double t = 0.0;
   double cycle = 1e-3;
   int before = 0;
-  for (; before < 5000 && !series.tightens(); ++before, cycle *= q) series.note(t += cycle, 0, 1);
+  for (; before < 5000 && !series.tightens(); ++before, cycle *= q) series.note(t += cycle, {.surface = 0, .before = 1});
   // Two cycles of four to tell that they shrink, and ln(1/2)/ln(q) switches from the first of them.
   EXPECT_NEAR(before, 8 + std::log(0.5) / std::log(q), 8.0);
 }
@@ -49,7 +49,7 @@ TEST(SwitchSeries, CyclesThatShrinkToALengthAreALimitCycle) {
   double t = 0.0;
   double more = 5e-4;
   for (int k = 0; k < 20000; ++k, more *= 0.9995) {
-    series.note(t += 1e-3 + more, 0, 1);
+    series.note(t += 1e-3 + more, {.surface = 0, .before = 1});
     EXPECT_FALSE(series.tightens());
   }
 }

@@ -3,22 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 
-bool SwitchSeries::repeats(double t, const std::vector<int>& before, const std::vector<int>& after) {
-  if (before == after) return false;
+bool SwitchSeries::note(double t, const ModeChange& change) {
+  if (!change.is_single() && change.mode_before->mode == change.mode_after->mode) return false;
   remember(t);
   if (t != last_) {
     noted_ = 0;
     surface_change_.reset();
   }
   last_ = t;
+  if (!change.is_single()) return is_loop(change.mode_before->mode, change.mode_after->mode);
+  SALTUS_ASSERT(noted_ == 0 && !surface_change_);
+  surface_change_ = {at(change.surface), change.before};
+  return false;
+}
+
+/// Whether this change was made at last_ already; notes it.
+bool SwitchSeries::is_loop(const std::vector<int>& before, const std::vector<int>& after) {
   if (surface_change_) {
     auto& change = append();
     change.first = change.second = before;
-    change.first[surface_change_->surface] = surface_change_->before;
+    change.first[surface_change_->first] = surface_change_->second;
     surface_change_.reset();
   }
   const auto end = changes_.begin() + static_cast<std::ptrdiff_t>(noted_);
@@ -46,13 +55,6 @@ void SwitchSeries::remember(double t) {
   } else if (first_cycle_ == 0.0) {
     first_cycle_ = before;
   }
-}
-
-void SwitchSeries::note(double t, std::size_t surface, int before) {
-  remember(t);
-  noted_ = 0;
-  last_ = t;
-  surface_change_ = {surface, before};
 }
 
 bool SwitchSeries::shrinks(double t) const {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "saltus/event_integrator/mode/mode_change.hpp"
+
 namespace saltus::event_integrator {
 
 /// Watches the switches of a run. Spirals into an intersection of surfaces and Zeno sequences have infinitely many in
@@ -17,11 +19,10 @@ class SwitchSeries {
   /// @param span  of the whole run, in units of time
   explicit SwitchSeries(double span) : span_(span) {}
 
-  /// Returns whether the solution changes from `before` to `after` at t, as it already did at this very time: a loop.
-  /// Notes the change. There and back once is none: a surface may be touched more shallowly than time resolves.
-  [[nodiscard]] bool repeats(double t, const std::vector<int>& before, const std::vector<int>& after);
-  /// Notes that one surface has left the mode `before` at t, later than any change noted so far: no loop. Cost: O(1).
-  void note(double t, std::size_t surface, int before);
+  /// Notes a change at t. There and back once is no loop: a surface may be touched more shallowly than time resolves.
+  /// Cost: O(1) of one surface later than any change noted so far.
+  /// @return whether the same change was made at this very time already: a loop
+  bool note(double t, const ModeChange& change);
   /// Returns the time of the last change noted.
   [[nodiscard]] double last() const { return last_; }
   /// Counts an event at t; whether there were too many in too short a time.
@@ -36,17 +37,15 @@ class SwitchSeries {
  private:
   using Change = std::pair<std::vector<int>, std::vector<int>>;
   Change& append();
+  bool is_loop(const std::vector<int>& before, const std::vector<int>& after);
   void remember(double t);
   double span_;
   double last_ = 0.0;
   std::vector<Change> changes_;  ///< the first `noted_` of them are those at last_
   std::size_t noted_ = 0;
-  /// The only change at last_, noted by its surface: the mode behind it is the one that the next change comes from.
-  struct SurfaceChange {
-    std::size_t surface = 0;
-    int before = 0;
-  };
-  std::optional<SurfaceChange> surface_change_;
+  /// The only change at last_, by its surface and the mode of that before: the mode behind it is the one that the next
+  /// change comes from.
+  std::optional<std::pair<std::size_t, int>> surface_change_;
   /// Two cycles of up to four switches, and one to start from.
   static constexpr std::size_t remembered = 9;
   std::array<double, remembered> times_{};  ///< of the last switches, the last one first

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
@@ -32,6 +33,15 @@ struct SwitchingPoint {
   bool start = false;             ///< no mode before
   bool limit = false;             ///< infinitely many switches have ended here (with `start`)
   double time_scale = 1.0;        ///< a step of the integrator: derivatives that do not move psi over it vanish
+
+  /// Goes to a point where nothing is at zero yet; keeps the storage.
+  void begin(double new_t, const double* new_x, double new_time_scale) {
+    t = new_t;
+    x = new_x;
+    time_scale = new_time_scale;
+    start = limit = false;
+    for (auto* list : {&at_zero, &touched, &exit_below, &exit_above, &coalesced, &destabilised, &tied}) list->clear();
+  }
 };
 
 /// Holds a mode of one surface that is given, with its selection if that is known.
@@ -47,13 +57,6 @@ struct SpiralStart {
   std::vector<double> x;
   int surface = 0;  ///< on which x is
   double cycle_ratio = 0.0;
-};
-
-/// Holds two surfaces that influence each other, at zero together.
-struct Meeting {
-  std::array<int, 2> surfaces{};
-  std::array<std::array<double, 4>, 2> velocities{};  ///< normal components of the corner fields, bit i: alpha_i
-  std::optional<std::array<double, 2>> alpha;         ///< of the mode before; nullopt at a start
 };
 
 struct Transition {
@@ -72,6 +75,11 @@ struct Transition {
   long decision = -1;                    ///< its number in the run, of those with alternatives
   std::string reason;
   std::optional<Meeting> meeting;  ///< the first one decided here
+
+  /// Returns what it changes in a mode; both have to last as long as the change.
+  [[nodiscard]] ModeChange from(const ModeState& before) const {
+    return {.mode_before = &before, .mode_after = &state, .zero_order = &zero_order, .transition = this};
+  }
 };
 
 /// Says what the switching needs to know of the system besides its functions.

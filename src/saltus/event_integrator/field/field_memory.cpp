@@ -15,11 +15,12 @@ const evaluation::FieldConstants& FieldMemory::of(const std::vector<double>& alp
   while (place < used_ && !is_it(place)) ++place;
   const bool known = place < used_;
   if (!known) {
-    place = next_;
-    next_ = (next_ + 1) % capacity;
-    used_ = std::min(used_ + 1, capacity);
+    place = next_ == last_ ? (next_ + 1) % capacity : next_;
+    next_ = (place + 1) % capacity;
+    used_ = std::max(used_, place + 1);
     marks_[place] = mark;
   }
+  last_ = place;
   // Once there is native code the constants say so.
   auto& constants = constants_[place];
   const bool holds = known && constants.direct != nullptr && constants.motion == constants.use->motion;

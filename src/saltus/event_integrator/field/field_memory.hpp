@@ -15,7 +15,7 @@ class FieldMemory {
  public:
   explicit FieldMemory(const evaluation::ModelKernel& kernel) : kernel_(kernel) {}
 
-  /// Returns those of the selections `alpha` (n_psi). Valid until the next call.
+  /// Returns those of the selections `alpha` (n_psi). Valid until the call behind the next one.
   /// @param mark  of the region: different ones rarely have the same
   /// Cost: one comparison of selections; allocates for regions that are not among the last ones only.
   [[nodiscard]] const evaluation::FieldConstants& of(const std::vector<double>& alpha, std::size_t mark);
@@ -28,6 +28,7 @@ class FieldMemory {
   std::array<evaluation::FieldConstants, capacity> constants_;
   std::size_t used_ = 0;
   std::size_t next_ = 0;  ///< to be overwritten
+  std::size_t last_ = capacity;  ///< handed out last
 };
 
 }  // namespace saltus::event_integrator

@@ -6,11 +6,11 @@
 #include <optional>
 #include <vector>
 
-#include "saltus/base/function_ref.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/field/higher_order.hpp"
 #include "saltus/event_integrator/field/linear_motion.hpp"
 #include "saltus/event_integrator/field/sliding_groups.hpp"
+#include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/event_integrator/sliding/exit_forms.hpp"
 #include "saltus/event_integrator/sliding/surface_rows.hpp"
@@ -47,29 +47,18 @@ enum class Region { below, above };
 ///   xdot = f(t, x, alpha) - J^+ (J f + d psi_I/dt),  J = grad psi_I,
 /// with alpha_I from the m equations J f + d psi_I/dt = 0. The correction is of rounding size; for a surface that is a
 /// coordinate it makes the component exactly constant.
-/// Owns the work space; allocates in enter() only.
+/// Owns the work space; allocates where modes begin only.
 class ModeField {
  public:
   ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha);
 
   void enter(const ModeState& state);
-  /// Does the same where nothing is nested, there are no groups of regions and f is affine in the selections. Looks at
-  /// no selection but that of `surface`; constants are those of the other region. Allocates nothing but where a surface
-  /// is not the one that was slid on last. From one region to the other one:
-  void cross(std::size_t surface, const evaluation::FieldConstants& other);
-  /// Does the same with the constants to be made: by prepare(), which has to be called before anything slides, or again
-  /// in each evaluation before that.
-  void cross(std::size_t surface, double alpha);
-  /// Makes constants that are missing; returns whether there were such.
+  /// Begins the mode behind a change. Where one surface changes it looks at no selection but that and the one that is
+  /// slid on across it, and allocates where another surface is slid on than last time only.
+  void begin(const ModeChange& change);
+  /// Makes constants of a region that its change did not know; returns whether there were such. Has to be called before
+  /// anything slides, or again in each evaluation before that.
   bool prepare();
-  /// Goes from a region onto its border with the other one, which is `side` of the surface:
-  void slide_from_region(std::size_t surface, double selection, Region side, const evaluation::FieldConstants& other);
-  /// Goes from the only surface that is slid on to one of its sides:
-  void leave_to(Region side);
-  /// Goes along the only surface that is slid on, whose selection is `selection` behind, across another one, where that
-  /// is `alpha`; `constants_of` gives those of the region that belongs to selections, valid until it is called again.
-  void pass(std::size_t surface, double alpha, double selection,
-            FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of);
   /// Returns, while one surface is slid on, from the last evaluation the normal components of the fields of both sides.
   [[nodiscard]] const ExitValues& sides() const { return exits_.front(); }
   /// Returns the same of all surfaces that are slid on, where they do not influence each other.
@@ -137,6 +126,8 @@ class ModeField {
   void take_row(std::size_t row);
   void find_rooted_rows();
   void refer_to_constants();
+  void begin_sliding(const ModeChange& change);
+  void begin_across(const ModeChange& change);
   void select(double t, const double* x);  ///< alpha_I, exits and f(alpha) into f_[0]; not for one affine surface
   void gradients(double t, const double* x);
   void evaluate_corners(double t, const double* x);

@@ -1,4 +1,4 @@
-// Where modes begin: in general, and the fast paths from one region to its neighbour.
+// Where modes begin: from nothing, or behind a change of one surface.
 #include <algorithm>
 #include <utility>
 
@@ -103,19 +103,25 @@ void ModeField::find_rooted_rows() {
   }
 }
 
-void ModeField::cross(std::size_t surface, const evaluation::FieldConstants& other) {
+void ModeField::begin(const ModeChange& change) {
+  if (!change.is_single()) return enter(*change.mode_after);
   linear_motion_.forget();
   known_ = nullptr;
-  start_alpha_[surface] = alpha_[surface] = other.alpha[surface];
-  constants_[0] = other;
-}
-
-void ModeField::cross(std::size_t surface, double alpha) {
-  linear_motion_.forget();
-  known_ = nullptr;
-  start_alpha_[surface] = alpha_[surface] = constants_[0].alpha[surface] = alpha;
-  constants_[0].motion = nullptr;
-  constants_[0].direct = nullptr;
+  const auto j = at(change.surface);
+  start_alpha_[j] = alpha_[j] = change.alpha_after;
+  if (change.slid) return begin_across(change);
+  if (change.after == 0) return begin_sliding(change);
+  if (change.before == 0) {
+    if (change.after > 0) std::swap(constants_[0], constants_[1]);
+    sliding_.clear();
+    solve_ = SlidingSolve::none;
+  } else if (change.beyond[0] != nullptr) {
+    constants_[0] = *change.beyond[0];
+  } else {
+    constants_[0].alpha[j] = change.alpha_after;
+    constants_[0].motion = nullptr;
+    constants_[0].direct = nullptr;
+  }
 }
 
 bool ModeField::prepare() {
@@ -125,47 +131,31 @@ bool ModeField::prepare() {
   return true;
 }
 
-void ModeField::slide_from_region(std::size_t surface, double selection, Region side,
-                                  const evaluation::FieldConstants& other) {
-  linear_motion_.forget();
-  known_ = nullptr;
-  start_alpha_[surface] = alpha_[surface] = selection;
-  if (side == Region::below) std::swap(constants_[0], constants_[1]);
-  constants_[side == Region::below ? 0 : 1] = other;
+/// From a region onto its border with the one beyond it.
+void ModeField::begin_sliding(const ModeChange& change) {
+  const bool from_above = change.before > 0;
+  if (from_above) std::swap(constants_[0], constants_[1]);
+  constants_[from_above ? 0 : 1] = *change.beyond[0];
   for (std::size_t corner = 0; corner < 2; ++corner) corner_[corner] = constants_[corner].alpha;
-  const int j = static_cast<int>(surface);
-  sliding_.assign(1, j);
-  between_.assign(1, surface);
-  if (single_ != j) {
+  sliding_.assign(1, change.surface);
+  between_.assign(1, at(change.surface));
+  if (single_ != change.surface) {
     resize_rows();
     find_groups();
     SALTUS_ASSERT(is_single());
-    single_ = j;
+    single_ = change.surface;
   }
   solve_ = SlidingSolve::decoupled;
   refer_to_constants();
 }
 
-void ModeField::leave_to(Region side) {
-  linear_motion_.forget();
-  known_ = nullptr;
-  const auto j = at(sliding_.front());
-  start_alpha_[j] = alpha_[j] = side == Region::below ? 0.0 : 1.0;
-  if (side == Region::above) std::swap(constants_[0], constants_[1]);
-  sliding_.clear();
-  solve_ = SlidingSolve::none;
-}
-
-void ModeField::pass(std::size_t surface, double alpha, double selection,
-                     FunctionRef<const evaluation::FieldConstants&(const std::vector<double>&)> constants_of) {
-  linear_motion_.forget();
-  known_ = nullptr;
-  const auto slid = at(sliding_.front());
-  start_alpha_[surface] = alpha_[surface] = alpha;
-  start_alpha_[slid] = alpha_[slid] = selection;
+/// Along the only surface that is slid on, across another one.
+void ModeField::begin_across(const ModeChange& change) {
+  const auto slid = at(change.slid->surface);
+  start_alpha_[slid] = alpha_[slid] = change.slid->alpha_after;
   for (std::size_t corner = 0; corner < 2; ++corner) {
-    corner_[corner][surface] = alpha;
-    constants_[corner] = constants_of(corner_[corner]);
+    corner_[corner][at(change.surface)] = change.alpha_after;
+    constants_[corner] = *change.beyond[corner];
   }
   refer_to_constants();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saltus/base/rounding_unit.hpp"
+#include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
 
 namespace saltus::event_integrator {
@@ -30,6 +31,7 @@ struct Position {
     std::copy_n(new_x, x.size(), x.begin());
   }
   void change_mode(const ModeState& next) { state = next; }
+  void change_mode(const ModeChange& change) { apply(change, state); }
 
   /// Returns the smallest step that is still seen in t.
   [[nodiscard]] double smallest_step() const {

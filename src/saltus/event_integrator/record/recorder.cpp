@@ -48,7 +48,7 @@ double* extend(std::vector<double>& list, std::size_t count) {
 }
 
 /// What result::kind_of_switch says of it.
-result::EventKind kind_of(const SurfaceSwitch& change) {
+result::EventKind kind_of(const ModeChange& change) {
   if (change.after == 0) return result::EventKind::enter_sliding;
   return change.before == 0 ? result::EventKind::leave_sliding : result::EventKind::crossing;
 }
@@ -83,6 +83,14 @@ void Recorder::row(double t, const std::vector<double>& x, const ModeState& stat
 void Recorder::row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event) {
   const bool known = before_switch_.event == first_event;
   append_row(t, x, before.alpha, known ? before_switch_.mode : number(before, before.alpha, nullptr));
+}
+
+void Recorder::row_behind(const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha,
+                          const ModeChange& change) {
+  const auto& event = recording_.event_list.back();
+  if (!change.is_single()) return row(event.t, x, state, alpha);
+  const auto slid = at(change.slid ? change.slid->surface : change.surface);
+  append_row(event.t, x, alpha, recording_.modes.append_change(slid, state.mode[slid], alpha[slid]));
 }
 
 void Recorder::append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode) {
@@ -220,7 +228,13 @@ void Recorder::note_held_kinks(const ModeState& before, const ModeState& after) 
   }
 }
 
-bool Recorder::switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition) {
+bool Recorder::switched(double t, const std::vector<double>& x, const ModeChange& change) {
+  if (change.is_single()) {
+    switched_single(t, x, change);
+    return true;
+  }
+  const ModeState& before = *change.mode_before;
+  const Transition& transition = *change.transition;
   const std::size_t number_before = number(before);
   const std::size_t number_after = number(transition.state);
   changed_.clear();
@@ -250,13 +264,13 @@ bool Recorder::switched(double t, const std::vector<double>& x, const ModeState&
   return true;
 }
 
-void Recorder::switched(double t, const std::vector<double>& x, const SurfaceSwitch& change) {
+void Recorder::switched_single(double t, const std::vector<double>& x, const ModeChange& change) {
   const auto j = at(change.surface);
   const auto& columns = listed_columns_[j];
   auto& event = begin(t, kind_of(change));
   for (const std::size_t column : columns) add_surface(event, column);
   set_states(event, x, x);
-  if (const auto* slid = change.slid) {
+  if (const auto& slid = change.slid) {
     const auto k = at(slid->surface);
     event.mode = recording_.modes.append_change(k, 0, slid->alpha_before);
     event.mode_after =
@@ -267,18 +281,19 @@ void Recorder::switched(double t, const std::vector<double>& x, const SurfaceSwi
     event.mode = recording_.modes.append_change(j, change.before, change.alpha_before);
     event.mode_after = recording_.modes.append_change(j, change.after, change.alpha_after);
   }
+  before_switch_ = {events() - 1, event.mode};
   event.reason = reason_of(change);
 }
 
 /// Solutions come back to their switches: their words are written once.
-Recording::Range Recorder::reason_of(const SurfaceSwitch& change) {
+Recording::Range Recorder::reason_of(const ModeChange& change) {
   auto& known = known_reasons_[(3 * at(change.surface) + at(change.after + 1)) % known_reasons_.size()];
   const bool same_reason = known.reason.data() == change.reason.data() && known.reason.size() == change.reason.size();
-  const int slid = change.slid != nullptr ? change.slid->surface : -1;
+  const int slid = change.slid ? change.slid->surface : -1;
   if (known.surface == change.surface && known.slid == slid && same_reason) return known.place;
   auto& text = recording_.text;
   known = {change.surface, slid, change.reason, {text.size(), text.size()}};
-  if (change.slid != nullptr) {
+  if (change.slid) {
     append_meeting(system_, change.slid->meeting.surfaces, change.slid->leaf, change.reason, text);
   } else {
     text += system_.switching[at(change.surface)].name;

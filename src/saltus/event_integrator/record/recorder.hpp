@@ -12,6 +12,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/decide/transition.hpp"
+#include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/event_integrator/record/recording.hpp"
 #include "saltus/model/system.hpp"
@@ -25,23 +26,6 @@ struct Passage {
   const std::vector<double>& x_after;
   const ModeState& before;
   const ModeState& after;
-};
-
-/// Holds the surface that is slid on before and behind a switch of another one; the two influence each other.
-struct SlidAcross {
-  int surface = 0;
-  double alpha_before = 0.0, alpha_after = 0.0;
-  switching::Leaf leaf = switching::Leaf::none;
-  Meeting meeting;
-};
-
-/// Holds a switch of one surface that changes nothing else, but for the selection of what is slid on across it.
-struct SurfaceSwitch {
-  int surface = 0;
-  int before = 0, after = 0;  ///< modes
-  double alpha_before = 0.0, alpha_after = 0.0;
-  std::string_view reason;  ///< a literal
-  const SlidAcross* slid = nullptr;
 };
 
 /// Holds one execution of a jump.
@@ -66,24 +50,14 @@ class Recorder {
   void row(double t, const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha);
   /// Adds a row with the mode before the events at t, of which this is the first one (or would be, if there are none).
   void row_before(double t, const std::vector<double>& x, const ModeState& before, long first_event);
-  /// Records a switch, if a listed switching function changes its mode; returns whether it did.
-  bool switched(double t, const std::vector<double>& x, const ModeState& before, const Transition& transition);
-  /// Does the same for the one surface that changes, which is listed. The last mode recorded is the one before. Only
-  /// its own selection may differ, or that of what is slid on across it. Cost: O(1).
-  void switched(double t, const std::vector<double>& x, const SurfaceSwitch& change);
+  /// Records a switch, if a listed switching function changes its mode; returns whether it did. Cost: O(1) where one
+  /// surface changes, which is listed then; the last mode recorded is the one before.
+  bool switched(double t, const std::vector<double>& x, const ModeChange& change);
   /// Returns whether a surface is listed.
   [[nodiscard]] bool lists(int surface) const { return !listed_columns_[at(surface)].empty(); }
-  /// Adds a row in the mode before or behind the last event, with its selections.
-  void row_before_last_event(const std::vector<double>& x, const std::vector<double>& alpha) {
-    const auto& event = recording_.event_list.back();
-    append_row(event.t, x, alpha, event.mode);
-  }
-  /// Does the same where only the selection of `surface` may differ from that of the mode behind it.
-  void row_behind_last_event(const std::vector<double>& x, const std::vector<double>& alpha, std::size_t surface) {
-    const auto& event = recording_.event_list.back();
-    const int mode = recording_.modes.last_mode(surface);
-    append_row(event.t, x, alpha, recording_.modes.append_change(surface, mode, alpha[surface]));
-  }
+  /// Adds a row in the mode behind a change that was recorded last, with the selections of this point.
+  void row_behind(const std::vector<double>& x, const ModeState& state, const std::vector<double>& alpha,
+                  const ModeChange& change);
   /// Records a start on a surface or in a forced mode; `surfaces` at zero. Returns whether any of them is listed.
   bool started(double t, const std::vector<double>& x, const Transition& transition, const std::vector<int>& surfaces);
   /// Records an event of [[events]].
@@ -140,7 +114,8 @@ class Recorder {
   [[nodiscard]] std::size_t surface_of_region(int function) const {
     return system_.columns.size() + static_cast<std::size_t>(function);
   }
-  Recording::Range reason_of(const SurfaceSwitch& change);
+  void switched_single(double t, const std::vector<double>& x, const ModeChange& change);
+  Recording::Range reason_of(const ModeChange& change);
   void note_changed_regions(const ModeState& before, const ModeState& after);
   void note_held_kinks(const ModeState& before, const ModeState& after);
   void add_reason(Recording::Event& event, std::string_view reason);

@@ -70,18 +70,26 @@ void Run::fail(Termination termination, std::string message) {
   outcome_.running = false;
 }
 
+/// Begins the field of the mode behind a change at a point that it moves onto the surfaces of that; false where it is
+/// not finite there. here_.slope is that of the point.
+bool Run::begin_field(const ModeChange& change, double t, std::vector<double>& x) {
+  field_.begin(change);
+  if (change.is_evaluated) return true;
+  field_.project(t, x.data());
+  field_(t, x.data(), here_.slope.data());
+  return is_finite(here_.slope);
+}
+
 bool Run::enter(const Transition& transition) {
-  here_.change_mode(transition.state);
+  const ModeChange change = transition.from(event_.before);
+  here_.change_mode(change);
   zeros_.forget();
   set_references(kernel_, here_.state);
   tolerances_.begin_mode(kernel_, options_.layers, here_);
   tolerances_.lift(StepTolerances::Reason::local);
   if (nested_.begin_mode()) tolerances_.lift(StepTolerances::Reason::zeros);
-  field_.enter(here_.state);
   steps_.begin_mode();
-  field_.project(here_.t, here_.x.data());
-  field_(here_.t, here_.x.data(), here_.slope.data());
-  if (!is_finite(here_.slope) && !transition.beside.empty()) {
+  if (!begin_field(change, here_.t, here_.x) && !transition.beside.empty()) {
     // The field is undefined on the far side of its own surface, where rounding has put the state.
     here_.move_to(here_.t, transition.beside.data());
     field_(here_.t, here_.x.data(), here_.slope.data());
@@ -94,7 +102,7 @@ bool Run::enter(const Transition& transition) {
                     undefined_states(switching_context_.system, here_.slope), where()));
     return false;
   }
-  search_.enter(here_.state, transition.zero_order, here_.t, here_.x.data());
+  search_.begin(change, here_);
   event_.spiral = transition.beyond_spiral;
   event_.rooted = transition.rooted;
   return true;

@@ -18,10 +18,7 @@ Run::Step Run::leave_later() {
   const Arrival arrival =
       arrive(recorder_.ends_at(here_.t) ? OutputRows::Arrival::written : OutputRows::Arrival::missing);
   SwitchingPoint& switching_point = event_.switching_point;
-  switching_point = SwitchingPoint{};
-  switching_point.t = here_.t;
-  switching_point.x = here_.x.data();
-  switching_point.time_scale = here_.time_scale;
+  switching_point.begin(here_.t, here_.x.data(), here_.time_scale);
   switching_point.at_zero = here_.state.sliding;
   for (const auto& given : family->given) switching_point.touched.push_back(given.surface);
   auto left = decide_with(switching_context_, event_.before, switching_point, family->given);

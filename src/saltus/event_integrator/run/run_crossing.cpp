@@ -3,6 +3,7 @@
 // out: most copies of modes, switching points and transitions. The answers are those of the full decision, bit for bit,
 // which is taken where one is not clear.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -35,56 +36,161 @@ bool Run::is_ordinary(const Located& located) const {
          located.t != switches_.series().last();
 }
 
-/// Goes on behind an ordinary switch; otherwise nothing has happened.
-bool Run::switch_fast(const Located& located) {
+/// What ordinary switches change, by rules in the order in which they are asked; nullopt where the full decision is to
+/// be asked.
+std::optional<ModeChange> Run::decide_ordinary(const Located& located) {
+  using Rule = std::optional<ModeChange> (Run::*)(const Located&, const EventFunction&);
+  constexpr std::array<Rule, 4> rules_in_order{&Run::cross_by_rows, &Run::meet, &Run::leave, &Run::pass};
   const auto& function = search_.functions()[located.functions.front()];
-  if (function.kind != FunctionKind::surface) return leave(located, function);
-  return here_.state.sliding.empty() ? meet(located, function.index) : pass(located, function.index);
-}
-
-/// A surface that is reached in a region.
-bool Run::meet(const Located& located, int surface) {
-  const auto j = at(surface);
-  const double t = located.t;
-  const double* x = located.x.data();
-  const int mode = here_.state.mode[j];
-  const double alpha = here_.state.alpha[j];
-  if (cross_locally(located, surface)) return true;
-  field_.prepare();
-  field_(t, x, here_.slope.data());
-  here_.state.alpha[j] = 1.0 - alpha;
-  const auto& constants = fast_.fields.of(here_.state.alpha, steps_.memory().mark_with(j, -mode));
-  here_.state.alpha[j] = alpha;
-  kernel_.prepared_field(t, x, constants, fast_.slope_beyond.data());
-  const auto decision = mode < 0 ? fast_.single.decide(here_.state, surface, t, x, here_.slope, fast_.slope_beyond)
-                                 : fast_.single.decide(here_.state, surface, t, x, fast_.slope_beyond, here_.slope);
-  if (!decision) return false;
-  const SurfaceSwitch change{surface, mode, decision->mode, alpha, decision->alpha, decision->reason};
-  if (change.after != 0) {
-    field_.cross(j, constants);
-    here_.slope.swap(fast_.slope_beyond);
-  } else {
-    field_.slide_from_region(j, change.alpha_after, mode < 0 ? Region::above : Region::below, constants);
-    if (!begin_at(located)) return false;
+  for (const auto rule : rules_in_order) {
+    if (auto change = (this->*rule)(located, function)) return change;
   }
-  go_on_behind(located, change.after != 0 ? located.x : fast_.x, change);
-  keep_step(surface);
-  return true;
+  return std::nullopt;
 }
 
 /// A surface of a large system that is crossed: only rows of the field are looked at. All of it is evaluated when a
 /// step of all states begins.
-bool Run::cross_locally(const Located& located, int surface) {
-  if (!fast_.local.applies() || !fast_.single.has_rows(surface)) return false;
-  const auto j = at(surface);
+std::optional<ModeChange> Run::cross_by_rows(const Located& located, const EventFunction& reached) {
+  if (!here_.state.sliding.empty() || !fast_.local.applies() || !fast_.single.has_rows(reached.index))
+    return std::nullopt;
+  const int surface = reached.index;
   const auto decision = fast_.single.decide_by_rows(here_.state, surface, located.t, located.x.data());
-  if (!decision || decision->mode == 0) return false;
-  const SurfaceSwitch change{surface,         here_.state.mode[j], decision->mode, here_.state.alpha[j],
-                             decision->alpha, decision->reason};
-  field_.cross(j, change.alpha_after);
+  if (!decision || decision->mode == 0) return std::nullopt;
   fast_.local.renew_slope(surface, located.t, located.x.data(), here_.state.alpha, here_.slope);
-  go_on_behind(located, located.x, change);
-  keep_step(surface);
+  return change_of(surface, *decision, {});
+}
+
+/// A surface that is reached in a region.
+std::optional<ModeChange> Run::meet(const Located& located, const EventFunction& reached) {
+  if (!here_.state.sliding.empty()) return std::nullopt;
+  const auto j = at(reached.index);
+  const double t = located.t;
+  const double* x = located.x.data();
+  const int mode = here_.state.mode[j];
+  field_.prepare();
+  field_(t, x, here_.slope.data());
+  const auto* beyond = &constants_beyond(reached.index, 1.0 - here_.state.alpha[j], std::nullopt);
+  kernel_.prepared_field(t, x, *beyond, fast_.slope_beyond.data());
+  const auto decision =
+      mode < 0 ? fast_.single.decide(here_.state, reached.index, t, x, here_.slope, fast_.slope_beyond)
+               : fast_.single.decide(here_.state, reached.index, t, x, fast_.slope_beyond, here_.slope);
+  if (!decision) return std::nullopt;
+  if (decision->mode != 0) here_.slope.swap(fast_.slope_beyond);
+  return change_of(reached.index, *decision, {beyond});
+}
+
+/// The only surface that is slid on, where the field of one side has become tangent to it.
+std::optional<ModeChange> Run::leave(const Located& located, const EventFunction& exit) {
+  if (exit.kind == FunctionKind::surface) return std::nullopt;
+  const auto j = at(exit.index);
+  const double t = located.t;
+  const double* x = located.x.data();
+  field_(t, x, here_.slope.data());
+  const double alpha = field_.alpha()[j];
+  if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return std::nullopt;
+  const auto side = exit.kind == FunctionKind::exit_below ? Region::below : Region::above;
+  field_.of_side(side, t, x, fast_.slope_beyond.data());
+  const SingleSurface::Motions motions{field_.sides(),
+                                       search_.exit_rate(located.functions.front(), fast_.slope_beyond)};
+  const double before = std::exchange(here_.state.alpha[j], side == Region::below ? 0.0 : 1.0);
+  const auto decision = fast_.single.decide_exit(here_.state, exit.index, {t, x, here_.time_scale}, motions, side);
+  here_.state.alpha[j] = decision ? alpha : before;
+  if (!decision) return std::nullopt;
+  here_.slope.swap(fast_.slope_beyond);
+  return change_of(exit.index, *decision, {});
+}
+
+/// A surface that is reached while the solution slides on another one.
+std::optional<ModeChange> Run::pass(const Located& located, const EventFunction& reached) {
+  if (here_.state.sliding.empty() || reached.kind != FunctionKind::surface) return std::nullopt;
+  const int slid = here_.state.sliding.front();
+  field_(located.t, located.x.data(), here_.slope.data());
+  const double selection = field_.alpha()[at(slid)];
+  if (!is_finite(here_.slope) || !std::isfinite(selection)) return std::nullopt;
+  here_.state.alpha[at(slid)] = selection;
+  SwitchingPoint& both = event_.switching_point;
+  Transition& transition = event_.transition;
+  both.begin(located.t, located.x.data(), here_.time_scale);
+  both.at_zero = {std::min(slid, reached.index), std::max(slid, reached.index)};
+  both.touched.assign(1, reached.index);
+  const bool is_pair = fast_.pair.look(here_.state, both, &field_);
+  if (is_pair) {
+    if (const auto alpha = fast_.pair.across(here_.state, both)) return pass_across(reached.index, *alpha);
+  }
+  event_.before = here_.state;
+  const bool decided = is_pair ? fast_.pair.conclude(event_.before, both, transition)
+                               : fast_.single.decide(event_.before, both, transition);
+  return decided ? std::optional(transition.from(event_.before)) : std::nullopt;
+}
+
+/// The two surfaces of the switching point influence each other, and the solution goes on sliding across the one that
+/// it reaches. The selections have the order of the switching point.
+ModeChange Run::pass_across(int surface, const switching::PlaneAlpha& alpha) {
+  const std::size_t place = event_.switching_point.at_zero[0] == surface ? 0 : 1;
+  ModeChange change{surface, here_.state.mode[at(surface)], -here_.state.mode[at(surface)],
+                    here_.state.alpha[at(surface)], alpha[place], switching::reason_of_passage()};
+  const int slid = here_.state.sliding.front();
+  change.slid = {slid, here_.state.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
+                 fast_.pair.meeting(here_.state, event_.switching_point)};
+  for (std::size_t side = 0; side < 2; ++side) {
+    change.beyond[side] = &constants_beyond(surface, change.alpha_after, static_cast<double>(side));
+  }
+  return change;
+}
+
+/// Where the mode behind begins at the same point, here_.slope is its slope.
+ModeChange Run::change_of(int surface, const switching::SurfaceDecision& decision,
+                          const std::array<const evaluation::FieldConstants*, 2>& beyond) const {
+  const auto j = at(surface);
+  return {.surface = surface,
+          .before = here_.state.mode[j],
+          .after = decision.mode,
+          .alpha_before = here_.state.alpha[j],
+          .alpha_after = decision.alpha,
+          .reason = decision.reason,
+          .beyond = beyond,
+          .is_evaluated = decision.mode != 0};
+}
+
+/// Those of the region on the other side of a surface, on a side of what is slid on, if anything is.
+const evaluation::FieldConstants& Run::constants_beyond(int surface, double alpha, std::optional<double> side) {
+  const auto j = at(surface);
+  auto& selections = here_.state.alpha;
+  const double own = std::exchange(selections[j], alpha);
+  const double slid = side ? std::exchange(selections[at(here_.state.sliding.front())], *side) : 0.0;
+  const auto& constants = fast_.fields.of(selections, steps_.memory().mark_with(j, -here_.state.mode[j]));
+  selections[j] = own;
+  if (side) selections[at(here_.state.sliding.front())] = slid;
+  return constants;
+}
+
+/// Goes on behind an ordinary switch. Returns false where the new field is not finite there: it is the one before.
+bool Run::go_on_behind(const Located& located, const ModeChange& change) {
+  fast_.x = located.x;
+  if (!begin_field(change, located.t, fast_.x)) {
+    field_.enter(here_.state);
+    return false;
+  }
+  here_.move_to(located.t, fast_.x.data());
+  rows_.arrive(OutputRows::Arrival::missing);
+  recorder_.switched(here_.t, here_.x, change);
+  recorder_.row_before(here_.t, located.x, here_.state, recorder_.events() - 1);
+  here_.change_mode(change);
+  steps_.begin_mode();
+  search_.begin(change, here_);
+  const auto& selections = here_.state.sliding.empty() ? here_.state.alpha : field_.alpha();
+  recorder_.row_behind(here_.x, here_.state, selections, change);
+  switches_.series().note(here_.t, change);
+  here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h, change);
+  restart_control();
+  rows_.skip_here();
+  event_.last_time = here_.t;
+  if (!too_many_events()) {
+    switches_.note(change);
+    accumulate_switches();
+    if (outcome_.running) choices_.watch(field_);
+  }
+  if (change.is_single() && !change.slid) keep_step(change.surface);
   return true;
 }
 
@@ -100,178 +206,6 @@ void Run::keep_step(int surface) {
   // Its error is of a lower order than that of the steps.
   const double share = known != nullptr ? std::clamp(tolerances_.smallest_part(), 0.1, 1.0) : 1.0;
   tolerances_.limit(StepTolerances::Reason::local, {share, share});
-}
-
-/// A surface that is reached while the solution slides on another one.
-bool Run::pass(const Located& located, int surface) {
-  const auto j = at(surface);
-  const int slid = here_.state.sliding.front();
-  field_(located.t, located.x.data(), here_.slope.data());
-  const double selection = field_.alpha()[at(slid)];
-  if (!is_finite(here_.slope) || !std::isfinite(selection)) return false;
-  here_.state.alpha[at(slid)] = selection;
-  look_at_both(located, slid, surface);
-  const bool is_pair = fast_.pair.look(here_.state, event_.switching_point, &field_);
-  if (is_pair) {
-    if (const auto alpha = fast_.pair.across(here_.state, event_.switching_point))
-      return pass_across(located, surface, *alpha);
-  }
-  event_.before = here_.state;
-  const bool decided = is_pair ? fast_.pair.conclude(event_.before, event_.switching_point, event_.transition)
-                               : fast_.single.decide(event_.before, event_.switching_point, event_.transition);
-  if (!decided) return false;
-  const auto& next = event_.transition.state;
-  // The usual way: the solution goes on sliding across it.
-  const bool across = next.mode[at(slid)] == 0 && next.mode[j] == -event_.before.mode[j];
-  if (across) {
-    pass_field(surface, next.alpha[j], next.alpha[at(slid)]);
-  } else {
-    field_.enter(next);
-  }
-  if (!begin_at(located)) return false;
-  here_.move_to(located.t, fast_.x.data());
-  rows_.arrive(OutputRows::Arrival::missing);
-  recorder_.switched(here_.t, here_.x, event_.before, event_.transition);
-  recorder_.row_before(here_.t, located.x, event_.before, recorder_.events() - 1);
-  here_.change_mode(next);
-  steps_.begin_mode();
-  search_.enter(here_.state, event_.transition.zero_order, here_.t, here_.x.data());
-  if (across) {
-    recorder_.row(here_.t, here_.x, here_.state, field_.alpha());
-    switches_.series().note(here_.t, j, event_.before.mode[j]);
-    here_.h = steps_.memory().change(here_.state.mode, j, here_.t, here_.h);
-  } else {
-    row(here_.t, here_.x);
-    static_cast<void>(
-        switches_.series().repeats(here_.t, event_.before.mode, here_.state.mode));  // this is the first one at t
-    here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
-  }
-  end_switch();
-  if (too_many_events()) return true;
-  note_switch();
-  accumulate_switches();
-  if (outcome_.running) choices_.watch(field_);
-  return true;
-}
-
-/// The same where the two surfaces influence each other and the solution goes on sliding across the one that it
-/// reaches. The selections have the order of the switching point.
-bool Run::pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha) {
-  const auto j = at(surface);
-  const int slid = here_.state.sliding.front();
-  const std::size_t place = event_.switching_point.at_zero[0] == surface ? 0 : 1;
-  const SlidAcross across{slid, here_.state.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
-                          fast_.pair.meeting(here_.state, event_.switching_point)};
-  const SurfaceSwitch change{surface,
-                             here_.state.mode[j],
-                             -here_.state.mode[j],
-                             here_.state.alpha[j],
-                             alpha[place],
-                             switching::reason_of_passage(),
-                             &across};
-  pass_field(surface, change.alpha_after, across.alpha_after);
-  if (!begin_at(located)) return false;
-  go_on_behind(located, fast_.x, change);
-  return true;
-}
-
-/// The field of the mode in which the solution goes on sliding across a surface.
-void Run::pass_field(int surface, double alpha, double selection) {
-  const auto j = at(surface);
-  const std::size_t mark = steps_.memory().mark_with(j, -here_.state.mode[j]);
-  field_.pass(j, alpha, selection, [&](const std::vector<double>& selections) -> const evaluation::FieldConstants& {
-    return fast_.fields.of(selections, mark);
-  });
-}
-
-/// Finds the state, fast_.x, and the slope where the new field begins; false where that is not finite: the field is the
-/// one before.
-bool Run::begin_at(const Located& located) {
-  fast_.x = located.x;
-  field_.project(located.t, fast_.x.data());
-  field_(located.t, fast_.x.data(), here_.slope.data());
-  if (is_finite(here_.slope)) return true;
-  field_.enter(here_.state);
-  return false;
-}
-
-/// Fills the switching point.
-void Run::look_at_both(const Located& located, int slid, int reached) {
-  event_.switching_point.t = located.t;
-  event_.switching_point.x = located.x.data();
-  event_.switching_point.time_scale = here_.time_scale;
-  event_.switching_point.at_zero = {std::min(slid, reached), std::max(slid, reached)};
-  event_.switching_point.touched.assign(1, reached);
-  for (auto* none : {&event_.switching_point.exit_below, &event_.switching_point.exit_above,
-                     &event_.switching_point.coalesced, &event_.switching_point.destabilised}) {
-    none->clear();
-  }
-}
-
-/// What follows a switch that was recorded and entered.
-void Run::end_switch() {
-  restart_control();
-  rows_.skip_here();
-  event_.last_time = here_.t;
-}
-
-/// The only surface that is slid on, where the field of one side has become tangent to it.
-bool Run::leave(const Located& located, const EventFunction& exit) {
-  const int surface = exit.index;
-  const auto j = at(surface);
-  const double t = located.t;
-  const double* x = located.x.data();
-  field_(t, x, here_.slope.data());
-  const double alpha = field_.alpha()[j];
-  if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return false;
-  const auto side = exit.kind == FunctionKind::exit_below ? Region::below : Region::above;
-  field_.of_side(side, t, x, fast_.slope_beyond.data());
-  const SingleSurface::Motions motions{field_.sides(),
-                                       search_.exit_rate(located.functions.front(), fast_.slope_beyond)};
-  const double before = std::exchange(here_.state.alpha[j], side == Region::below ? 0.0 : 1.0);
-  const auto decision = fast_.single.decide_exit(here_.state, surface, {t, x, here_.time_scale}, motions, side);
-  here_.state.alpha[j] = before;
-  if (!decision) return false;
-  here_.state.alpha[j] = alpha;
-  field_.leave_to(side);
-  here_.slope.swap(fast_.slope_beyond);
-  go_on_behind(located, located.x, {surface, 0, decision->mode, alpha, decision->alpha, decision->reason});
-  keep_step(surface);
-  return true;
-}
-
-/// The field is that of the mode behind, which begins at x, and here_.slope is its slope there.
-void Run::go_on_behind(const Located& located, const std::vector<double>& x, const SurfaceSwitch& change) {
-  const auto j = at(change.surface);
-  here_.move_to(located.t, x.data());
-  rows_.arrive(OutputRows::Arrival::missing);
-  recorder_.switched(here_.t, here_.x, change);
-  recorder_.row_before_last_event(located.x, here_.state.alpha);
-  set_surface(here_.state, change.surface, change.after, change.alpha_after);
-  if (change.slid != nullptr) here_.state.alpha[at(change.slid->surface)] = change.slid->alpha_after;
-  steps_.begin_mode();
-  begin_search(change);
-  const bool slides = change.after == 0 || change.slid != nullptr;
-  recorder_.row_behind_last_event(here_.x, slides ? field_.alpha() : here_.state.alpha,
-                                  change.slid != nullptr ? at(change.slid->surface) : j);
-  switches_.series().note(here_.t, j, change.before);
-  here_.h = steps_.memory().change(here_.state.mode, j, here_.t, here_.h);
-  end_switch();
-  if (too_many_events()) return;
-  switches_.note(change);
-  accumulate_switches();
-  if (change.slid != nullptr && outcome_.running) choices_.watch(field_);
-}
-
-/// The functions of the mode behind.
-void Run::begin_search(const SurfaceSwitch& change) {
-  const auto j = at(change.surface);
-  const bool crosses = change.before != 0 && change.after != 0;
-  if (crosses && change.slid == nullptr) return search_.cross(j, here_.state, here_.t, here_.x.data());
-  set_corner_alpha(here_.state);
-  fast_.zero_order.assign(here_.state.mode.size(), 0);
-  fast_.zero_order[j] = crosses ? 1 : change.after == 0 ? 0 : 2;
-  search_.enter(here_.state, fast_.zero_order, here_.t, here_.x.data());
 }
 
 }  // namespace saltus::event_integrator

@@ -102,14 +102,8 @@ bool Run::jumps_while_sliding(int surface) {
 /// Fills the switching point with the surfaces that are at zero here, and why; false where the run has ended.
 bool Run::collect_surfaces(const Located& located) {
   SwitchingPoint& switching_point = event_.switching_point;
-  switching_point.t = here_.t;
-  switching_point.x = here_.x.data();
-  switching_point.time_scale = here_.time_scale;
+  switching_point.begin(here_.t, here_.x.data(), here_.time_scale);
   switching_point.at_zero = here_.state.sliding;
-  for (auto* surfaces : {&switching_point.touched, &switching_point.exit_below, &switching_point.exit_above,
-                         &switching_point.coalesced, &switching_point.destabilised}) {
-    surfaces->clear();
-  }
   for (const std::size_t place : located.functions) {
     const auto& function = search_.functions()[place];
     const bool is_surface = function.kind != FunctionKind::user && function.kind != FunctionKind::release;
@@ -196,20 +190,21 @@ bool Run::go_on() {
     return false;
   }
   choices_.choose(transition, progress());
-  if (switches_.series().repeats(here_.t, event_.before.mode, transition.state.mode)) {
+  const ModeChange change = transition.from(event_.before);
+  if (switches_.series().note(here_.t, change)) {
     accumulates();
     return false;
   }
   if (!enter(transition)) return false;
   event_.evaluated = true;
   if (!find_undefined_cells()) return false;
-  if (!recorder_.switched(here_.t, here_.x, event_.before, transition) && choices_.chooses(transition)) {
+  if (!recorder_.switched(here_.t, here_.x, change) && choices_.chooses(transition)) {
     // To stay on a root that has lost its stability, or to change to the other one: the branch begins like a run in a
     // forced mode.
     recorder_.started(here_.t, here_.x, transition, here_.state.sliding);
   }
   restart_control();
-  here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h);
+  here_.h = steps_.memory().change(here_.state.mode, here_.t, here_.h, change);
   return true;
 }
 
@@ -247,7 +242,9 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
   zeros_.forget();
-  if (is_ordinary(located) && switch_fast(located)) return outcome_.running ? Step::taken : Step::failed;
+  if (const auto change = is_ordinary(located) ? decide_ordinary(located) : std::nullopt) {
+    if (go_on_behind(located, *change)) return outcome_.running ? Step::taken : Step::failed;
+  }
   const bool ended_here = located.t == here_.t && recorder_.ends_at(here_.t) && here_.t != event_.last_time;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
   if (located.t > here_.t) search_.forget_user_zeros();

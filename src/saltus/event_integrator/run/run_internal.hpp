@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -91,18 +92,17 @@ class Run {
   Step handle(const Located& located);
   [[nodiscard]] bool has_ordinary_switches() const;
   [[nodiscard]] bool is_ordinary(const Located& located) const;
-  bool switch_fast(const Located& located);
-  bool meet(const Located& located, int surface);
-  bool cross_locally(const Located& located, int surface);
-  bool pass(const Located& located, int surface);
-  bool pass_across(const Located& located, int surface, const switching::PlaneAlpha& alpha);
-  void pass_field(int surface, double alpha, double selection);
-  bool begin_at(const Located& located);
-  void look_at_both(const Located& located, int slid, int reached);
-  void end_switch();
-  bool leave(const Located& located, const EventFunction& exit);
-  void go_on_behind(const Located& located, const std::vector<double>& x, const SurfaceSwitch& change);
-  void begin_search(const SurfaceSwitch& change);
+  [[nodiscard]] std::optional<ModeChange> decide_ordinary(const Located& located);
+  [[nodiscard]] std::optional<ModeChange> cross_by_rows(const Located& located, const EventFunction& reached);
+  [[nodiscard]] std::optional<ModeChange> meet(const Located& located, const EventFunction& reached);
+  [[nodiscard]] std::optional<ModeChange> leave(const Located& located, const EventFunction& exit);
+  [[nodiscard]] std::optional<ModeChange> pass(const Located& located, const EventFunction& reached);
+  [[nodiscard]] ModeChange pass_across(int surface, const switching::PlaneAlpha& alpha);
+  [[nodiscard]] ModeChange change_of(int surface, const switching::SurfaceDecision& decision,
+                                     const std::array<const evaluation::FieldConstants*, 2>& beyond) const;
+  [[nodiscard]] const evaluation::FieldConstants& constants_beyond(int surface, double alpha,
+                                                                   std::optional<double> side);
+  bool go_on_behind(const Located& located, const ModeChange& change);
   void keep_step(int surface);
   Arrival arrive(OutputRows::Arrival row);
   void follow_change_of_mode();
@@ -135,6 +135,7 @@ class Run {
   bool jump_with_cells();
   bool find_undefined_cells();
   bool go_on();
+  bool begin_field(const ModeChange& change, double t, std::vector<double>& x);
   bool enter(const Transition& transition);
   void begin_spiral();
   void leave_root();
@@ -246,7 +247,6 @@ class Run {
     bool applies = false;  ///< the model and the options have nothing that a switch of one surface might concern
     FieldMemory fields;
     LocalSteps local;
-    std::vector<int> zero_order;       ///< n_psi
     std::vector<double> slope_beyond;  ///< of the region on the other side of a surface
     std::vector<double> x;             ///< where the mode behind begins
   };

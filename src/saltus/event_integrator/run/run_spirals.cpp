@@ -87,7 +87,7 @@ void put_onto_nested(const evaluation::ModelKernel& kernel, const ModeState& sta
 void Run::note_switch() {
   if (event_.before.mode == here_.state.mode) return;
   if (event_.jumped) return switches_.clear();
-  switches_.note(event_.before);
+  switches_.note({.mode_before = &event_.before});
 }
 
 /// Behind a switch that was noted: if those up to here have a limit that nothing else precedes, the run goes on from

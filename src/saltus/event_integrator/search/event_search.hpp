@@ -11,6 +11,7 @@
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/jumps/holding.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
+#include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/search/mode_functions.hpp"
 #include "saltus/event_integrator/search/search_values.hpp"
 #include "saltus/event_integrator/search/step_errors.hpp"
@@ -46,9 +47,9 @@ class EventSearch {
   /// Sets up the functions of a mode at (t, x), behind an evaluation of the field there. `zero_order` (n_psi): zeros
   /// that surfaces have at this point.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
-  /// Does the same where one surface was crossed since, with no sliding before and behind; only while crosses(). Cost:
-  /// O(1), and the thresholds of the same state.
-  void cross(std::size_t surface, const ModeState& state, double t, const double* x);
+  /// Does the same at the position, where a mode begins behind a change. Cost: O(1) where one surface is crossed while
+  /// crosses(), and the thresholds of the same state.
+  void begin(const ModeChange& change, const Position& here);
   /// Returns whether crossings change signs of surfaces only.
   [[nodiscard]] bool crosses() const { return mode_.plain && mode_.state.sliding.empty() && held_.guards.empty(); }
   /// Returns whether the last attempt of the stepper has to be searched: false only where search() would find nothing.
@@ -110,6 +111,7 @@ class EventSearch {
     std::optional<Hit> hit;
   };
   void start_at(double t);
+  void cross(std::size_t surface, const Position& here);
   [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
   void enter_surfaces(const ModeState& state, const std::vector<int>& zero_order);
   void enter_exits(const ModeState& state, double t, const double* x);
@@ -193,6 +195,7 @@ class EventSearch {
   std::vector<std::size_t> candidates_;  ///< of this step, ascending
   std::vector<std::size_t> inspected_;   ///< at the start of a mode: those whose values matter there
   TurnedSurfaces turned_;                ///< likewise
+  std::vector<int> zero_order_;          ///< n_psi
   bool any_nesting_ = false;             ///< some functions of the kernel hold selections
   bool only_signs_change_ = false;       ///< where the mode that was entered last begins anew
 };

@@ -27,12 +27,20 @@ void EventSearch::start_at(double t) {
   user_.zeros_at = t;
 }
 
-void EventSearch::cross(std::size_t surface, const ModeState& state, double t, const double* x) {
-  start_at(t);
+void EventSearch::begin(const ModeChange& change, const Position& here) {
+  if (!change.is_single()) return enter(here.state, *change.zero_order, here.t, here.x.data());
+  if (change.crosses() && !change.slid) return cross(at(change.surface), here);
+  zero_order_.assign(here.state.mode.size(), 0);
+  zero_order_[at(change.surface)] = change.order();
+  enter(here.state, zero_order_, here.t, here.x.data());
+}
+
+void EventSearch::cross(std::size_t surface, const Position& here) {
+  start_at(here.t);
   mode_.forget_zeros(special_);
-  mode_.turn(surface, state, 1);
+  mode_.turn(surface, here.state, 1);
   inspected_.assign(1, surface);
-  read_values(t, x, inspected_);
+  read_values(here.t, here.x.data(), inspected_);
   mode_.functions[surface].offset = point_[surface];
   special_ = inspected_;
 }

@@ -21,30 +21,33 @@ SwitchAccumulation::SwitchAccumulation(const SwitchingContext& switching_context
       shortest_(3 * switching_context.system.switching.size(), 0.0),
       slope_(here.x.size()) {}
 
-void SwitchAccumulation::note(const ModeState& before) {
-  if (!series_.tightens()) return cycles_.clear();
-  bool holds = true;  // kinks do not hold a solution, and times pass
+void SwitchAccumulation::note(const ModeChange& change) {
+  if (!series_.tightens() || !find_labels(change)) return cycles_.clear();
+  cycles_.add(here_.t, labels_, here_.x);
+  // A limit asks for the rates of those switches only behind which cycles have contracted twice.
+  if (!cycles_.shrinks()) return;
+  if (!change.is_single()) return note_rates(change.mode_before->alpha);
+  alpha_ = here_.state.alpha;
+  alpha_[at(change.surface)] = change.alpha_before;
+  if (change.slid) alpha_[at(change.slid->surface)] = change.slid->alpha_before;
+  note_rates(alpha_);
+}
+
+/// Of all surfaces whose mode changes; false where one of them does not hold a solution: a kink, or a time.
+bool SwitchAccumulation::find_labels(const ModeChange& change) {
   labels_.clear();
-  for_each_difference(before.mode, here_.state.mode, [&](std::size_t j) {
+  bool holds = true;
+  const auto add = [&](std::size_t j) {
     const auto role = switching_context_.system.switching[j].role;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
     labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));
-  });
-  if (!holds) return cycles_.clear();
-  cycles_.add(here_.t, labels_, here_.x);
-  // A limit asks for the rates of those switches only behind which cycles have contracted twice.
-  if (cycles_.shrinks()) note_rates(before.alpha);
-}
-
-void SwitchAccumulation::note(const SurfaceSwitch& change) {
-  if (!series_.tightens()) return cycles_.clear();
-  labels_.assign(1, label_of(change.surface, change.after));
-  cycles_.add(here_.t, labels_, here_.x);
-  if (!cycles_.shrinks()) return;
-  alpha_ = here_.state.alpha;
-  alpha_[at(change.surface)] = change.alpha_before;
-  if (change.slid != nullptr) alpha_[at(change.slid->surface)] = change.slid->alpha_before;
-  note_rates(alpha_);
+  };
+  if (change.is_single()) {
+    add(at(change.surface));
+  } else {
+    for_each_difference(change.mode_before->mode, here_.state.mode, add);
+  }
+  return holds;
 }
 
 /// How short cycles of the last switch may get.

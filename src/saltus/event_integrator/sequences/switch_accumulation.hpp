@@ -28,10 +28,8 @@ class SwitchAccumulation {
   [[nodiscard]] const SwitchSeries& series() const { return series_; }
   [[nodiscard]] bool empty() const { return cycles_.empty(); }
   void clear() { cycles_.clear(); }
-  /// Notes a switch from `before` to the mode of the position.
-  void note(const ModeState& before);
-  /// Does the same for one listed surface.
-  void note(const SurfaceSwitch& change);
+  /// Notes a switch to the mode of the position.
+  void note(const ModeChange& change);
   /// Limits the tolerances behind a switch. Cycles that contract by q have psi contract by q or, where psi is tangent
   /// to its surface at the limit, q^2: an absolute tolerance that did not follow would end them in noise long before
   /// their limit.
@@ -64,6 +62,7 @@ class SwitchAccumulation {
     double last = 0.0;         ///< time of the last one
     double first_cycle = 0.0;  ///< of the sequence before the first one
   };
+  [[nodiscard]] bool find_labels(const ModeChange& change);
   void note_rates(const std::vector<double>& alpha_before);
 
   const SwitchingContext& switching_context_;

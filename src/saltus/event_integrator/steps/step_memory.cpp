@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "saltus/base/at.hpp"
 #include "saltus/event_integrator/mode/mode_differences_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -47,8 +48,9 @@ double StepMemory::begin(const std::vector<int>& mode, std::size_t mark, double 
   return proposed;
 }
 
-double StepMemory::change(const std::vector<int>& mode, double t, double proposed) {
+double StepMemory::change(const std::vector<int>& mode, double t, double proposed, const ModeChange& change) {
   end(t);
+  if (change.is_single() && lasts_) return begin(mode, mark_with(at(change.surface), change.after), t, proposed);
   // The mark of the mode before is known: what differs from it is added.
   std::size_t mark = used_ == 0 ? mark_of(mode) : entries_[current_].mark;
   if (used_ != 0) {
@@ -56,12 +58,6 @@ double StepMemory::change(const std::vector<int>& mode, double t, double propose
     for_each_difference(before, mode, [&](std::size_t j) { mark += weight(j) * unsigned_of(mode[j] - before[j]); });
   }
   return begin(mode, mark, t, proposed);
-}
-
-double StepMemory::change(const std::vector<int>& mode, std::size_t surface, double t, double proposed) {
-  if (!lasts_) return change(mode, t, proposed);
-  end(t);
-  return begin(mode, mark_with(surface, mode[surface]), t, proposed);
 }
 
 std::size_t StepMemory::mark_with(std::size_t surface, int mode) const {

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "saltus/event_integrator/mode/mode_change.hpp"
+
 namespace saltus::event_integrator {
 
 /// Remembers for the last few modes which step their first accepted one proposed. Solutions come back to their modes
@@ -13,10 +15,9 @@ namespace saltus::event_integrator {
 class StepMemory {
  public:
   /// Goes on in `mode` from t; any mode before ends here.
+  /// @param change  that has led to it
   /// @return the step to start with: the remembered one, or `proposed`
-  [[nodiscard]] double change(const std::vector<int>& mode, double t, double proposed);
-  /// Does the same where the mode differs from the one before in this surface only. Cost: one comparison of modes.
-  [[nodiscard]] double change(const std::vector<int>& mode, std::size_t surface, double t, double proposed);
+  [[nodiscard]] double change(const std::vector<int>& mode, double t, double proposed, const ModeChange& change = {});
   /// Returns a mark of the mode that differs from the one that lasts in this surface: different modes rarely have the
   /// same.
   [[nodiscard]] std::size_t mark_with(std::size_t surface, int mode) const;

@@ -32,8 +32,9 @@ bool is_plain(const switching::SurfaceDecision& decision, int mode_before) {
          decision.mode != mode_before;
 }
 
-switching::Arrival arrival_from(int side) {
-  return side < 0 ? switching::Arrival::from_below : switching::Arrival::from_above;
+switching::Arrival arrival_from(int mode) {
+  if (mode == 0) return switching::Arrival::along;
+  return mode < 0 ? switching::Arrival::from_below : switching::Arrival::from_above;
 }
 
 }  // namespace
@@ -213,15 +214,11 @@ bool SingleSurface::decide(const ModeState& before, const SwitchingPoint& switch
   switching::SurfaceSituation situation;
   find_velocities(before, switching_point, known, situation);
   if (!find_drifts(situation) || moves_no_more_than_rounding(situation, switching_point)) return false;
-  situation.arrival = slides ? switching::Arrival::along : arrival_from(before.mode[at(j)]);
   const int exit = !slides ? 0 : switching_point.exit_above.empty() ? -1 : 1;  // to the side that ends the sliding
   if (slides) find_tangent_drift(switching_point, exit, known, situation);
-  if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return false;
-  const auto decision = switching::decide_surface(situation);
-  if (!is_plain(decision, before.mode[at(j)]) || (exit != 0 && decision.mode != exit)) return false;
-  // Nothing slides on a kink: velocities that say so are rounding.
-  if (decision.mode == 0 && switching_context_.system.switching[at(j)].is_kink()) return false;
-  fill(before, switching_point, decision, transition);
+  const auto decision = conclude(situation, j, before.mode[at(j)], exit);
+  if (!decision) return false;
+  fill(before, switching_point, *decision, transition);
   const bool alone = before.sliding.size() == (exit != 0 ? 1U : 0U);
   return alone || complete(switching_point, known, transition.state);
 }
@@ -241,7 +238,8 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState&
   switching_context_.kernel.gradient(surface, t, x, before.alpha.data(), row_.data(), &rate);
   situation.below.velocity = along_row(below, rate);
   situation.above.velocity = along_row(above, rate);
-  return decide_arrival(situation, surface, before.mode[at(surface)]);
+  if (!find_drifts(situation)) return std::nullopt;
+  return conclude(situation, surface, before.mode[at(surface)], 0);
 }
 
 std::optional<switching::SurfaceDecision> SingleSurface::decide_by_rows(ModeState& before, int surface, double t,
@@ -254,17 +252,20 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide_by_rows(ModeStat
   alpha = 1.0;
   situation.above.velocity = velocity_by_rows(surface, t, x, before.alpha);
   alpha = own;
-  return decide_arrival(situation, surface, before.mode[at(surface)]);
+  if (!find_drifts(situation)) return std::nullopt;
+  return conclude(situation, surface, before.mode[at(surface)], 0);
 }
 
-/// Velocities tell what a surface does that the solution meets from beside it; nullopt where that is not clear.
-std::optional<switching::SurfaceDecision> SingleSurface::decide_arrival(switching::SurfaceSituation& situation,
-                                                                        int surface, int mode) const {
-  if (!find_drifts(situation)) return std::nullopt;
+/// What drifts say of a surface; nullopt where that is not clear.
+/// @param mode  of the surface before
+/// @param exit  the side to which sliding on it ends, 0 where it is met
+std::optional<switching::SurfaceDecision> SingleSurface::conclude(switching::SurfaceSituation& situation, int surface,
+                                                                  int mode, int exit) const {
   if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return std::nullopt;
   situation.arrival = arrival_from(mode);
   auto decision = switching::decide_surface(situation);
-  if (!is_plain(decision, mode)) return std::nullopt;
+  if (!is_plain(decision, mode) || (exit != 0 && decision.mode != exit)) return std::nullopt;
+  // Nothing slides on a kink: velocities that say so are rounding.
   if (decision.mode == 0 && switching_context_.system.switching[at(surface)].is_kink()) return std::nullopt;
   return decision;
 }
@@ -292,11 +293,7 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeS
   if (!(moved > 2.0 * noise) || !std::isfinite(moved)) return std::nullopt;
   const bool is_below = side == Region::below;
   (is_below ? situation.below : situation.above) = {0.0, bend > 0.0 ? Drift::up : Drift::down};
-  if ((is_below ? situation.above : situation.below).drift == Drift::stays) return std::nullopt;
-  situation.arrival = switching::Arrival::along;
-  auto decision = switching::decide_surface(situation);
-  if (!is_plain(decision, 0) || decision.mode != (is_below ? -1 : 1)) return std::nullopt;
-  return decision;
+  return conclude(situation, surface, 0, is_below ? -1 : 1);
 }
 
 /// The selections of several surfaces, or of others than this one, from the new mode's own field.

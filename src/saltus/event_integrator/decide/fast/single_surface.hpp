@@ -79,8 +79,8 @@ class SingleSurface {
   [[nodiscard]] static bool are_within_bounds(const ModeState& state);
   [[nodiscard]] bool applies(const ModeState& before, const SwitchingPoint& switching_point) const;
   [[nodiscard]] bool by_rows(int surface, const Motion* known) const;
-  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_arrival(switching::SurfaceSituation& situation,
-                                                                         int surface, int mode) const;
+  [[nodiscard]] std::optional<switching::SurfaceDecision> conclude(switching::SurfaceSituation& situation, int surface,
+                                                                   int mode, int exit) const;
   void find_velocities(const ModeState& before, const SwitchingPoint& switching_point, const Motion* known,
                        switching::SurfaceSituation& situation);
   [[nodiscard]] double velocity_by_rows(int surface, double t, const double* x, const std::vector<double>& alpha) const;
