@@ -39,7 +39,8 @@ TEST(SwitchSeries, CyclesThatShrinkALittleAreTakenForASpiralOnceTheyHaveHalved) 
   double t = 0.0;
   double cycle = 1e-3;
   int before = 0;
-  for (; before < 5000 && !series.tightens(); ++before, cycle *= q) series.note(t += cycle, {.surface = 0, .before = 1});
+  for (; before < 5000 && !series.tightens(); ++before, cycle *= q)
+    series.note(t += cycle, {.surface = 0, .before = 1});
   // Two cycles of four to tell that they shrink, and ln(1/2)/ln(q) switches from the first of them.
   EXPECT_NEAR(before, 8 + std::log(0.5) / std::log(q), 8.0);
 }

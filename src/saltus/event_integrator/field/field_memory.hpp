@@ -27,7 +27,7 @@ class FieldMemory {
   std::array<std::size_t, capacity> marks_{};  ///< beside each other: they are gone through at every switch
   std::array<evaluation::FieldConstants, capacity> constants_;
   std::size_t used_ = 0;
-  std::size_t next_ = 0;  ///< to be overwritten
+  std::size_t next_ = 0;         ///< to be overwritten
   std::size_t last_ = capacity;  ///< handed out last
 };
 

@@ -109,7 +109,7 @@ void ModeField::begin(const ModeChange& change) {
   known_ = nullptr;
   const auto j = at(change.surface);
   start_alpha_[j] = alpha_[j] = change.alpha_after;
-  if (change.slid) return begin_across(change);
+  if (change.slid != nullptr) return begin_across(change);
   if (change.after == 0) return begin_sliding(change);
   if (change.before == 0) {
     if (change.after > 0) std::swap(constants_[0], constants_[1]);

@@ -10,7 +10,7 @@ void apply(const ModeChange& change, ModeState& state) {
     return;
   }
   set_surface(state, change.surface, change.after, change.alpha_after);
-  if (change.slid) state.alpha[at(change.slid->surface)] = change.slid->alpha_after;
+  if (change.slid != nullptr) state.alpha[at(change.slid->surface)] = change.slid->alpha_after;
   set_corner_alpha(state);
 }
 

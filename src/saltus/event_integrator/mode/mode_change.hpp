@@ -38,7 +38,7 @@ struct ModeChange {
   int before = 0, after = 0;
   double alpha_before = 0.0, alpha_after = 0.0;
   std::string_view reason = {};  ///< a literal
-  std::optional<SlidAcross> slid = std::nullopt;
+  const SlidAcross* slid = nullptr;
   /// Constants of the regions beyond the surface, where they are known: of one, or of both beside what is slid on.
   std::array<const evaluation::FieldConstants*, 2> beyond{};
   bool is_evaluated = false;  ///< the mode behind begins at the same point, with the slope that the position has

@@ -89,7 +89,7 @@ void Recorder::row_behind(const std::vector<double>& x, const ModeState& state, 
                           const ModeChange& change) {
   const auto& event = recording_.event_list.back();
   if (!change.is_single()) return row(event.t, x, state, alpha);
-  const auto slid = at(change.slid ? change.slid->surface : change.surface);
+  const auto slid = at(change.slid != nullptr ? change.slid->surface : change.surface);
   append_row(event.t, x, alpha, recording_.modes.append_change(slid, state.mode[slid], alpha[slid]));
 }
 
@@ -270,7 +270,7 @@ void Recorder::switched_single(double t, const std::vector<double>& x, const Mod
   auto& event = begin(t, kind_of(change));
   for (const std::size_t column : columns) add_surface(event, column);
   set_states(event, x, x);
-  if (const auto& slid = change.slid) {
+  if (const auto* slid = change.slid) {
     const auto k = at(slid->surface);
     event.mode = recording_.modes.append_change(k, 0, slid->alpha_before);
     event.mode_after =
@@ -289,11 +289,11 @@ void Recorder::switched_single(double t, const std::vector<double>& x, const Mod
 Recording::Range Recorder::reason_of(const ModeChange& change) {
   auto& known = known_reasons_[(3 * at(change.surface) + at(change.after + 1)) % known_reasons_.size()];
   const bool same_reason = known.reason.data() == change.reason.data() && known.reason.size() == change.reason.size();
-  const int slid = change.slid ? change.slid->surface : -1;
+  const int slid = change.slid != nullptr ? change.slid->surface : -1;
   if (known.surface == change.surface && known.slid == slid && same_reason) return known.place;
   auto& text = recording_.text;
   known = {change.surface, slid, change.reason, {text.size(), text.size()}};
-  if (change.slid) {
+  if (change.slid != nullptr) {
     append_meeting(system_, change.slid->meeting.surfaces, change.slid->leaf, change.reason, text);
   } else {
     text += system_.switching[at(change.surface)].name;

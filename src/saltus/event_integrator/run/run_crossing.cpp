@@ -36,33 +36,31 @@ bool Run::is_ordinary(const Located& located) const {
          located.t != switches_.series().last();
 }
 
-/// What ordinary switches change, by rules in the order in which they are asked; nullopt where the full decision is to
-/// be asked.
-std::optional<ModeChange> Run::decide_ordinary(const Located& located) {
-  using Rule = std::optional<ModeChange> (Run::*)(const Located&, const EventFunction&);
-  constexpr std::array<Rule, 4> rules_in_order{&Run::cross_by_rows, &Run::meet, &Run::leave, &Run::pass};
+/// Says what an ordinary switch changes, by rules in the order in which they are asked. Returns false where the full
+/// decision is to be asked.
+bool Run::decide_ordinary(const Located& located, ModeChange& change) {
+  using Rule = bool (Run::*)(const Located&, const EventFunction&, ModeChange&);
+  static constexpr std::array<Rule, 4> rules_in_order{&Run::cross_by_rows, &Run::meet, &Run::leave, &Run::pass};
   const auto& function = search_.functions()[located.functions.front()];
-  for (const auto rule : rules_in_order) {
-    if (auto change = (this->*rule)(located, function)) return change;
-  }
-  return std::nullopt;
+  return std::any_of(rules_in_order.begin(), rules_in_order.end(),
+                     [&](const Rule rule) { return (this->*rule)(located, function, change); });
 }
 
 /// A surface of a large system that is crossed: only rows of the field are looked at. All of it is evaluated when a
 /// step of all states begins.
-std::optional<ModeChange> Run::cross_by_rows(const Located& located, const EventFunction& reached) {
-  if (!here_.state.sliding.empty() || !fast_.local.applies() || !fast_.single.has_rows(reached.index))
-    return std::nullopt;
+bool Run::cross_by_rows(const Located& located, const EventFunction& reached, ModeChange& change) {
+  if (!here_.state.sliding.empty() || !fast_.local.applies() || !fast_.single.has_rows(reached.index)) return false;
   const int surface = reached.index;
   const auto decision = fast_.single.decide_by_rows(here_.state, surface, located.t, located.x.data());
-  if (!decision || decision->mode == 0) return std::nullopt;
+  if (!decision || decision->mode == 0) return false;
   fast_.local.renew_slope(surface, located.t, located.x.data(), here_.state.alpha, here_.slope);
-  return change_of(surface, *decision, {});
+  change = change_of(surface, *decision, {});
+  return true;
 }
 
 /// A surface that is reached in a region.
-std::optional<ModeChange> Run::meet(const Located& located, const EventFunction& reached) {
-  if (!here_.state.sliding.empty()) return std::nullopt;
+bool Run::meet(const Located& located, const EventFunction& reached, ModeChange& change) {
+  if (!here_.state.sliding.empty()) return false;
   const auto j = at(reached.index);
   const double t = located.t;
   const double* x = located.x.data();
@@ -71,23 +69,24 @@ std::optional<ModeChange> Run::meet(const Located& located, const EventFunction&
   field_(t, x, here_.slope.data());
   const auto* beyond = &constants_beyond(reached.index, 1.0 - here_.state.alpha[j], std::nullopt);
   kernel_.prepared_field(t, x, *beyond, fast_.slope_beyond.data());
-  const auto decision =
-      mode < 0 ? fast_.single.decide(here_.state, reached.index, t, x, here_.slope, fast_.slope_beyond)
-               : fast_.single.decide(here_.state, reached.index, t, x, fast_.slope_beyond, here_.slope);
-  if (!decision) return std::nullopt;
+  const auto decision = mode < 0
+                            ? fast_.single.decide(here_.state, reached.index, t, x, here_.slope, fast_.slope_beyond)
+                            : fast_.single.decide(here_.state, reached.index, t, x, fast_.slope_beyond, here_.slope);
+  if (!decision) return false;
   if (decision->mode != 0) here_.slope.swap(fast_.slope_beyond);
-  return change_of(reached.index, *decision, {beyond});
+  change = change_of(reached.index, *decision, {beyond});
+  return true;
 }
 
 /// The only surface that is slid on, where the field of one side has become tangent to it.
-std::optional<ModeChange> Run::leave(const Located& located, const EventFunction& exit) {
-  if (exit.kind == FunctionKind::surface) return std::nullopt;
+bool Run::leave(const Located& located, const EventFunction& exit, ModeChange& change) {
+  if (exit.kind == FunctionKind::surface) return false;
   const auto j = at(exit.index);
   const double t = located.t;
   const double* x = located.x.data();
   field_(t, x, here_.slope.data());
   const double alpha = field_.alpha()[j];
-  if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return std::nullopt;
+  if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return false;
   const auto side = exit.kind == FunctionKind::exit_below ? Region::below : Region::above;
   field_.of_side(side, t, x, fast_.slope_beyond.data());
   const SingleSurface::Motions motions{field_.sides(),
@@ -95,18 +94,19 @@ std::optional<ModeChange> Run::leave(const Located& located, const EventFunction
   const double before = std::exchange(here_.state.alpha[j], side == Region::below ? 0.0 : 1.0);
   const auto decision = fast_.single.decide_exit(here_.state, exit.index, {t, x, here_.time_scale}, motions, side);
   here_.state.alpha[j] = decision ? alpha : before;
-  if (!decision) return std::nullopt;
+  if (!decision) return false;
   here_.slope.swap(fast_.slope_beyond);
-  return change_of(exit.index, *decision, {});
+  change = change_of(exit.index, *decision, {});
+  return true;
 }
 
 /// A surface that is reached while the solution slides on another one.
-std::optional<ModeChange> Run::pass(const Located& located, const EventFunction& reached) {
-  if (here_.state.sliding.empty() || reached.kind != FunctionKind::surface) return std::nullopt;
+bool Run::pass(const Located& located, const EventFunction& reached, ModeChange& change) {
+  if (here_.state.sliding.empty() || reached.kind != FunctionKind::surface) return false;
   const int slid = here_.state.sliding.front();
   field_(located.t, located.x.data(), here_.slope.data());
   const double selection = field_.alpha()[at(slid)];
-  if (!is_finite(here_.slope) || !std::isfinite(selection)) return std::nullopt;
+  if (!is_finite(here_.slope) || !std::isfinite(selection)) return false;
   here_.state.alpha[at(slid)] = selection;
   SwitchingPoint& both = event_.switching_point;
   Transition& transition = event_.transition;
@@ -115,23 +115,29 @@ std::optional<ModeChange> Run::pass(const Located& located, const EventFunction&
   both.touched.assign(1, reached.index);
   const bool is_pair = fast_.pair.look(here_.state, both, &field_);
   if (is_pair) {
-    if (const auto alpha = fast_.pair.across(here_.state, both)) return pass_across(reached.index, *alpha);
+    if (const auto alpha = fast_.pair.across(here_.state, both)) {
+      change = pass_across(reached.index, *alpha);
+      return true;
+    }
   }
   event_.before = here_.state;
   const bool decided = is_pair ? fast_.pair.conclude(event_.before, both, transition)
                                : fast_.single.decide(event_.before, both, transition);
-  return decided ? std::optional(transition.from(event_.before)) : std::nullopt;
+  if (decided) change = transition.from(event_.before);
+  return decided;
 }
 
 /// The two surfaces of the switching point influence each other, and the solution goes on sliding across the one that
 /// it reaches. The selections have the order of the switching point.
 ModeChange Run::pass_across(int surface, const switching::PlaneAlpha& alpha) {
   const std::size_t place = event_.switching_point.at_zero[0] == surface ? 0 : 1;
-  ModeChange change{surface, here_.state.mode[at(surface)], -here_.state.mode[at(surface)],
-                    here_.state.alpha[at(surface)], alpha[place], switching::reason_of_passage()};
+  ModeChange change{
+      surface,      here_.state.mode[at(surface)], -here_.state.mode[at(surface)], here_.state.alpha[at(surface)],
+      alpha[place], switching::reason_of_passage()};
   const int slid = here_.state.sliding.front();
-  change.slid = {slid, here_.state.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
-                 fast_.pair.meeting(here_.state, event_.switching_point)};
+  fast_.slid = {slid, here_.state.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
+                fast_.pair.meeting(here_.state, event_.switching_point)};
+  change.slid = &fast_.slid;
   for (std::size_t side = 0; side < 2; ++side) {
     change.beyond[side] = &constants_beyond(surface, change.alpha_after, static_cast<double>(side));
   }
@@ -166,12 +172,12 @@ const evaluation::FieldConstants& Run::constants_beyond(int surface, double alph
 
 /// Goes on behind an ordinary switch. Returns false where the new field is not finite there: it is the one before.
 bool Run::go_on_behind(const Located& located, const ModeChange& change) {
-  fast_.x = located.x;
+  if (!change.is_evaluated) fast_.x = located.x;
   if (!begin_field(change, located.t, fast_.x)) {
     field_.enter(here_.state);
     return false;
   }
-  here_.move_to(located.t, fast_.x.data());
+  here_.move_to(located.t, change.is_evaluated ? located.x.data() : fast_.x.data());
   rows_.arrive(OutputRows::Arrival::missing);
   recorder_.switched(here_.t, here_.x, change);
   recorder_.row_before(here_.t, located.x, here_.state, recorder_.events() - 1);
@@ -188,9 +194,9 @@ bool Run::go_on_behind(const Located& located, const ModeChange& change) {
   if (!too_many_events()) {
     switches_.note(change);
     accumulate_switches();
-    if (outcome_.running) choices_.watch(field_);
+    if (outcome_.running && !here_.state.sliding.empty()) choices_.watch(field_);
   }
-  if (change.is_single() && !change.slid) keep_step(change.surface);
+  if (change.is_single() && change.slid == nullptr) keep_step(change.surface);
   return true;
 }
 

@@ -242,9 +242,8 @@ Run::Arrival Run::arrive(OutputRows::Arrival row) {
 /// The state is at a located event: rows before and behind, user events, jumps or the next mode.
 Run::Step Run::handle(const Located& located) {
   zeros_.forget();
-  if (const auto change = is_ordinary(located) ? decide_ordinary(located) : std::nullopt) {
-    if (go_on_behind(located, *change)) return outcome_.running ? Step::taken : Step::failed;
-  }
+  if (ModeChange change; is_ordinary(located) && decide_ordinary(located, change) && go_on_behind(located, change))
+    return outcome_.running ? Step::taken : Step::failed;
   const bool ended_here = located.t == here_.t && recorder_.ends_at(here_.t) && here_.t != event_.last_time;
   // What was left at zero by the last event has moved away since, also where no step has ended in between.
   if (located.t > here_.t) search_.forget_user_zeros();

@@ -92,11 +92,11 @@ class Run {
   Step handle(const Located& located);
   [[nodiscard]] bool has_ordinary_switches() const;
   [[nodiscard]] bool is_ordinary(const Located& located) const;
-  [[nodiscard]] std::optional<ModeChange> decide_ordinary(const Located& located);
-  [[nodiscard]] std::optional<ModeChange> cross_by_rows(const Located& located, const EventFunction& reached);
-  [[nodiscard]] std::optional<ModeChange> meet(const Located& located, const EventFunction& reached);
-  [[nodiscard]] std::optional<ModeChange> leave(const Located& located, const EventFunction& exit);
-  [[nodiscard]] std::optional<ModeChange> pass(const Located& located, const EventFunction& reached);
+  bool decide_ordinary(const Located& located, ModeChange& change);
+  bool cross_by_rows(const Located& located, const EventFunction& reached, ModeChange& change);
+  bool meet(const Located& located, const EventFunction& reached, ModeChange& change);
+  bool leave(const Located& located, const EventFunction& exit, ModeChange& change);
+  bool pass(const Located& located, const EventFunction& reached, ModeChange& change);
   [[nodiscard]] ModeChange pass_across(int surface, const switching::PlaneAlpha& alpha);
   [[nodiscard]] ModeChange change_of(int surface, const switching::SurfaceDecision& decision,
                                      const std::array<const evaluation::FieldConstants*, 2>& beyond) const;
@@ -249,6 +249,7 @@ class Run {
     LocalSteps local;
     std::vector<double> slope_beyond;  ///< of the region on the other side of a surface
     std::vector<double> x;             ///< where the mode behind begins
+    SlidAcross slid;                   ///< of the last change that had one
   };
 
   evaluation::ModelKernel& kernel_;

@@ -29,7 +29,7 @@ void EventSearch::start_at(double t) {
 
 void EventSearch::begin(const ModeChange& change, const Position& here) {
   if (!change.is_single()) return enter(here.state, *change.zero_order, here.t, here.x.data());
-  if (change.crosses() && !change.slid) return cross(at(change.surface), here);
+  if (change.crosses() && change.slid == nullptr) return cross(at(change.surface), here);
   zero_order_.assign(here.state.mode.size(), 0);
   zero_order_[at(change.surface)] = change.order();
   enter(here.state, zero_order_, here.t, here.x.data());

@@ -29,24 +29,23 @@ void SwitchAccumulation::note(const ModeChange& change) {
   if (!change.is_single()) return note_rates(change.mode_before->alpha);
   alpha_ = here_.state.alpha;
   alpha_[at(change.surface)] = change.alpha_before;
-  if (change.slid) alpha_[at(change.slid->surface)] = change.slid->alpha_before;
+  if (change.slid != nullptr) alpha_[at(change.slid->surface)] = change.slid->alpha_before;
   note_rates(alpha_);
 }
 
 /// Of all surfaces whose mode changes; false where one of them does not hold a solution: a kink, or a time.
 bool SwitchAccumulation::find_labels(const ModeChange& change) {
+  if (change.is_single()) {
+    labels_.assign(1, label_of(change.surface, change.after));
+    return true;
+  }
   labels_.clear();
   bool holds = true;
-  const auto add = [&](std::size_t j) {
+  for_each_difference(change.mode_before->mode, here_.state.mode, [&](std::size_t j) {
     const auto role = switching_context_.system.switching[j].role;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
     labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));
-  };
-  if (change.is_single()) {
-    add(at(change.surface));
-  } else {
-    for_each_difference(change.mode_before->mode, here_.state.mode, add);
-  }
+  });
   return holds;
 }
 
