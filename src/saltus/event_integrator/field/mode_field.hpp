@@ -53,8 +53,8 @@ class ModeField {
   ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha);
 
   void enter(const ModeState& state);
-  /// Begins the mode behind a change. Where one surface changes it looks at no selection but that and the one that is
-  /// slid on across it, and allocates where another surface is slid on than last time only.
+  /// Begins the mode behind a change. Where one surface changes, other selections than those of the change are as they
+  /// were. Then it allocates only where another surface is slid on than last time.
   void begin(const ModeChange& change);
   /// Makes constants of a region that its change did not know; returns whether there were such. Has to be called before
   /// anything slides, or again in each evaluation before that.

@@ -29,9 +29,9 @@ struct SlidAcross {
   Meeting meeting = {};
 };
 
-/// ModeChange says what is different behind a change of mode; the parts of a run that know the mode take nothing else.
-/// Usually that is one listed surface, and the selection of what is slid on across it, in a model without nested
-/// functions, regions by indicator and discrete states: parts then change what they have. Any other mode they begin
+/// ModeChange says how the mode of a run becomes the next one; the parts that know the mode begin that one from it.
+/// Usually one listed surface changes, and perhaps the selection of what is slid on across it. In a model without
+/// nested functions, regions by indicator, cells and jumps parts then change what they have. Any other mode they begin
 /// anew.
 struct ModeChange {
   int surface = -1;  ///< the only one whose mode changes; -1: all of the mode may be another one

@@ -67,7 +67,7 @@ bool Run::meet(const Located& located, const EventFunction& reached, ModeChange&
   const int mode = here_.state.mode[j];
   field_.prepare();
   field_(t, x, here_.slope.data());
-  const auto* beyond = &constants_beyond(reached.index, 1.0 - here_.state.alpha[j], std::nullopt);
+  const auto* beyond = &constants_beyond(reached.index, 0.0);
   kernel_.prepared_field(t, x, *beyond, fast_.slope_beyond.data());
   const auto decision = mode < 0
                             ? fast_.single.decide(here_.state, reached.index, t, x, here_.slope, fast_.slope_beyond)
@@ -139,7 +139,7 @@ ModeChange Run::pass_across(int surface, const switching::PlaneAlpha& alpha) {
                 fast_.pair.meeting(here_.state, event_.switching_point)};
   change.slid = &fast_.slid;
   for (std::size_t side = 0; side < 2; ++side) {
-    change.beyond[side] = &constants_beyond(surface, change.alpha_after, static_cast<double>(side));
+    change.beyond[side] = &constants_beyond(surface, static_cast<double>(side));
   }
   return change;
 }
@@ -159,14 +159,15 @@ ModeChange Run::change_of(int surface, const switching::SurfaceDecision& decisio
 }
 
 /// Those of the region on the other side of a surface, on a side of what is slid on, if anything is.
-const evaluation::FieldConstants& Run::constants_beyond(int surface, double alpha, std::optional<double> side) {
+const evaluation::FieldConstants& Run::constants_beyond(int surface, double side) {
   const auto j = at(surface);
   auto& selections = here_.state.alpha;
-  const double own = std::exchange(selections[j], alpha);
-  const double slid = side ? std::exchange(selections[at(here_.state.sliding.front())], *side) : 0.0;
+  const auto slid = here_.state.sliding.empty() ? j : at(here_.state.sliding.front());
+  const double of_slid = std::exchange(selections[slid], side);
+  const double own = std::exchange(selections[j], here_.state.mode[j] < 0 ? 1.0 : 0.0);
   const auto& constants = fast_.fields.of(selections, steps_.memory().mark_with(j, -here_.state.mode[j]));
   selections[j] = own;
-  if (side) selections[at(here_.state.sliding.front())] = slid;
+  selections[slid] = of_slid;
   return constants;
 }
 

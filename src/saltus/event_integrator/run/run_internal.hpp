@@ -100,8 +100,7 @@ class Run {
   [[nodiscard]] ModeChange pass_across(int surface, const switching::PlaneAlpha& alpha);
   [[nodiscard]] ModeChange change_of(int surface, const switching::SurfaceDecision& decision,
                                      const std::array<const evaluation::FieldConstants*, 2>& beyond) const;
-  [[nodiscard]] const evaluation::FieldConstants& constants_beyond(int surface, double alpha,
-                                                                   std::optional<double> side);
+  [[nodiscard]] const evaluation::FieldConstants& constants_beyond(int surface, double side);
   bool go_on_behind(const Located& located, const ModeChange& change);
   void keep_step(int surface);
   Arrival arrive(OutputRows::Arrival row);

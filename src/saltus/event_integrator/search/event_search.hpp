@@ -48,7 +48,7 @@ class EventSearch {
   /// that surfaces have at this point.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
   /// Does the same at the position, where a mode begins behind a change. Cost: O(1) where one surface is crossed while
-  /// crosses(), and the thresholds of the same state.
+  /// nothing is slid on, and the thresholds of the same state.
   void begin(const ModeChange& change, const Position& here);
   /// Returns whether crossings change signs of surfaces only.
   [[nodiscard]] bool crosses() const { return mode_.plain && mode_.state.sliding.empty() && held_.guards.empty(); }
@@ -111,7 +111,7 @@ class EventSearch {
     std::optional<Hit> hit;
   };
   void start_at(double t);
-  void cross(std::size_t surface, const Position& here);
+  void finish_crossing(const Position& here);
   [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
   void enter_surfaces(const ModeState& state, const std::vector<int>& zero_order);
   void enter_exits(const ModeState& state, double t, const double* x);
@@ -133,6 +133,8 @@ class EventSearch {
   void renew(const std::vector<int>& zero_order, double t, const double* x);
   [[nodiscard]] bool is_plain(const ModeState& state) const;
   bool move(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
+  void turn(std::size_t surface, const ModeState& state, int zero_order);
+  void finish_move(const ModeState& state, double t, const double* x);
   void move_exits(double t, const double* x);
   [[nodiscard]] bool exits_change(std::size_t row, const double* x) const;
   void renew_exits(std::size_t row, const double* x);
@@ -195,7 +197,6 @@ class EventSearch {
   std::vector<std::size_t> candidates_;  ///< of this step, ascending
   std::vector<std::size_t> inspected_;   ///< at the start of a mode: those whose values matter there
   TurnedSurfaces turned_;                ///< likewise
-  std::vector<int> zero_order_;          ///< n_psi
   bool any_nesting_ = false;             ///< some functions of the kernel hold selections
   bool only_signs_change_ = false;       ///< where the mode that was entered last begins anew
 };

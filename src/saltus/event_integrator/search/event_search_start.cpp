@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/mode_differences_internal.hpp"
 #include "saltus/event_integrator/mode/region_ties.hpp"
@@ -29,20 +30,27 @@ void EventSearch::start_at(double t) {
 
 void EventSearch::begin(const ModeChange& change, const Position& here) {
   if (!change.is_single()) return enter(here.state, *change.zero_order, here.t, here.x.data());
-  if (change.crosses() && change.slid == nullptr) return cross(at(change.surface), here);
-  zero_order_.assign(here.state.mode.size(), 0);
-  zero_order_[at(change.surface)] = change.order();
-  enter(here.state, zero_order_, here.t, here.x.data());
-}
-
-void EventSearch::cross(std::size_t surface, const Position& here) {
+  SALTUS_ASSERT(mode_.plain);
   start_at(here.t);
   mode_.forget_zeros(special_);
-  mode_.turn(surface, here.state, 1);
-  inspected_.assign(1, surface);
+  inspected_.clear();
+  turned_.surfaces.assign(1, at(change.surface));
+  turn(at(change.surface), here.state, change.order());
+  if (change.crosses() && change.slid == nullptr) return finish_crossing(here);
+  finish_move(here.state, here.t, here.x.data());
+}
+
+/// Nothing is slid on, and there are no user functions: what is left of the surface here.
+void EventSearch::finish_crossing(const Position& here) {
   read_values(here.t, here.x.data(), inspected_);
-  mode_.functions[surface].offset = point_[surface];
+  for (const std::size_t i : inspected_) mode_.functions[i].offset = point_[i];
   special_ = inspected_;
+}
+
+/// A surface of a plain mode that has changed, or has a zero here.
+void EventSearch::turn(std::size_t surface, const ModeState& state, int zero_order) {
+  mode_.turn(surface, state, zero_order);
+  if (state.mode[surface] != 0) inspected_.push_back(surface);
 }
 
 /// Whether each surface, and each exit, has its place among the functions of a mode whose field was entered.
@@ -61,15 +69,17 @@ bool EventSearch::move(const ModeState& state, const std::vector<int>& zero_orde
   inspected_.clear();
   turned_.surfaces.clear();
   for_each_difference(mode_.state.mode, state.mode, [&](std::size_t j) { turned_.surfaces.push_back(j); });
-  for (const std::size_t j : turned_.surfaces) {
-    mode_.turn(j, state, zero_order[j]);
-    if (state.mode[j] != 0) inspected_.push_back(j);
-  }
+  for (const std::size_t j : turned_.surfaces) turn(j, state, zero_order[j]);
   for_each_nonzero(zero_order, [&](std::size_t j) {
-    if (state.mode[j] == 0 || std::binary_search(turned_.surfaces.begin(), turned_.surfaces.end(), j)) return;
-    mode_.turn(j, state, zero_order[j]);
-    inspected_.push_back(j);
+    const bool turned = std::binary_search(turned_.surfaces.begin(), turned_.surfaces.end(), j);
+    if (state.mode[j] != 0 && !turned) turn(j, state, zero_order[j]);
   });
+  finish_move(state, t, x);
+  return true;
+}
+
+/// Behind the surfaces that were turned: exits, and user functions.
+void EventSearch::finish_move(const ModeState& state, double t, const double* x) {
   mode_.state.alpha = state.alpha;
   mode_.state.sliding = state.sliding;
   move_exits(t, x);
@@ -83,7 +93,6 @@ bool EventSearch::move(const ModeState& state, const std::vector<int>& zero_orde
   read_start(t, x);
   special_.clear();
   for (const std::size_t i : inspected_) sort(i);
-  return true;
 }
 
 void EventSearch::move_exits(double t, const double* x) {
