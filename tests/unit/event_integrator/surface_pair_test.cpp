@@ -111,10 +111,10 @@ TEST(SurfacePair, SlidesAcrossWithTheSelectionsOfTheGeneralDecision) {
       const auto switching_point = meeting_from(before);
       field.enter(before);
       field(switching_point.t, switching_point.x, slope.data());
-      std::optional<switching::PlaneAlpha> alpha;
-      if (pair.look(before, switching_point, &field)) alpha = pair.across(before, switching_point);
+      std::optional<SlidAcross> across;
+      if (pair.look(before, switching_point, &field)) across = pair.across(before, switching_point);
       const Transition general = decide_mode(switching_context, before, switching_point);
-      if (!alpha) {
+      if (!across) {
         ++other;
         continue;
       }
@@ -122,9 +122,11 @@ TEST(SurfacePair, SlidesAcrossWithTheSelectionsOfTheGeneralDecision) {
       EXPECT_EQ(general.termination, result::Termination::completed);
       EXPECT_EQ(general.unique, true);
       EXPECT_EQ(general.state.mode, (std::vector<int>{-mode[0], -mode[1]}));
-      EXPECT_EQ(general.state.alpha, (std::vector<double>{(*alpha)[0], (*alpha)[1]}));
+      EXPECT_EQ(across->surface, mode[0] == 0 ? 0 : 1);
+      EXPECT_EQ(across->alpha_before, 0.4);
+      EXPECT_EQ(general.state.alpha[static_cast<std::size_t>(across->surface)], across->alpha_after);
       ASSERT_TRUE(general.meeting.has_value());
-      const Meeting meeting = pair.meeting(before, switching_point);
+      const Meeting& meeting = across->meeting;
       EXPECT_EQ(meeting.surfaces, general.meeting->surfaces);
       EXPECT_EQ(meeting.velocities, general.meeting->velocities);
       EXPECT_EQ(meeting.alpha, general.meeting->alpha);

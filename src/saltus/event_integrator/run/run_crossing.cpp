@@ -51,52 +51,54 @@ bool Run::decide_ordinary(const Located& located, ModeChange& change) {
 bool Run::cross_by_rows(const Located& located, const EventFunction& reached, ModeChange& change) {
   if (!here_.state.sliding.empty() || !fast_.local.applies() || !fast_.single.has_rows(reached.index)) return false;
   const int surface = reached.index;
-  const auto decision = fast_.single.decide_by_rows(here_.state, surface, located.t, located.x.data());
+  const SingleSurface::Place place{surface, 0, located.t, located.x.data(), here_.time_scale};
+  const auto velocities = fast_.single.velocities_by_rows(here_.state.alpha, place);
+  const auto decision = fast_.single.decide(here_.state.alpha, here_.state.mode[at(surface)], place, velocities);
   if (!decision || decision->mode == 0) return false;
   fast_.local.renew_slope(surface, located.t, located.x.data(), here_.state.alpha, here_.slope);
-  change = change_of(surface, *decision, {});
+  change = change_of(surface, decision->mode, decision->alpha, decision->reason);
+  change.is_evaluated = true;
   return true;
 }
 
 /// A surface that is reached in a region.
 bool Run::meet(const Located& located, const EventFunction& reached, ModeChange& change) {
   if (!here_.state.sliding.empty()) return false;
-  const auto j = at(reached.index);
-  const double t = located.t;
-  const double* x = located.x.data();
-  const int mode = here_.state.mode[j];
+  const SingleSurface::Place place{reached.index, 0, located.t, located.x.data(), here_.time_scale};
+  const int mode = here_.state.mode[at(reached.index)];
   field_.prepare();
-  field_(t, x, here_.slope.data());
+  field_(place.t, place.x, here_.slope.data());
   const auto* beyond = &constants_beyond(reached.index, 0.0);
-  kernel_.prepared_field(t, x, *beyond, fast_.slope_beyond.data());
-  const auto decision = mode < 0
-                            ? fast_.single.decide(here_.state, reached.index, t, x, here_.slope, fast_.slope_beyond)
-                            : fast_.single.decide(here_.state, reached.index, t, x, fast_.slope_beyond, here_.slope);
+  kernel_.prepared_field(place.t, place.x, *beyond, fast_.slope_beyond.data());
+  const auto velocities = mode < 0 ? fast_.single.velocities_of(here_.slope, fast_.slope_beyond, here_.state, place)
+                                   : fast_.single.velocities_of(fast_.slope_beyond, here_.slope, here_.state, place);
+  const auto decision = fast_.single.decide(here_.state.alpha, mode, place, velocities);
   if (!decision) return false;
-  if (decision->mode != 0) here_.slope.swap(fast_.slope_beyond);
-  change = change_of(reached.index, *decision, {beyond});
+  change = change_of(reached.index, decision->mode, decision->alpha, decision->reason);
+  change.beyond[0] = beyond;
+  change.is_evaluated = decision->mode != 0;
+  if (change.is_evaluated) here_.slope.swap(fast_.slope_beyond);
   return true;
 }
 
 /// The only surface that is slid on, where the field of one side has become tangent to it.
 bool Run::leave(const Located& located, const EventFunction& exit, ModeChange& change) {
   if (exit.kind == FunctionKind::surface) return false;
-  const auto j = at(exit.index);
-  const double t = located.t;
-  const double* x = located.x.data();
-  field_(t, x, here_.slope.data());
-  const double alpha = field_.alpha()[j];
-  if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return false;
   const auto side = exit.kind == FunctionKind::exit_below ? Region::below : Region::above;
-  field_.of_side(side, t, x, fast_.slope_beyond.data());
-  const SingleSurface::Motions motions{field_.sides(),
-                                       search_.exit_rate(located.functions.front(), fast_.slope_beyond)};
-  const double before = std::exchange(here_.state.alpha[j], side == Region::below ? 0.0 : 1.0);
-  const auto decision = fast_.single.decide_exit(here_.state, exit.index, {t, x, here_.time_scale}, motions, side);
-  here_.state.alpha[j] = decision ? alpha : before;
+  const SingleSurface::Place place{exit.index, side == Region::below ? -1 : 1, located.t, located.x.data(),
+                                   here_.time_scale};
+  field_(place.t, place.x, here_.slope.data());
+  const double alpha = field_.alpha()[at(exit.index)];
+  if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return false;
+  field_.of_side(side, place.t, place.x, fast_.slope_beyond.data());
+  const auto bend = search_.exit_rate(located.functions.front(), fast_.slope_beyond);
+  const auto decision =
+      fast_.single.decide(here_.state.alpha, 0, place, {field_.sides().below, field_.sides().above}, bend);
   if (!decision) return false;
+  here_.state.alpha[at(exit.index)] = alpha;
   here_.slope.swap(fast_.slope_beyond);
-  change = change_of(exit.index, *decision, {});
+  change = change_of(exit.index, decision->mode, decision->alpha, decision->reason);
+  change.is_evaluated = true;
   return true;
 }
 
@@ -115,8 +117,12 @@ bool Run::pass(const Located& located, const EventFunction& reached, ModeChange&
   both.touched.assign(1, reached.index);
   const bool is_pair = fast_.pair.look(here_.state, both, &field_);
   if (is_pair) {
-    if (const auto alpha = fast_.pair.across(here_.state, both)) {
-      change = pass_across(reached.index, *alpha);
+    if (const auto across = fast_.pair.across(here_.state, both)) {
+      const int behind = -here_.state.mode[at(reached.index)];
+      change = change_of(reached.index, behind, behind > 0 ? 1.0 : 0.0, switching::reason_of_passage());
+      fast_.slid = *across;
+      change.slid = &fast_.slid;
+      change.beyond = {&constants_beyond(reached.index, 0.0), &constants_beyond(reached.index, 1.0)};
       return true;
     }
   }
@@ -127,35 +133,8 @@ bool Run::pass(const Located& located, const EventFunction& reached, ModeChange&
   return decided;
 }
 
-/// The two surfaces of the switching point influence each other, and the solution goes on sliding across the one that
-/// it reaches. The selections have the order of the switching point.
-ModeChange Run::pass_across(int surface, const switching::PlaneAlpha& alpha) {
-  const std::size_t place = event_.switching_point.at_zero[0] == surface ? 0 : 1;
-  ModeChange change{
-      surface,      here_.state.mode[at(surface)], -here_.state.mode[at(surface)], here_.state.alpha[at(surface)],
-      alpha[place], switching::reason_of_passage()};
-  const int slid = here_.state.sliding.front();
-  fast_.slid = {slid, here_.state.alpha[at(slid)], alpha[1 - place], switching::Leaf::E3,
-                fast_.pair.meeting(here_.state, event_.switching_point)};
-  change.slid = &fast_.slid;
-  for (std::size_t side = 0; side < 2; ++side) {
-    change.beyond[side] = &constants_beyond(surface, static_cast<double>(side));
-  }
-  return change;
-}
-
-/// Where the mode behind begins at the same point, here_.slope is its slope.
-ModeChange Run::change_of(int surface, const switching::SurfaceDecision& decision,
-                          const std::array<const evaluation::FieldConstants*, 2>& beyond) const {
-  const auto j = at(surface);
-  return {.surface = surface,
-          .before = here_.state.mode[j],
-          .after = decision.mode,
-          .alpha_before = here_.state.alpha[j],
-          .alpha_after = decision.alpha,
-          .reason = decision.reason,
-          .beyond = beyond,
-          .is_evaluated = decision.mode != 0};
+ModeChange Run::change_of(int surface, int mode, double alpha, std::string_view reason) const {
+  return {surface, here_.state.mode[at(surface)], mode, here_.state.alpha[at(surface)], alpha, reason};
 }
 
 /// Those of the region on the other side of a surface, on a side of what is slid on, if anything is.

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saltus/event_integrator/accumulate/accumulation.hpp"
@@ -97,9 +98,7 @@ class Run {
   bool meet(const Located& located, const EventFunction& reached, ModeChange& change);
   bool leave(const Located& located, const EventFunction& exit, ModeChange& change);
   bool pass(const Located& located, const EventFunction& reached, ModeChange& change);
-  [[nodiscard]] ModeChange pass_across(int surface, const switching::PlaneAlpha& alpha);
-  [[nodiscard]] ModeChange change_of(int surface, const switching::SurfaceDecision& decision,
-                                     const std::array<const evaluation::FieldConstants*, 2>& beyond) const;
+  [[nodiscard]] ModeChange change_of(int surface, int mode, double alpha, std::string_view reason) const;
   [[nodiscard]] const evaluation::FieldConstants& constants_beyond(int surface, double side);
   bool go_on_behind(const Located& located, const ModeChange& change);
   void keep_step(int surface);

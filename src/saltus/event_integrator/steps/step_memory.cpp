@@ -25,13 +25,12 @@ void StepMemory::end(double t) {
   // Longer than the mode lasted is no use: a step that reaches its end sees all of it, and far behind that end the
   // field of the mode may mean nothing.
   constexpr double beyond = 1.25;
-  if (lasts_ && first_accepted_) entries_[current_].step = std::min(proposed_, beyond * (t - start_));
+  if (used_ != 0 && first_accepted_) entries_[current_].step = std::min(proposed_, beyond * (t - start_));
 }
 
 double StepMemory::begin(const std::vector<int>& mode, std::size_t mark, double t, double proposed) {
   start_ = t;
   first_accepted_ = false;
-  lasts_ = true;
   for (current_ = 0; current_ < used_; ++current_) {
     const auto& entry = entries_[current_];
     if (entry.mark != mark || entry.mode != mode) continue;
@@ -50,7 +49,7 @@ double StepMemory::begin(const std::vector<int>& mode, std::size_t mark, double 
 
 double StepMemory::change(const std::vector<int>& mode, double t, double proposed, const ModeChange& change) {
   end(t);
-  if (change.is_single() && lasts_) return begin(mode, mark_with(at(change.surface), change.after), t, proposed);
+  if (change.is_single() && used_ != 0) return begin(mode, mark_with(at(change.surface), change.after), t, proposed);
   // The mark of the mode before is known: what differs from it is added.
   std::size_t mark = used_ == 0 ? mark_of(mode) : entries_[current_].mark;
   if (used_ != 0) {
@@ -61,7 +60,7 @@ double StepMemory::change(const std::vector<int>& mode, double t, double propose
 }
 
 std::size_t StepMemory::mark_with(std::size_t surface, int mode) const {
-  if (!lasts_) return 0;
+  if (used_ == 0) return 0;
   const auto& entry = entries_[current_];
   return entry.mark + weight(surface) * unsigned_of(mode - entry.mode[surface]);
 }

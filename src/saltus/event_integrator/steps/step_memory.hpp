@@ -38,10 +38,9 @@ class StepMemory {
   double begin(const std::vector<int>& mode, std::size_t mark, double t, double proposed);
 
   std::array<Entry, capacity> entries_;
-  std::size_t used_ = 0;
+  std::size_t used_ = 0;         ///< 0: no mode lasts yet
   std::size_t next_ = 0;         ///< to be overwritten
   std::size_t current_ = 0;      ///< of the mode that lasts
-  bool lasts_ = false;           ///< there is one
   bool first_accepted_ = false;  ///< in it
   bool is_new_ = true;           ///< no step of it is remembered
   double proposed_ = 0.0;        ///< behind its first accepted step

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <utility>
 
 #include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/mode/large_system.hpp"
@@ -72,43 +72,28 @@ bool SingleSurface::applies(const ModeState& before, const SwitchingPoint& switc
   return exits == 1 && is_within_bounds(before.alpha[at(j)]);
 }
 
-/// Normal component of the field of one side; not finite if the field is not.
-double SingleSurface::velocity(const SwitchingPoint& switching_point, int surface, double selection) {
-  const auto& kernel = switching_context_.kernel;
-  alpha_[at(surface)] = selection;
-  kernel.field(switching_point.t, switching_point.x, alpha_.data(), f_.data());
-  return velocity(switching_point.t, switching_point.x, surface, alpha_, f_);
-}
-
-/// The same with the field that belongs to `alpha`.
-double SingleSurface::velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
-                               const std::vector<double>& f) {
-  if (!is_finite(f)) return std::numeric_limits<double>::quiet_NaN();
-  double rate = 0.0;
-  switching_context_.kernel.gradient(surface, t, x, alpha.data(), row_.data(), &rate);
-  return along_row(f, rate);
-}
-
-/// row_ . f + rate, f finite.
-double SingleSurface::along_row(const std::vector<double>& f, double rate) const {
-  double velocity = rate;
+/// What the gradient row_, with rate_, says of a field; not finite where that is not.
+double SingleSurface::along_row(const std::vector<double>& f) const {
+  double velocity = rate_;
   for (std::size_t i = 0; i < f.size(); ++i) velocity += row_[i] * f[i];
   return velocity;
 }
 
-/// Whether both velocities, whose gradient is in row_, move psi by less than its rounding over the time scale: that
-/// decides nothing.
-bool SingleSurface::moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
-                                                const SwitchingPoint& switching_point) const {
-  const double fastest = std::max(std::abs(situation.below.velocity), std::abs(situation.above.velocity));
-  return fastest * switching_point.time_scale <= 8.0 * rounding_unit * terms_of(switching_point);
+/// The rounding of psi, whose gradient is in row_ and rate_.
+double SingleSurface::noise(const Place& place) const {
+  double terms = std::abs(rate_ * place.t);
+  for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * place.x[i]);
+  return 8.0 * rounding_unit * terms;
 }
 
-/// The size of the terms of psi, whose gradient is in row_.
-double SingleSurface::terms_of(const SwitchingPoint& switching_point) const {
-  double terms = 0.0;
-  for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * switching_point.x[i]);
-  return terms;
+/// Whether both velocities move psi by less than its rounding over the time scale: that decides nothing.
+bool SingleSurface::moves_no_more_than_rounding(const Velocities& velocities, const Place& place) const {
+  const double fastest = std::max(std::abs(velocities.below), std::abs(velocities.above));
+  return !(fastest * place.time_scale > noise(place));
+}
+
+void SingleSurface::find_gradient(const std::vector<double>& alpha, const Place& place) {
+  switching_context_.kernel.gradient(place.surface, place.t, place.x, alpha.data(), row_.data(), &rate_);
 }
 
 bool SingleSurface::has_rows(int surface) const {
@@ -123,57 +108,51 @@ bool SingleSurface::by_rows(int surface, const Motion* known) const {
 }
 
 /// grad psi . f + d psi/dt, not finite where a row that holds this selection is not.
-double SingleSurface::velocity_by_rows(int surface, double t, const double* x, const std::vector<double>& alpha) const {
+double SingleSurface::velocity_by_rows(const Place& place, const std::vector<double>& alpha) const {
   const auto& kernel = switching_context_.kernel;
-  for (const std::size_t row : kernel.field_structure()->rows_of_selection[at(surface)]) {
-    if (!std::isfinite(kernel.field_row(row, t, x, alpha.data()))) return std::numeric_limits<double>::quiet_NaN();
+  for (const std::size_t row : kernel.field_structure()->rows_of_selection[at(place.surface)]) {
+    if (!std::isfinite(kernel.field_row(row, place.t, place.x, alpha.data())))
+      return std::numeric_limits<double>::quiet_NaN();
   }
-  return kernel.rate(surface, t, x, alpha.data());
+  return kernel.rate(place.surface, place.t, place.x, alpha.data());
 }
 
-/// Normal components of both fields at the touched surface. Outside of surfaces the side that the solution comes from
-/// is that of its own field.
-void SingleSurface::find_velocities(const ModeState& before, const SwitchingPoint& switching_point, const Motion* known,
-                                    switching::SurfaceSituation& situation) {
-  const int j = switching_point.touched.front();
-  alpha_ = before.alpha;
-  for (const int i : between_) {
-    if (before.mode[at(i)] != 0) alpha_[at(i)] = before.mode[at(i)] > 0 ? 1.0 : 0.0;
-  }
-  if (by_rows(j, known)) {
-    const auto& [t, x] = std::tie(switching_point.t, switching_point.x);
-    switching_context_.kernel.gradient(j, t, x, alpha_.data(), row_.data(), &rate_);
-    alpha_[at(j)] = 0.0;
-    situation.below.velocity = velocity_by_rows(j, t, x, alpha_);
-    alpha_[at(j)] = 1.0;
-    situation.above.velocity = velocity_by_rows(j, t, x, alpha_);
-    return;
-  }
-  const int from = known != nullptr && before.sliding.empty() && between_.empty() ? before.mode[at(j)] : 0;
-  const auto velocity_of = [&](int side, double selection) {
-    return from == side ? velocity(switching_point.t, switching_point.x, j, alpha_, known->slope)
-                        : velocity(switching_point, j, selection);
+/// Velocities at the selections of alpha_, behind the gradient. Outside of surfaces the side that the solution comes
+/// from is that of its own field.
+SingleSurface::Velocities SingleSurface::find_velocities(const ModeState& before, const Place& place,
+                                                         const Motion* known) {
+  if (by_rows(place.surface, known)) return velocities_by_rows(alpha_, place);
+  const auto j = at(place.surface);
+  const int from = known != nullptr && before.sliding.empty() && between_.empty() ? before.mode[j] : 0;
+  const auto velocity_of = [&](int side) {
+    if (from == side) return along_row(known->slope);
+    alpha_[j] = side > 0 ? 1.0 : 0.0;
+    switching_context_.kernel.field(place.t, place.x, alpha_.data(), f_.data());
+    return along_row(f_);
   };
-  situation.below.velocity = velocity_of(-1, 0.0);
-  situation.above.velocity = velocity_of(+1, 1.0);
+  const double below = velocity_of(-1);
+  return {below, velocity_of(+1)};
 }
 
-/// Where the field goes that ends the sliding. The point is located to rounding on its tangency, so that a later
-/// derivative says it.
-void SingleSurface::find_tangent_drift(const SwitchingPoint& switching_point, int exit, const Motion* known,
+/// Where the field goes that ends the sliding; false where that is not clear. The point is located to rounding on its
+/// tangency, so that the second derivative says it: of what ProjectedFields::motion() looks at the first, and clear of
+/// what makes it look further.
+bool SingleSurface::find_tangent_drift(std::vector<double>& alpha, const Place& place, std::optional<double> bend,
                                        switching::SurfaceSituation& situation) {
-  const int j = switching_point.touched.front();
-  alpha_[at(j)] = exit > 0 ? 1.0 : 0.0;
-  auto& tangent = exit > 0 ? situation.above : situation.below;
-  const auto& other = exit > 0 ? situation.below : situation.above;
-  if (by_rows(j, known)) {
-    if (const auto drift = drift_by_rows(switching_point, j)) {
-      tangent = {0.0, *drift};
-      return;
-    }
+  const auto& kernel = switching_context_.kernel;
+  // Explicit steps do not leave a root, and the field of one side may go along a nested function.
+  if (kernel.has_root(place.surface) || !kernel.inner(place.surface).empty()) return false;
+  find_gradient(alpha, place);
+  if (moves_no_more_than_rounding({situation.below.velocity, situation.above.velocity}, place)) return false;
+  if (!bend) {
+    const double own = std::exchange(alpha[at(place.surface)], place.exit > 0 ? 1.0 : 0.0);
+    bend = kernel.lie_derivative(place.surface, 2, place.t, place.x, alpha.data());
+    alpha[at(place.surface)] = own;
   }
-  tangent =
-      ProjectedFields(switching_context_.kernel, switching_point).motion(alpha_, j, 0.0, std::abs(other.velocity)).side;
+  const double moved = std::abs(*bend) * 0.5 * place.time_scale * place.time_scale;
+  if (!(moved > 2.0 * noise(place)) || !std::isfinite(moved)) return false;
+  (place.exit < 0 ? situation.below : situation.above) = {0.0, *bend > 0.0 ? Drift::up : Drift::down};
+  return true;
 }
 
 /// The only state in psi, if sliding on it keeps that constant.
@@ -185,41 +164,45 @@ evaluation::FixedState SingleSurface::kept_state(const double* x) const {
   return {static_cast<int>(component), x[component]};
 }
 
-/// The sign of the second derivative of psi along the field of alpha_, where L psi is affine and that is clear: of what
-/// makes ProjectedFields::motion look further.
-std::optional<Drift> SingleSurface::drift_by_rows(const SwitchingPoint& switching_point, int surface) {
+/// The second derivative of psi along the field that ends the sliding, where L psi is affine and that is clear. Behind
+/// the gradient.
+std::optional<double> SingleSurface::bend_by_rows(const Place& place) {
   const auto& kernel = switching_context_.kernel;
-  const auto& [t, x] = std::tie(switching_point.t, switching_point.x);
-  if (!kernel.lie_row(surface, kept_state(x), alpha_.data(), lie_row_)) return std::nullopt;
+  alpha_[at(place.surface)] = place.exit > 0 ? 1.0 : 0.0;
+  if (!kernel.lie_row(place.surface, kept_state(place.x), alpha_.data(), lie_row_)) return std::nullopt;
   double bend = lie_row_.rate, sizes = std::abs(lie_row_.rate);
   for (std::size_t k = 0; k < lie_row_.column.size(); ++k) {
     if (lie_row_.coefficient[k] == 0.0) continue;
-    const double term = lie_row_.coefficient[k] * kernel.field_row(lie_row_.column[k], t, x, alpha_.data());
+    const double term = lie_row_.coefficient[k] * kernel.field_row(lie_row_.column[k], place.t, place.x, alpha_.data());
     bend += term;
     sizes += std::abs(term);
   }
   constexpr double clear = 1e3 * std::numeric_limits<double>::epsilon();
-  const double moved = 0.5 * std::abs(bend) * switching_point.time_scale * switching_point.time_scale;
-  const double noise = 8.0 * rounding_unit * terms_of(switching_point);
-  if (!(std::abs(bend) > clear * sizes) || !(moved > 2.0 * noise) || !std::isfinite(moved)) return std::nullopt;
-  return bend > 0.0 ? Drift::up : Drift::down;
+  return std::abs(bend) > clear * sizes ? std::optional(bend) : std::nullopt;
 }
 
 bool SingleSurface::decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
                            const Motion* known) {
   if (!applies(before, switching_point)) return false;
   const int j = switching_point.touched.front();
-  const bool slides = before.mode[at(j)] == 0;
-  if (slides && switching_context_.kernel.has_root(j)) return false;  // explicit steps do not leave it
-  switching::SurfaceSituation situation;
-  find_velocities(before, switching_point, known, situation);
-  if (!find_drifts(situation) || moves_no_more_than_rounding(situation, switching_point)) return false;
-  const int exit = !slides ? 0 : switching_point.exit_above.empty() ? -1 : 1;  // to the side that ends the sliding
-  if (slides) find_tangent_drift(switching_point, exit, known, situation);
-  const auto decision = conclude(situation, j, before.mode[at(j)], exit);
+  const int mode = before.mode[at(j)];
+  const Place place{j,
+                    mode != 0                            ? 0
+                    : switching_point.exit_above.empty() ? -1
+                                                         : 1,
+                    switching_point.t, switching_point.x, switching_point.time_scale};
+  alpha_ = before.alpha;
+  for (const int i : between_) {
+    if (before.mode[at(i)] != 0) alpha_[at(i)] = before.mode[at(i)] > 0 ? 1.0 : 0.0;
+  }
+  find_gradient(alpha_, place);
+  const Velocities velocities = find_velocities(before, place, known);
+  if (moves_no_more_than_rounding(velocities, place)) return false;
+  const auto bend = place.exit != 0 && by_rows(j, known) ? bend_by_rows(place) : std::nullopt;
+  const auto decision = decide(alpha_, mode, place, velocities, bend);
   if (!decision) return false;
   fill(before, switching_point, *decision, transition);
-  const bool alone = before.sliding.size() == (exit != 0 ? 1U : 0U);
+  const bool alone = before.sliding.size() == (place.exit != 0 ? 1U : 0U);
   return alone || complete(switching_point, known, transition.state);
 }
 
@@ -229,71 +212,38 @@ bool SingleSurface::complete(const SwitchingPoint& switching_point, const Motion
   return same ? are_within_bounds(state) : select_others(switching_point, state);
 }
 
-std::optional<switching::SurfaceDecision> SingleSurface::decide(const ModeState& before, int surface, double t,
-                                                                const double* x, const std::vector<double>& below,
-                                                                const std::vector<double>& above) {
-  switching::SurfaceSituation situation;
-  if (!is_finite(below) || !is_finite(above)) return std::nullopt;
-  double rate = 0.0;
-  switching_context_.kernel.gradient(surface, t, x, before.alpha.data(), row_.data(), &rate);
-  situation.below.velocity = along_row(below, rate);
-  situation.above.velocity = along_row(above, rate);
-  if (!find_drifts(situation)) return std::nullopt;
-  return conclude(situation, surface, before.mode[at(surface)], 0);
+SingleSurface::Velocities SingleSurface::velocities_of(const std::vector<double>& below,
+                                                       const std::vector<double>& above, const ModeState& before,
+                                                       const Place& place) {
+  find_gradient(before.alpha, place);
+  return {along_row(below), along_row(above)};
 }
 
-std::optional<switching::SurfaceDecision> SingleSurface::decide_by_rows(ModeState& before, int surface, double t,
-                                                                        const double* x) {
-  switching::SurfaceSituation situation;
-  double& alpha = before.alpha[at(surface)];
-  const double own = alpha;
-  alpha = 0.0;
-  situation.below.velocity = velocity_by_rows(surface, t, x, before.alpha);
-  alpha = 1.0;
-  situation.above.velocity = velocity_by_rows(surface, t, x, before.alpha);
-  alpha = own;
-  if (!find_drifts(situation)) return std::nullopt;
-  return conclude(situation, surface, before.mode[at(surface)], 0);
+SingleSurface::Velocities SingleSurface::velocities_by_rows(std::vector<double>& alpha, const Place& place) const {
+  double& selection = alpha[at(place.surface)];
+  const double own = std::exchange(selection, 0.0);
+  const double below = velocity_by_rows(place, alpha);
+  selection = 1.0;
+  const double above = velocity_by_rows(place, alpha);
+  selection = own;
+  return {below, above};
 }
 
-/// What drifts say of a surface; nullopt where that is not clear.
-/// @param mode  of the surface before
-/// @param exit  the side to which sliding on it ends, 0 where it is met
-std::optional<switching::SurfaceDecision> SingleSurface::conclude(switching::SurfaceSituation& situation, int surface,
-                                                                  int mode, int exit) const {
+std::optional<switching::SurfaceDecision> SingleSurface::decide(std::vector<double>& alpha, int mode,
+                                                                const Place& place, const Velocities& velocities,
+                                                                std::optional<double> bend) {
+  switching::SurfaceSituation situation;
+  situation.below.velocity = velocities.below;
+  situation.above.velocity = velocities.above;
+  if (!find_drifts(situation)) return std::nullopt;
+  if (place.exit != 0 && !find_tangent_drift(alpha, place, bend, situation)) return std::nullopt;
   if (situation.below.drift == Drift::stays || situation.above.drift == Drift::stays) return std::nullopt;
   situation.arrival = arrival_from(mode);
   auto decision = switching::decide_surface(situation);
-  if (!is_plain(decision, mode) || (exit != 0 && decision.mode != exit)) return std::nullopt;
+  if (!is_plain(decision, mode) || (place.exit != 0 && decision.mode != place.exit)) return std::nullopt;
   // Nothing slides on a kink: velocities that say so are rounding.
-  if (decision.mode == 0 && switching_context_.system.switching[at(surface)].is_kink()) return std::nullopt;
+  if (decision.mode == 0 && switching_context_.system.switching[at(place.surface)].is_kink()) return std::nullopt;
   return decision;
-}
-
-std::optional<switching::SurfaceDecision> SingleSurface::decide_exit(const ModeState& before, int surface,
-                                                                     const Place& place, const Motions& motions,
-                                                                     Region side) {
-  const auto& kernel = switching_context_.kernel;
-  if (kernel.has_root(surface)) return std::nullopt;  // explicit steps do not leave it
-  const double* x = place.x;
-  switching::SurfaceSituation situation;
-  situation.below.velocity = motions.velocities.below;
-  situation.above.velocity = motions.velocities.above;
-  if (!find_drifts(situation)) return std::nullopt;
-  double rate = 0.0;
-  kernel.gradient(surface, place.t, x, before.alpha.data(), row_.data(), &rate);
-  double terms = std::abs(rate * place.t);
-  for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * x[i]);
-  const double noise = 8.0 * rounding_unit * terms;
-  const double fastest = std::max(std::abs(situation.below.velocity), std::abs(situation.above.velocity));
-  if (!(fastest * place.time_scale > noise)) return std::nullopt;
-  // What ProjectedFields::motion looks at first, and clear of what makes it look further.
-  const double bend = motions.bend ? *motions.bend : kernel.lie_derivative(surface, 2, place.t, x, before.alpha.data());
-  const double moved = std::abs(bend) * 0.5 * place.time_scale * place.time_scale;
-  if (!(moved > 2.0 * noise) || !std::isfinite(moved)) return std::nullopt;
-  const bool is_below = side == Region::below;
-  (is_below ? situation.below : situation.above) = {0.0, bend > 0.0 ? Drift::up : Drift::down};
-  return conclude(situation, surface, 0, is_below ? -1 : 1);
 }
 
 /// The selections of several surfaces, or of others than this one, from the new mode's own field.

@@ -14,9 +14,8 @@ namespace saltus::event_integrator {
 ///   - one surface is met from beside it and crossed or slid on, or left where one of its fields is tangent,
 ///   - no other surface is at zero but such on which the solution slides, and those and this one do not influence each
 ///     other; no function is nested around any of them,
-///   - f is affine in the selection, and both normal components are clear of zero (at an exit the other one, and a
-///   later
-///     derivative of the tangent one).
+///   - f is affine in the selection, and both normal components are clear of zero (at an exit the other one, and the
+///     second derivative along the tangent field).
 /// Cost: one evaluation of f, or two where the mode before slides, one of the sliding field if there are other
 /// surfaces; at an exit a second derivative, too. In large systems, where f is known at the point, few rows of f. Owns
 /// its work space.
@@ -35,62 +34,56 @@ class SingleSurface {
   [[nodiscard]] bool decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition,
                             const Motion* known = nullptr);
 
-  /// Gives the same answer where the solution slides on nothing, in a model without nesting, regions and discrete
-  /// states. It needs the fields of both sides, f(alpha_surface = 0) and f(alpha_surface = 1), n_x each. Returns
-  /// nullopt where it is not as clear. Cost: the gradient of the surface.
-  [[nodiscard]] std::optional<switching::SurfaceDecision> decide(const ModeState& before, int surface, double t,
-                                                                 const double* x, const std::vector<double>& below,
-                                                                 const std::vector<double>& above);
-  /// Returns whether decide_by_rows() knows the surface: it is affine, and the system large.
+  /// Holds where a surface is met or left.
+  struct Place {
+    int surface = 0;
+    int exit = 0;  ///< the side to which sliding on it ends, 0 where it is met
+    double t = 0.0;
+    const double* x = nullptr;
+    double time_scale = 0.0;  ///< a step of the integrator
+  };
+  /// Holds the normal components of the fields of both sides.
+  struct Velocities {
+    double below = 0.0, above = 0.0;
+  };
+  /// Gives the same answer where no other surface is slid on, from velocities that are known; nullopt where it is not
+  /// as clear. For models without nesting, regions and discrete states.
+  /// @param alpha  selections of the mode before, the same behind it
+  /// @param mode   of the surface before
+  /// @param bend   second derivative of psi along the field that ends the sliding, where it is known
+  /// Cost: at an exit the gradient, and a second derivative that is not known.
+  [[nodiscard]] std::optional<switching::SurfaceDecision> decide(std::vector<double>& alpha, int mode,
+                                                                 const Place& place, const Velocities& velocities,
+                                                                 std::optional<double> bend = std::nullopt);
+  /// Returns those of two fields, n_x each. Cost: the gradient of the surface.
+  [[nodiscard]] Velocities velocities_of(const std::vector<double>& below, const std::vector<double>& above,
+                                         const ModeState& before, const Place& place);
+  /// Returns whether velocities_by_rows() knows the surface: it is affine, and the system large.
   [[nodiscard]] bool has_rows(int surface) const;
-  /// Does the same where f is finite on both sides, but perhaps in rows that hold the selection; `before` is the same
-  /// behind it. Cost: few rows of f.
-  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_by_rows(ModeState& before, int surface, double t,
-                                                                         const double* x);
+  /// Returns those of fields that are finite, but perhaps in rows that hold the selection; `alpha` is the same behind
+  /// it. Cost: few rows of f.
+  [[nodiscard]] Velocities velocities_by_rows(std::vector<double>& alpha, const Place& place) const;
   /// Returns whether the selection of what was slid on lies within its bounds at an exit, to rounding: away from them
   /// it may have been lost in a two-fold point, where the full decision looks closer.
   [[nodiscard]] static bool is_within_bounds(double alpha) {
     constexpr double rounding = 1e-9;
     return alpha >= -rounding && alpha <= 1.0 + rounding;
   }
-  /// Holds a point, and a step of the integrator.
-  struct Place {
-    double t = 0.0;
-    const double* x = nullptr;
-    double time_scale = 0.0;
-  };
-  /// Holds, at an exit, normal components of both fields, and the second derivative of psi along the tangent one, if it
-  /// is known.
-  struct Motions {
-    ExitValues velocities;
-    std::optional<double> bend;
-  };
-  /// Does the same at an exit from sliding on this surface alone, where the field of `side` has become tangent to it;
-  /// `before` has the selection of that side. Cost: the gradient, and a second derivative that is not known.
-  [[nodiscard]] std::optional<switching::SurfaceDecision> decide_exit(const ModeState& before, int surface,
-                                                                      const Place& place, const Motions& motions,
-                                                                      Region side);
 
  private:
-  [[nodiscard]] bool moves_no_more_than_rounding(const switching::SurfaceSituation& situation,
-                                                 const SwitchingPoint& switching_point) const;
+  [[nodiscard]] bool moves_no_more_than_rounding(const Velocities& velocities, const Place& place) const;
   [[nodiscard]] evaluation::FixedState kept_state(const double* x) const;
-  [[nodiscard]] double terms_of(const SwitchingPoint& switching_point) const;
+  [[nodiscard]] double noise(const Place& place) const;
   [[nodiscard]] static bool are_within_bounds(const ModeState& state);
   [[nodiscard]] bool applies(const ModeState& before, const SwitchingPoint& switching_point) const;
   [[nodiscard]] bool by_rows(int surface, const Motion* known) const;
-  [[nodiscard]] std::optional<switching::SurfaceDecision> conclude(switching::SurfaceSituation& situation, int surface,
-                                                                   int mode, int exit) const;
-  void find_velocities(const ModeState& before, const SwitchingPoint& switching_point, const Motion* known,
-                       switching::SurfaceSituation& situation);
-  [[nodiscard]] double velocity_by_rows(int surface, double t, const double* x, const std::vector<double>& alpha) const;
-  void find_tangent_drift(const SwitchingPoint& switching_point, int exit, const Motion* known,
-                          switching::SurfaceSituation& situation);
-  [[nodiscard]] std::optional<switching::Drift> drift_by_rows(const SwitchingPoint& switching_point, int surface);
-  [[nodiscard]] double along_row(const std::vector<double>& f, double rate) const;
-  double velocity(const SwitchingPoint& switching_point, int surface, double selection);
-  double velocity(double t, const double* x, int surface, const std::vector<double>& alpha,
-                  const std::vector<double>& f);
+  void find_gradient(const std::vector<double>& alpha, const Place& place);
+  [[nodiscard]] Velocities find_velocities(const ModeState& before, const Place& place, const Motion* known);
+  [[nodiscard]] double velocity_by_rows(const Place& place, const std::vector<double>& alpha) const;
+  [[nodiscard]] bool find_tangent_drift(std::vector<double>& alpha, const Place& place, std::optional<double> bend,
+                                        switching::SurfaceSituation& situation);
+  [[nodiscard]] std::optional<double> bend_by_rows(const Place& place);
+  [[nodiscard]] double along_row(const std::vector<double>& f) const;
   void fill(const ModeState& before, const SwitchingPoint& switching_point, const switching::SurfaceDecision& decision,
             Transition& transition) const;
   bool complete(const SwitchingPoint& switching_point, const Motion* known, ModeState& state);
@@ -101,7 +94,7 @@ class SingleSurface {
   std::vector<int> between_;    ///< functions whose selection outside the mode may lie between 0 and 1
   std::vector<double> alpha_;   ///< n_psi
   std::vector<double> f_, row_;
-  double rate_ = 0.0;              ///< d psi/dt, beside row_ = grad psi, where rows of f are looked at
+  double rate_ = 0.0;              ///< d psi/dt, beside row_ = grad psi
   evaluation::AffineRow lie_row_;  ///< L psi
   ModeField field_;
 };

@@ -160,15 +160,16 @@ bool SurfacePair::look(const ModeState& before, const SwitchingPoint& switching_
   return find_normals(switching_point) && find_table(switching_point, known);
 }
 
-std::optional<switching::PlaneAlpha> SurfacePair::across(const ModeState& before,
-                                                         const SwitchingPoint& switching_point) const {
+std::optional<SlidAcross> SurfacePair::across(const ModeState& before, const SwitchingPoint& switching_point) const {
   if (before.sliding.size() != 1) return std::nullopt;
   const auto& pair = switching_point.at_zero;
   const auto behind =
       switching::pass_across(switching::plane_table(velocities_), {before.mode[at(pair[0])], before.mode[at(pair[1])]});
   // All four fields are clear of both surfaces, so is what lies between them.
   if (!behind) return std::nullopt;
-  return behind->alpha;
+  const int slid = before.sliding.front();
+  return SlidAcross{slid, before.alpha[at(slid)], behind->alpha[slid == pair[0] ? 0 : 1], switching::Leaf::E3,
+                    meeting(before, switching_point)};
 }
 
 bool SurfacePair::decide(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition) {
@@ -191,7 +192,9 @@ bool SurfacePair::conclude(const ModeState& before, const SwitchingPoint& switch
   }
   set_corner_alpha(state);
   if (!moves_there(switching_point, state)) return false;
-  describe(before, switching_point, decision, transition);
+  transition.meeting = meeting(before, switching_point);
+  append_meeting(switching_context_.system, transition.meeting->surfaces, decision.leaf, decision.reason,
+                 transition.reason);
   return true;
 }
 
@@ -204,13 +207,6 @@ Meeting SurfacePair::meeting(const ModeState& before, const SwitchingPoint& swit
   }
   meeting.velocities = velocities_;
   return meeting;
-}
-
-void SurfacePair::describe(const ModeState& before, const SwitchingPoint& switching_point,
-                           const PlaneDecision& decision, Transition& transition) const {
-  transition.meeting = meeting(before, switching_point);
-  append_meeting(switching_context_.system, transition.meeting->surfaces, decision.leaf, decision.reason,
-                 transition.reason);
 }
 
 }  // namespace saltus::event_integrator

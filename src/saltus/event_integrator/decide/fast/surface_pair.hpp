@@ -34,17 +34,15 @@ class SurfacePair {
   ///               surface; nullptr if it is not known
   /// Cost: four evaluations of f, two with a field.
   [[nodiscard]] bool look(const ModeState& before, const SwitchingPoint& switching_point, const ModeField* field);
-  /// Returns, behind it, where the solution goes on sliding on one surface across the other (switching::pass_across()),
-  /// their selections there, in the order of the switching point; nullopt where it does not, or not as clearly.
-  [[nodiscard]] std::optional<switching::PlaneAlpha> across(const ModeState& before,
-                                                            const SwitchingPoint& switching_point) const;
+  /// Returns, behind it, on what the solution goes on sliding across the other surface (switching::pass_across());
+  /// nullopt where it does not, or not as clearly.
+  [[nodiscard]] std::optional<SlidAcross> across(const ModeState& before, const SwitchingPoint& switching_point) const;
   /// Does the second part: makes the transition, by a tree.
   [[nodiscard]] bool conclude(const ModeState& before, const SwitchingPoint& switching_point, Transition& transition);
-  /// Returns what the last decision was made from.
-  [[nodiscard]] Meeting meeting(const ModeState& before, const SwitchingPoint& switching_point) const;
 
  private:
   [[nodiscard]] bool applies(const ModeState& before, const SwitchingPoint& switching_point) const;
+  [[nodiscard]] Meeting meeting(const ModeState& before, const SwitchingPoint& switching_point) const;
   bool find_normals(const SwitchingPoint& switching_point);
   [[nodiscard]] bool project(const std::vector<double>& f, std::array<double, 2>& velocities) const;
   /// Of the four corners, n_x each; nullptr where they are not known.
@@ -52,8 +50,6 @@ class SurfacePair {
   bool find_table(const SwitchingPoint& switching_point, const KnownFields& known);
   bool moves_there(const SwitchingPoint& switching_point, ModeState& state);
   bool slides_on_both(const SwitchingPoint& switching_point, ModeState& state);
-  void describe(const ModeState& before, const SwitchingPoint& switching_point,
-                const switching::PlaneDecision& decision, Transition& transition) const;
 
   const SwitchingContext& switching_context_;
   bool any_ = false;                     ///< the system may have such meetings
