@@ -56,7 +56,7 @@ bool Run::cross_by_rows(const Located& located, const EventFunction& reached, Mo
   const auto decision = fast_.single.decide(here_.state.alpha, here_.state.mode[at(surface)], place, velocities);
   if (!decision || decision->mode == 0) return false;
   fast_.local.renew_slope(surface, located.t, located.x.data(), here_.state.alpha, here_.slope);
-  change = change_of(surface, decision->mode, decision->alpha, decision->reason);
+  change_surface(surface, decision->mode, decision->alpha, decision->reason, change);
   change.is_evaluated = true;
   return true;
 }
@@ -74,7 +74,7 @@ bool Run::meet(const Located& located, const EventFunction& reached, ModeChange&
                                    : fast_.single.velocities_of(fast_.slope_beyond, here_.slope, here_.state, place);
   const auto decision = fast_.single.decide(here_.state.alpha, mode, place, velocities);
   if (!decision) return false;
-  change = change_of(reached.index, decision->mode, decision->alpha, decision->reason);
+  change_surface(reached.index, decision->mode, decision->alpha, decision->reason, change);
   change.beyond[0] = beyond;
   change.is_evaluated = decision->mode != 0;
   if (change.is_evaluated) here_.slope.swap(fast_.slope_beyond);
@@ -97,7 +97,7 @@ bool Run::leave(const Located& located, const EventFunction& exit, ModeChange& c
   if (!decision) return false;
   here_.state.alpha[at(exit.index)] = alpha;
   here_.slope.swap(fast_.slope_beyond);
-  change = change_of(exit.index, decision->mode, decision->alpha, decision->reason);
+  change_surface(exit.index, decision->mode, decision->alpha, decision->reason, change);
   change.is_evaluated = true;
   return true;
 }
@@ -119,7 +119,7 @@ bool Run::pass(const Located& located, const EventFunction& reached, ModeChange&
   if (is_pair) {
     if (const auto across = fast_.pair.across(here_.state, both)) {
       const int behind = -here_.state.mode[at(reached.index)];
-      change = change_of(reached.index, behind, behind > 0 ? 1.0 : 0.0, switching::reason_of_passage());
+      change_surface(reached.index, behind, behind > 0 ? 1.0 : 0.0, switching::reason_of_passage(), change);
       fast_.slid = *across;
       change.slid = &fast_.slid;
       change.beyond = {&constants_beyond(reached.index, 0.0), &constants_beyond(reached.index, 1.0)};
@@ -133,8 +133,14 @@ bool Run::pass(const Located& located, const EventFunction& reached, ModeChange&
   return decided;
 }
 
-ModeChange Run::change_of(int surface, int mode, double alpha, std::string_view reason) const {
-  return {surface, here_.state.mode[at(surface)], mode, here_.state.alpha[at(surface)], alpha, reason};
+/// Only the mode of this surface is another one behind.
+void Run::change_surface(int surface, int mode, double alpha, std::string_view reason, ModeChange& change) const {
+  change.surface = surface;
+  change.before = here_.state.mode[at(surface)];
+  change.after = mode;
+  change.alpha_before = here_.state.alpha[at(surface)];
+  change.alpha_after = alpha;
+  change.reason = reason;
 }
 
 /// Those of the region on the other side of a surface, on a side of what is slid on, if anything is.

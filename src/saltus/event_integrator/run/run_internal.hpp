@@ -98,7 +98,7 @@ class Run {
   bool meet(const Located& located, const EventFunction& reached, ModeChange& change);
   bool leave(const Located& located, const EventFunction& exit, ModeChange& change);
   bool pass(const Located& located, const EventFunction& reached, ModeChange& change);
-  [[nodiscard]] ModeChange change_of(int surface, int mode, double alpha, std::string_view reason) const;
+  void change_surface(int surface, int mode, double alpha, std::string_view reason, ModeChange& change) const;
   [[nodiscard]] const evaluation::FieldConstants& constants_beyond(int surface, double side);
   bool go_on_behind(const Located& located, const ModeChange& change);
   void keep_step(int surface);

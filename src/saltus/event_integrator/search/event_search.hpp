@@ -111,7 +111,6 @@ class EventSearch {
     std::optional<Hit> hit;
   };
   void start_at(double t);
-  void finish_crossing(const Position& here);
   [[nodiscard]] bool specials_leave(const ode::Stepper& stepper);
   void enter_surfaces(const ModeState& state, const std::vector<int>& zero_order);
   void enter_exits(const ModeState& state, double t, const double* x);

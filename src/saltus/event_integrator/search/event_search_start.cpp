@@ -33,18 +33,17 @@ void EventSearch::begin(const ModeChange& change, const Position& here) {
   SALTUS_ASSERT(mode_.plain);
   start_at(here.t);
   mode_.forget_zeros(special_);
+  const auto j = at(change.surface);
   inspected_.clear();
-  turned_.surfaces.assign(1, at(change.surface));
-  turn(at(change.surface), here.state, change.order());
-  if (change.crosses() && change.slid == nullptr) return finish_crossing(here);
+  turn(j, here.state, change.order());
+  if (change.crosses() && change.slid == nullptr) {  // nothing is slid on, and there are no user functions
+    read_values(here.t, here.x.data(), inspected_);
+    mode_.functions[j].offset = point_[j];
+    special_ = inspected_;
+    return;
+  }
+  turned_.surfaces.assign(1, j);
   finish_move(here.state, here.t, here.x.data());
-}
-
-/// Nothing is slid on, and there are no user functions: what is left of the surface here.
-void EventSearch::finish_crossing(const Position& here) {
-  read_values(here.t, here.x.data(), inspected_);
-  for (const std::size_t i : inspected_) mode_.functions[i].offset = point_[i];
-  special_ = inspected_;
 }
 
 /// A surface of a plain mode that has changed, or has a zero here.

@@ -22,7 +22,12 @@ SwitchAccumulation::SwitchAccumulation(const SwitchingContext& switching_context
       slope_(here.x.size()) {}
 
 void SwitchAccumulation::note(const ModeChange& change) {
-  if (!series_.tightens() || !find_labels(change)) return cycles_.clear();
+  if (!series_.tightens()) return cycles_.clear();
+  if (change.is_single()) {
+    labels_.assign(1, label_of(change.surface, change.after));
+  } else if (!find_labels(*change.mode_before)) {
+    return cycles_.clear();
+  }
   cycles_.add(here_.t, labels_, here_.x);
   // A limit asks for the rates of those switches only behind which cycles have contracted twice.
   if (!cycles_.shrinks()) return;
@@ -34,14 +39,10 @@ void SwitchAccumulation::note(const ModeChange& change) {
 }
 
 /// Of all surfaces whose mode changes; false where one of them does not hold a solution: a kink, or a time.
-bool SwitchAccumulation::find_labels(const ModeChange& change) {
-  if (change.is_single()) {
-    labels_.assign(1, label_of(change.surface, change.after));
-    return true;
-  }
+bool SwitchAccumulation::find_labels(const ModeState& before) {
   labels_.clear();
   bool holds = true;
-  for_each_difference(change.mode_before->mode, here_.state.mode, [&](std::size_t j) {
+  for_each_difference(before.mode, here_.state.mode, [&](std::size_t j) {
     const auto role = switching_context_.system.switching[j].role;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
     labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));

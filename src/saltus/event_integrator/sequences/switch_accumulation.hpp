@@ -62,7 +62,7 @@ class SwitchAccumulation {
     double last = 0.0;         ///< time of the last one
     double first_cycle = 0.0;  ///< of the sequence before the first one
   };
-  [[nodiscard]] bool find_labels(const ModeChange& change);
+  [[nodiscard]] bool find_labels(const ModeState& before);
   void note_rates(const std::vector<double>& alpha_before);
 
   const SwitchingContext& switching_context_;
