@@ -147,7 +147,7 @@ std::string converter_ladder(std::int64_t n, std::int64_t seed) {
 using Writer = std::string (*)(std::int64_t parts, std::int64_t seed);
 constexpr Writer writers[] = {converter_ladder, gene_network, spring_block, thermostat_rod};
 
-std::string names_of(const SizedModel& model) {
+std::string size_names(const SizedModel& model) {
   std::string names;
   for (const auto& size : model.sizes) names += (names.empty() ? "" : ", ") + size.name;
   return names;
@@ -189,7 +189,7 @@ Expected<std::string> write_sized_model(const SizedModel& model, const ModelSize
     if (place == model.sizes.end()) {
       return tl::unexpected(Error{ErrorCode::unknown_name,
                                   fmt::format("'{}' is no size of {}", name, model.name),
-                                  fmt::format("it has: {}", names_of(model)),
+                                  fmt::format("it has: {}", size_names(model)),
                                   {},
                                   {}});
     }

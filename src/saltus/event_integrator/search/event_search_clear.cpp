@@ -15,7 +15,7 @@ bool EventSearch::is_within_errors(int function, double value, double t, const d
 /// Whether a zero of a surface or a guard is more than errors of the step by far, or the field leads through it. A step
 /// that is too long for what decays ends beyond zero, where the field would not have gone.
 bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
-  constexpr double by_far = 1e4;
+  constexpr double by_far = 1e6;
   const auto& function = mode_.functions[hit.function];
   const bool is_read = function.kind == FunctionKind::surface || function.kind == FunctionKind::user;
   const double passed = std::abs(hit.slope) * step.h;
