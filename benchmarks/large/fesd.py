@@ -59,7 +59,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         for n in arguments.sizes:
             model = pathlib.Path(folder) / f"chain-{n}.toml"
-            model.write_text(large_models.text("chain", n), encoding="utf-8")
+            model.write_text(large_models.text(arguments.tools[0], "chain", n), encoding="utf-8")
             cells = []
             for k, tool in enumerate(arguments.tools):
                 found = cost(tool, model, arguments)

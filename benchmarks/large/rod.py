@@ -69,7 +69,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         model = folder / "rod.toml"
-        model.write_text(large_models.text("rod", arguments.cells), encoding="utf-8")
+        model.write_text(large_models.text(arguments.tool, "rod", arguments.cells), encoding="utf-8")
         state = f"u{arguments.cells}"
         cvode = folder / "rod_cvode"
         subprocess.run(["g++", "-O3", "-march=native", HERE / "rod_cvode.cpp", "-I/usr/include/suitesparse", "-o", cvode,

@@ -49,7 +49,7 @@ def measured(command, limit, output):
 
 def row(tool, kind, n, limit, folder):
     model = folder / f"{kind}-{n}.toml"
-    model.write_text(large_models.text(kind, n), encoding="utf-8")
+    model.write_text(large_models.text(tool, kind, n), encoding="utf-8")
     table = folder / "table.txt"
     check = measured([tool, "check", model], limit, table)
     # Once for the cache of native code: what counts is the second run.

@@ -17,12 +17,19 @@ def models() -> list[str]:
     return _core.models()
 
 
-def catalogue(name: str) -> Model:
-    """A shipped model.
+def catalogue(name: str, **sizes: int) -> Model:
+    """A shipped model; of one that there is in any size, with the numbers of its parts.
 
     >>> saltus.catalogue("stick-slip")
     <saltus.Model 'stick-slip'>
+    >>> saltus.catalogue("spring-block", blocks=100)
+    <saltus.Model 'spring-block-100'>
     """
+    text = _core.sized_model(name, sizes)
+    if text is not None:
+        return Model.from_text(text, f"{name}.toml")
+    if sizes:
+        raise TypeError(f"{name!r} has one size; values are changed where it is run: simulate(set={{...}})")
     return Model(_core.find_catalogue(name))
 
 

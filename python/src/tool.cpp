@@ -1,13 +1,18 @@
 #include "saltus/cli/tool.hpp"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
+#include <optional>
+#include <string>
 
 #include "errors.hpp"
 #include "parts.hpp"
 #include "saltus/base/version.hpp"
 #include "saltus/cli/catalogue.hpp"
+#include "saltus/cli/sized_models.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -40,6 +45,13 @@ std::string find_catalogue(const std::string& name) {
   raise({ErrorCode::unknown_name, "'" + name + "' is no model of the catalogue", suggest(name, models()), {}, {}});
 }
 
+/// The text of a shipped model of any size; None for other names.
+std::optional<std::string> sized_model(const std::string& name, const cli::ModelSizes& sizes) {
+  const auto* model = cli::find_sized_model(name);
+  if (model == nullptr) return std::nullopt;
+  return value_or_raise(cli::write_sized_model(*model, sizes));
+}
+
 }  // namespace
 
 void add_tool(nb::module_& module) {
@@ -48,6 +60,7 @@ void add_tool(nb::module_& module) {
   module.def("models", models);
   module.def("set_shared_folder", [](const std::string& folder) { cli::set_shared_folder(folder); });
   module.def("find_catalogue", find_catalogue);
+  module.def("sized_model", sized_model, nb::arg("name"), nb::arg("sizes"));
   module.def("write_file", [](const std::string& path, const std::string& content) {
     value_or_raise(io::check_writable(path));
     value_or_raise(io::write_file(path, content));

@@ -1,14 +1,17 @@
 """Large systems: cost by counts, which do not depend on the machine; what is shown of them."""
 
-import importlib.util
 import json
+import sys
 
 import tool
 
-GENERATOR = tool.SOURCE / "benchmarks" / "large" / "large_models.py"
-SPECIFICATION = importlib.util.spec_from_file_location("large_models", GENERATOR)
-large_models = importlib.util.module_from_spec(SPECIFICATION)
-SPECIFICATION.loader.exec_module(large_models)
+sys.path.insert(0, str(tool.SOURCE / "benchmarks" / "large"))
+import large_models  # noqa: E402  (the folder is known only now)
+
+
+def text(kind, n):
+    return large_models.text(tool.TOOL, kind, n)
+
 
 # Of the chain of five blocks, by dense matrices and one surface after the other (version 445bf42).
 CHAIN_OF_FIVE = (
@@ -20,7 +23,7 @@ CHAIN_OF_FIVE = (
 class Large(tool.ToolTest):
     def model(self, kind, n):
         file = self.folder / f"{kind}-{n}.toml"
-        file.write_text(large_models.text(kind, n), encoding="utf-8")
+        file.write_text(text(kind, n), encoding="utf-8")
         return file
 
     def simulate(self, kind, n, *words):
@@ -68,8 +71,30 @@ class Large(tool.ToolTest):
         self.assertRegex(heading, r"v7 +i5 +i50$")
         self.assertIn("'v77'", self.run_tool("simulate", model, "--show", "v77", code=2)[1])
 
+    def test_models_of_any_size_are_listed_and_written(self):
+        listed, _ = self.run_tool("models", code=0)
+        self.assertIn("--set blocks=10", listed)
+        written, _ = self.run_tool("models", "gene-network", "--set", "genes=50", "--set", "seed=7", code=0)
+        again, _ = self.run_tool("models", "gene-network", "--set", "seed=7", "--set", "genes=50", code=0)
+        other, _ = self.run_tool("models", "gene-network", "--set", "genes=50", code=0)
+        self.assertEqual(written, again)
+        self.assertNotEqual(written, other)
+        self.run_tool("check", self.write("m.toml", written), code=0)
+
+    def test_sizes_that_do_not_fit_are_refused(self):
+        for words, told in ((("spring-block", "--set", "block=3"), "it has: blocks"),
+                            (("spring-block", "--set", "blocks=0"), "choose 1 to"),
+                            (("spring-block", "--set", "blocks=1e3"), "whole number"),
+                            (("spring-block", "--set", "blocks=100000000"), "choose 1 to"),
+                            (("gene-network", "--set", "seed=-1"), "choose 0 or more"),
+                            (("stick-slip", "--set", "mu=3"), "saltus simulate MODEL")):
+            _, error = self.run_tool("models", *words, code=2)
+            self.assertIn(told, error)
+        _, error = self.run_tool("simulate", "spring-block", code=2)
+        self.assertIn("saltus models spring-block --set blocks=10", error)
+
     def test_a_misspelt_name_is_refused_where_it_stands(self):
-        lines = large_models.text("chain", 1600).splitlines()
+        lines = text("chain", 1600).splitlines()
         number = next(i for i, line in enumerate(lines) if i >= 4710 and "- 2*q" in line)
         lines[number] = lines[number].replace("- 2*q", "- 2*qq")
         self.write("m.toml", "\n".join(lines))

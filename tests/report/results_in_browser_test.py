@@ -8,7 +8,7 @@ import subprocess
 import sys
 import unittest
 
-from browser_page import DRAWN, NAMES, SOURCE, Page
+from browser_page import DRAWN, NAMES, SOURCE, TOOL, Page
 
 
 class Source(Page):
@@ -312,8 +312,9 @@ class Thousands(Page):
 
     def setUp(self):
         super().setUp()
-        generator = SOURCE / "benchmarks" / "large" / "large_models.py"
-        subprocess.run([sys.executable, generator, "network", str(self.GENES), "-o", self.folder / "m.toml"], check=True)
+        words = [TOOL, "models", "gene-network", "--set", f"genes={self.GENES}"]
+        with open(self.folder / "m.toml", "wb") as file:
+            subprocess.run(words, stdout=file, check=True)
         self.tool("simulate", "m.toml", "--until", "5", "--quiet", "--report", "page.html", "--out", "r.npz")
         self.open("page.html")
         self.becomes(DRAWN + " >= 2", True)

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/cli/sized_models.hpp"
 #include "saltus/io/atomic_file.hpp"
 
 namespace saltus::cli {
@@ -91,6 +92,10 @@ Expected<fs::path> find_model(const std::string& model) {
   }
   const bool is_path = model.find('/') != std::string::npos || path.extension() == ".toml" || fs::exists(path, ignored);
   if (is_path) return path_or_nearest(path);
+  if (const auto* sized = find_sized_model(model)) {
+    return tl::unexpected(Error{
+        ErrorCode::unknown_name, fmt::format("'{}' is a model of any size", model), how_to_write(*sized), {}, {}});
+  }
   const auto nearest = nearest_names(model, known);
   if (fs::exists(path.string() + ".toml", ignored)) {
     return tl::unexpected(Error{ErrorCode::unknown_name,

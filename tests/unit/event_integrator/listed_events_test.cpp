@@ -12,8 +12,6 @@ using model::Builder;
 using result::EventKind;
 using result::Termination;
 
-constexpr ode::Method every_method[] = {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5,
-                                        ode::Method::taylor};
 constexpr ode::Tolerances default_tolerances{1e-8, 1e-10};
 
 Integration run(Builder& builder, double until, ode::Method method, ode::Tolerances tolerances = default_tolerances) {
@@ -39,7 +37,7 @@ void expect_none(const Integration& run, const std::string& what) {
 
 /// All that is left of a state that decays are errors of both signs, at every step.
 TEST(ListedEvents, WhatDecaysHasNoZero) {
-  for (const auto method : every_method) {
+  for (const auto method : testing::every_method) {
     for (const double rate : {1.0, 5.0, 40.0}) {
       for (const double tolerance : {1e-4, 1e-8, 1e-11}) {
         for (const auto direction : {model::Direction::both, model::Direction::up, model::Direction::down}) {
@@ -59,7 +57,7 @@ TEST(ListedEvents, WhatDecaysHasNoZero) {
 }
 
 TEST(ListedEvents, WhatComesToRestHasNoZero) {
-  for (const auto method : every_method) {
+  for (const auto method : testing::every_method) {
     Builder b("approach");
     const SX x = b.state("x", {0.0});
     const SX y = b.state("y", {2000.0});
@@ -76,7 +74,7 @@ TEST(ListedEvents, WhatComesToRestHasNoZero) {
 
 /// Modes and jumps that have nothing to do with it read its sign where they begin.
 TEST(ListedEvents, ModesAndJumpsReadNoErrors) {
-  for (const auto method : every_method) {
+  for (const auto method : testing::every_method) {
     Builder b("decay beside a relay");
     const SX v = b.state("v", {-0.5});
     const SX x = b.state("x", {1.0});
@@ -92,7 +90,7 @@ TEST(ListedEvents, ModesAndJumpsReadNoErrors) {
 
 /// x'' = -0.2 x' - 1.01 x: zeros every pi, of an amplitude that shrinks to the tolerance.
 TEST(ListedEvents, ADecayingOscillationHasItsZerosDownToTheTolerance) {
-  for (const auto method : every_method) {
+  for (const auto method : testing::every_method) {
     Builder b("oscillation");
     const SX x = b.state("x", {0.0});
     const SX v = b.state("v", {1.0});
@@ -130,7 +128,7 @@ TEST(ListedEvents, ASlowZeroIsNotLost) {
 
 /// An expression that is affine in nothing, with a gradient that is another one at every place.
 TEST(ListedEvents, ASteepExpressionHasItsZeroWhereItIs) {
-  for (const auto method : every_method) {
+  for (const auto method : testing::every_method) {
     Builder b("steep");
     const SX x = b.state("x", {1.0});
     b.dynamics("x", -1.0);

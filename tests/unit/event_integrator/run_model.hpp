@@ -11,6 +11,9 @@
 
 namespace saltus::event_integrator::testing {
 
+inline constexpr ode::Method every_method[] = {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5,
+                                               ode::Method::taylor};
+
 /// Builds, compiles and runs; any failure before the run is one of the test.
 inline Integration run_model(model::Builder& builder, const IntegrationOptions& options) {
   const auto system = builder.build();

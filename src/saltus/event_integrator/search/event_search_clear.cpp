@@ -1,6 +1,7 @@
 // Sign changes of expressions and guards of [[events]]: only those count that are more than the errors of the steps.
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "saltus/event_integrator/search/event_search_internal.hpp"
 
@@ -9,6 +10,22 @@ namespace saltus::event_integrator {
 bool EventSearch::is_within_errors(int function, double value, double t, const double* x) {
   return kernel_.is_listed_only(function) &&
          std::abs(value) <= errors_.of(function, t, x, mode_.state.alpha.data(), {t, t, x, x});
+}
+
+/// Whether a zero of a surface or a guard is more than errors of the step by far, or the field leads through it. A step
+/// that is too long for what decays ends beyond zero, where the field would not have gone.
+bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
+  constexpr double by_far = 1e6;
+  const auto& function = mode_.functions[hit.function];
+  const bool is_read = function.kind == FunctionKind::surface || function.kind == FunctionKind::user;
+  const double passed = std::abs(hit.slope) * step.h;
+  if (!is_read || is_listed_only(hit.function) || !(passed <= by_far * levels_.accuracy[hit.function])) return true;
+  const double t = step.t + hit.theta * step.h;
+  step.evaluate(hit.theta, x_.data());
+  std::vector<double> slope(x_.size());
+  field_(t, x_.data(), slope.data());
+  const double rate = errors_.rate_along(function.index, t, x_.data(), mode_.state.alpha.data(), slope);
+  return hit.sign * rate < 0.1 * hit.sign * hit.slope;
 }
 
 /// Coefficients of a function over [from, to] as `find` has them, handed to `take`.

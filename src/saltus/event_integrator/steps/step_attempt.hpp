@@ -33,9 +33,9 @@ class StepAttempt {
     was_undefined_ = false;
     doubts_ = 0;
   }
-  /// Returns whether a zero that an attempt at this step shows is to be doubted: three times, in a step half as long
+  /// Returns whether a zero that an attempt at this step shows is to be doubted: six times, in a step half as long
   /// each.
-  [[nodiscard]] bool doubts() { return doubts_++ < 3; }
+  [[nodiscard]] bool doubts() { return doubts_++ < 6; }
   void note_undefined() { was_undefined_ = true; }
   /// Returns whether the right-hand side was undefined in an attempt at this step.
   [[nodiscard]] bool was_undefined() const { return was_undefined_; }
