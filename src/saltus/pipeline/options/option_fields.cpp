@@ -21,6 +21,7 @@ constexpr auto method_of = [](auto& o) -> auto& { return o.method; };
 constexpr auto rtol_of = [](auto& o) -> auto& { return o.rtol; };
 constexpr auto atol_of = [](auto& o) -> auto& { return o.atol; };
 constexpr auto event_rows_of = [](auto& o) -> auto& { return o.event_rows; };
+constexpr auto continuous_of = [](auto& o) -> auto& { return o.continuous; };
 constexpr auto native_of = [](auto& o) -> auto& { return o.native; };
 constexpr auto max_steps_of = [](auto& o) -> auto& { return o.max_steps; };
 constexpr auto members_of = [](auto& o) -> auto& { return o.event.members; };
@@ -217,6 +218,8 @@ constexpr std::array fields{
                 "Rows have the modes and selections of these switching functions only. Default: all.",
                 set_kept<&KeptNames::surfaces>,
                 record_kept<&KeptNames::surfaces>},
+    truth_field<continuous_of>(
+        "continuous", "Polynomials of all steps are kept: x(t) at any time. Without, x(t) simulates once more, first."),
     choice_field<native_of, natives>(
         "native", "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler."),
     number_field<max_steps_of>(
