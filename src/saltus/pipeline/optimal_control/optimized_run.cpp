@@ -292,8 +292,8 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   run.trajectory = std::move(shown.trajectory());
   keep_those_of_the_user(ocp, run);
   if (clock) return run;
-  auto solution = solution_of(pieces, tableau, std::move(*kernel), std::move(*functions), known);
-  run.continuous = continuous(run.trajectory, std::move(solution),
+  auto between = solution_of(pieces, tableau, std::move(*kernel), std::move(*functions), known);
+  run.continuous = continuous(run.trajectory, std::move(between),
                               [controls = at(ocp.user_controls), outputs = at(ocp.user_outputs)](auto& rows) {
                                 rows.u.narrow(controls);
                                 rows.outputs.narrow(outputs);
