@@ -129,7 +129,7 @@ nb::object simulate_between(Model& model, std::vector<std::string> settings, std
   auto& chosen = input.file.simulate;
   chosen.continuous = chosen.event_rows = true;
   chosen.kept = {};
-  chosen.output = pipeline::AtTimes{};
+  chosen.output = pipeline::EveryStep{};  // has both sides where inputs break
   if (!branches) chosen.event.trajectories = 1;
   const auto system = model.system(input, request);
   Watch watch{nb::none()};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -61,11 +62,21 @@ void expect_rows(const Simulator& model, pipeline::SimulateOptions options) {
   options.continuous = false;
   options.output = pipeline::AtTimes{times};
   const auto asked = model.run(options);
+  const auto rows_at = [](const result::Result& of, double t) {
+    return std::count(of.trajectory.t.begin(), of.trajectory.t.end(), t);
+  };
+  long simulated = 0;
+  const auto count = [&](const result::Progress&) {
+    ++simulated;
+    return result::Continue::yes;
+  };
   for (const Side side : {Side::before, Side::behind}) {
-    const auto values = run.continuous->at(times, side);
+    const auto values = run.continuous->at(times, side, count);
     ASSERT_TRUE(values) << to_text(values.error());
     ASSERT_EQ(values->t, times);
     for (std::size_t k = 0; k < times.size(); ++k) {
+      // Where inputs and outputs break rows at times are those behind, and steps have both.
+      if (side == Side::before && rows_at(run, times[k]) > rows_at(asked, times[k])) continue;
       Trajectory row;
       ASSERT_TRUE(result::append_row_at(times[k], side, asked.trajectory, row));
       EXPECT_EQ(bits(*values, k), bits(row, 0)) << "t = " << times[k];

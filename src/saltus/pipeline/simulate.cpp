@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -187,6 +188,17 @@ bool by_elements(const SimulateOptions& options) {
   return options.method == Method::fesd || options.method == Method::timestepping;
 }
 
+/// The first row, the last, and both of every event: others are at values of a clock to its rounding.
+result::Trajectory rows_at_events(result::Trajectory rows) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < rows.t.size(); ++i) {
+    const bool last = i + 1 == rows.t.size();
+    if (i == 0 || last || side(rows, i) == 1 || side(rows, i + 1) == 1) kept.push_back(i);
+  }
+  rows.keep(kept);
+  return rows;
+}
+
 Expected<result::Result> simulated_by_elements(const model::System& system, const SimulateOptions& options,
                                                const IntegrationOptions& checked, const Observers& observers) {
   const SymbolicLock lock;  // its problems are made while it runs
@@ -198,7 +210,7 @@ Expected<result::Result> simulated_by_elements(const model::System& system, cons
   with_rows.event_rows = options.event_rows || options.continuous;
   auto result = simulate_frozen(system, with_rows, times, frame(system, options), observers);
   if (!result || !options.continuous) return result;
-  result->continuous = continuous(result->trajectory, system, options, nullptr);
+  result->continuous = continuous(rows_at_events(result->trajectory), system, options, nullptr);
   if (!options.event_rows) leave_out_event_rows(times, result->trajectory);
   return result;
 }

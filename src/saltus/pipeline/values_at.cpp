@@ -1,6 +1,7 @@
 #include "saltus/pipeline/values_at.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "saltus/base/without_repeats.hpp"
@@ -22,7 +23,9 @@ Expected<result::Trajectory> values_at(const model::System& system, const Simula
   AtTimes rows{times};
   drop_repeats(rows.times);
   again.output = std::move(rows);
-  const double latest = times.empty() ? again.from : *std::max_element(times.begin(), times.end());
+  double latest = times.empty() ? again.from : *std::max_element(times.begin(), times.end());
+  // Steps of frozen time tell a time of their own.
+  if (system.frozen && again.method != Method::event) latest = std::numeric_limits<double>::infinity();
   Observers watching = observers;
   watching.on_step = [&](const StepRecord& step) {
     const auto wanted = observers.on_step ? observers.on_step(step) : Proceed::on;

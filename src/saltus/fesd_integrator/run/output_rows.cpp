@@ -33,6 +33,7 @@ void OutputRows::emit(const Element& element, const std::vector<double>& selecti
   if (at_times() && context_.options.clock) return emit_clock_times(element, selections, until);
   const auto& times = at_times() ? context_.options.times : chosen_;
   for (; next_ < times.size() && times[next_] < until; ++next_) {
+    if (recorder_.ends_at(times[next_])) continue;  // an event inside has put it there, to the rounding of its state
     interior_.go_to(element, selections, (times[next_] - element.t) / element.h);
     row_inside(times[next_]);
   }

@@ -1,3 +1,4 @@
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -72,7 +73,8 @@ class SimulatedInterior final : public result::Interior {
 
   Expected<result::Trajectory> again(const std::vector<double>& times, const result::StepObserver& observer) override {
     options_.output = AtTimes{times};
-    const auto stop = until(times.back(), observer);
+    // Steps of frozen time tell a time of their own.
+    const auto stop = until(solution_ ? times.back() : std::numeric_limits<double>::infinity(), observer);
     const Observers observers{[&](const StepRecord& step) {
       const auto answer = stop({step.t, step.steps, step.events, step.x});
       return answer == result::Continue::yes ? Proceed::on : Proceed::stop;
