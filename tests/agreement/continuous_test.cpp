@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-
 #include <cstdint>
 #include <limits>
 #include <random>
@@ -48,7 +47,7 @@ std::vector<double> times_of(const result::Result& run, int count) {
   return times;
 }
 
-/// How many of the times there were no polynomials for is what `unknown` is for.
+/// Compares values, and what the run computes with and without them; no time is to be simulated again.
 void expect_rows(const Simulator& model, pipeline::SimulateOptions options) {
   options.output = pipeline::EveryStep{};
   const auto plain = model.run(options);
@@ -82,6 +81,7 @@ void expect_rows(const Simulator& model, pipeline::SimulateOptions options) {
       EXPECT_EQ(bits(*values, k), bits(row, 0)) << "t = " << times[k];
     }
   }
+  EXPECT_EQ(simulated, 0);
 }
 
 class ContinuousSolution : public testing::TestWithParam<ReferenceProblem> {};
@@ -119,6 +119,120 @@ TEST(ContinuousSolutionOfLayers, HasTheBitsOfRows) {
     options.method = pipeline::Method::smoothed;
     expect_rows(model, options);
   }
+}
+
+/// Every branch against its rows: those of its own choices.
+void expect_rows_of_branches(const result::Result& run, const result::Result& rows) {
+  ASSERT_TRUE(run.continuous);
+  ASSERT_EQ(run.branches.size(), rows.branches.size());
+  std::vector<double> times;
+  for (const double t : rows.trajectory.t) {
+    if (rows.trajectory.t.front() < t && (times.empty() || times.back() < t)) times.push_back(t);
+  }
+  for (const Side side : {Side::before, Side::behind}) {
+    const auto values = run.continuous->at(times, side);
+    ASSERT_TRUE(values) << to_text(values.error());
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      Trajectory row;
+      ASSERT_TRUE(result::append_row_at(times[k], side, rows.trajectory, row));
+      EXPECT_EQ(bits(*values, k), bits(row, 0)) << "t = " << times[k];
+    }
+  }
+  for (std::size_t b = 0; b < run.branches.size(); ++b) expect_rows_of_branches(run.branches[b], rows.branches[b]);
+}
+
+TEST(ContinuousSolutionOfBranches, FollowsTheChoicesOfEach) {
+  for (const std::string name : {"spontaneous-switch", "stay-or-leave", "stay-or-slide", "slide-or-leave"}) {
+    SCOPED_TRACE(name);
+    const Simulator model = Simulator::from_catalogue(name);
+    auto options = model.options();
+    options.event.trajectories = 8;
+    options.event.members = 2;
+    options.output = pipeline::NumberOfPoints{37};
+    const auto rows = model.run(options);
+    EXPECT_FALSE(rows.branches.empty());
+    options.output = pipeline::EveryStep{};
+    options.continuous = true;
+    expect_rows_of_branches(model.run(options), rows);
+  }
+}
+
+/// x'' = -x, and 100 switches of something that it drives.
+const char* const through_switches =
+    "[model]\nname = \"waves\"\n[states]\nx = 1\nv = 0\nw = 0\ns = 0.5\n[dynamics]\nx = \"v\"\nv = \"-x\"\nw = "
+    "\"x*sign(s - 0.05)\"\ns = \"0.5*v\"\n[simulate]\nuntil = 320\nrtol = 1e-3\natol = 1e-3\n";
+
+TEST(ContinuousSolution, ConvergesWithTheOrderOfTheDenseOutputThroughEvents) {
+  const Simulator model = Simulator::from_text(through_switches);
+  std::vector<double> times;
+  for (int k = 1; k <= 500; ++k) times.push_back(0.637 * k);
+  const auto error = [&](pipeline::Integrator integrator, double step) {
+    auto options = model.options();
+    options.continuous = true;
+    options.event.integrator = integrator;
+    options.event.max_step = step;
+    const auto run = model.run(options);
+    EXPECT_GE(run.events.size(), 100U);
+    const auto values = run.continuous->at(times);
+    EXPECT_TRUE(values);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      largest = std::max(largest, std::abs(values->x[k][0] - std::cos(times[k])));
+    }
+    return largest;
+  };
+  struct Expected {
+    pipeline::Integrator integrator;
+    double step;
+    double order;  ///< less a half
+  };
+  for (const auto& [integrator, step, order] : {Expected{pipeline::Integrator::dopri5, 0.2, 3.5},
+                                                {pipeline::Integrator::dop853, 0.8, 6.5},
+                                                {pipeline::Integrator::radau5, 0.2, 3.5}}) {
+    EXPECT_GT(std::log2(error(integrator, step) / error(integrator, step / 2.0)), order)
+        << static_cast<int>(integrator);
+  }
+}
+
+TEST(ContinuousSolution, IsKnownWithinTheSpanOnly) {
+  const Simulator model = Simulator::from_catalogue("stick-slip");
+  auto options = model.options();
+  options.continuous = true;
+  options.until = 2.0;
+  const auto run = model.run(options);
+  for (const double t : {-1e-9, 2.1, std::numeric_limits<double>::quiet_NaN()}) {
+    const auto values = run.continuous->at({1.0, t});
+    ASSERT_FALSE(values);
+    EXPECT_NE(values.error().message.find("lies outside the solution, which is known from 0 to 2"), std::string::npos);
+  }
+}
+
+// Along a way into a zero of a nested function, and over a limit, the solution is no polynomial of a step.
+TEST(ContinuousSolution, IsSimulatedAgainWhereStepsHaveNoPolynomials) {
+  const Simulator model = Simulator::from_text(
+      "[model]\nname = \"ball\"\n[states]\ny = 1\nv = 0\n[dynamics]\ny = \"v\"\nv = \"-9.81\"\n[[jumps]]\nname = "
+      "\"bounce\"\nwhen = \"y\"\ndirection = \"down\"\nset = { v = \"-0.8*v\" }\n[simulate]\nuntil = 5\n");
+  auto options = model.options();
+  options.continuous = true;
+  const auto run = model.run(options);
+  double limit = 0.0, last = 0.0;
+  for (std::size_t k = 0; k < run.events.size(); ++k) {
+    if (run.events[k].kind == result::EventKind::accumulation) limit = run.events.t(k);
+    if (limit == 0.0) last = run.events.t(k);
+  }
+  ASSERT_LT(last, limit);
+  const double t = 0.5 * (last + limit);
+  long simulated = 0;
+  const auto values = run.continuous->at({t}, Side::behind, [&](const result::Progress&) {
+    ++simulated;
+    return result::Continue::yes;
+  });
+  ASSERT_TRUE(values) << to_text(values.error());
+  EXPECT_GT(simulated, 0);
+  options.output = pipeline::AtTimes{{t}};
+  Trajectory row;
+  ASSERT_TRUE(result::append_row_at(t, Side::behind, model.run(options).trajectory, row));
+  EXPECT_EQ(bits(*values, 0), bits(row, 0));
 }
 
 }  // namespace
