@@ -267,8 +267,8 @@ class Result(Facts):
         with own_results():
             if self._between is None:
                 raise ValueError(
-                    "this result has its rows only (it was optimised, is one of several, or its file has no model): "
-                    "simulate its model to have values at other times"
+                    "this result has its rows only (it is one of several, an optimum from a file or with frozen time, or "
+                    "its file has no model): simulate its model to have values at other times"
                 )
             found = Result(self._run.values_at(self._between, times.tolist(), side == "left"))
             found._asked = self, times.tolist(), side
@@ -418,7 +418,7 @@ class Result(Facts):
         return re.sub(r"(?m)^(events +)none$", rf"\1not kept; {self._lost_events} happened", table)
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
-        if self._asked is not None:
+        if self._asked is not None and self._asked[0]._again is not None:
             return Result.at, self._asked
         # What is simulated to be known is not simulated for that.
         costly = callable(self._origin) and not isinstance(self._origin, functools.partial)

@@ -31,6 +31,7 @@ nb::object values_at(const Run& run, const Run& between, const std::vector<doubl
   values->switching_functions = of.switching_functions;
   values->region_groups = of.region_groups;
   values->status = of.status;
+  values->final = of.final;
   if (rows) values->trajectory = std::move(*rows);
   nb::object found = nb::cast(Run{std::move(values), nullptr, {}, {}, {}});
   watch.raise_what_came(found);

@@ -138,6 +138,11 @@ void put(std::vector<std::pair<std::string, Value>>& entries, std::string_view n
   }
 }
 
+/// No file has what it asks for.
+void record_continuous(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (options.continuous) record.emplace_back(key, true);
+}
+
 void set_initial_mode(SimulateOptions& options, std::string_view name, const OptionValue& value) {
   put(options.initial_mode, name, static_cast<int>(number_in(value)));
 }
@@ -218,8 +223,11 @@ constexpr std::array fields{
                 "Rows have the modes and selections of these switching functions only. Default: all.",
                 set_kept<&KeptNames::surfaces>,
                 record_kept<&KeptNames::surfaces>},
-    truth_field<continuous_of>(
-        "continuous", "Polynomials of all steps are kept: x(t) at any time. Without, x(t) simulates once more, first."),
+    OptionField{"continuous",
+                {.truth = true},
+                "Polynomials of all steps are kept, for x(t) in programs. Default: false.",
+                set_truth<continuous_of, SimulateOptions>,
+                record_continuous},
     choice_field<native_of, natives>(
         "native", "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler."),
     number_field<max_steps_of>(
