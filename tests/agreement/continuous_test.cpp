@@ -100,7 +100,8 @@ INSTANTIATE_TEST_SUITE_P(Models, ContinuousSolution, testing::ValuesIn(reference
                          [](const auto& instance) { return test_name(instance.param); });
 
 TEST(ContinuousSolutionOfElements, HasTheBitsOfRows) {
-  for (const std::string name : {"stick-slip", "relay-feedback", "two-belts", "repressilator", "irma"}) {
+  for (const std::string name : {"stick-slip", "relay-feedback", "two-belts", "repressilator", "irma", "chua",
+                                 "bridge-rectifier", "gear-backlash"}) {
     SCOPED_TRACE(name);
     const Simulator model = Simulator::from_catalogue(name);
     auto options = model.options();
@@ -192,6 +193,19 @@ TEST(ContinuousSolution, ConvergesWithTheOrderOfTheDenseOutputThroughEvents) {
     EXPECT_GT(std::log2(error(integrator, step) / error(integrator, step / 2.0)), order)
         << static_cast<int>(integrator);
   }
+}
+
+TEST(ContinuousSolution, HasBothSidesOfEventsWhateverRowsThereAre) {
+  const Simulator model = Simulator::from_catalogue("bouncing-ball");
+  auto options = model.options();
+  options.continuous = true;
+  options.event_rows = false;
+  options.output = pipeline::NumberOfPoints{2};
+  options.kept.states = {{"y"}};
+  const auto run = model.run(options);
+  const auto event = run.events.front();
+  EXPECT_EQ(run.continuous->at({event.t}, Side::before)->x[0], event.x);
+  EXPECT_EQ(run.continuous->at({event.t}, Side::behind)->x[0], event.x_after);
 }
 
 TEST(ContinuousSolution, IsKnownWithinTheSpanOnly) {

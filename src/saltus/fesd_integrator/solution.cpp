@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/fesd_integrator/element/element_piece.hpp"
 #include "saltus/fesd_integrator/record/recorder.hpp"
 #include "saltus/fesd_integrator/run/context_internal.hpp"
 #include "saltus/fesd_integrator/run/element_interior_internal.hpp"
-#include "saltus/fesd_integrator/element/element_piece.hpp"
 #include "saltus/fesd_integrator/run/position_internal.hpp"
 
 namespace saltus::fesd_integrator {

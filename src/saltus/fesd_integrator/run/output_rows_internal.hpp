@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "saltus/fesd_integrator/element/element_piece.hpp"
 #include "saltus/fesd_integrator/record/recorder.hpp"
 #include "saltus/fesd_integrator/run/context_internal.hpp"
 #include "saltus/fesd_integrator/run/element_interior_internal.hpp"
-#include "saltus/fesd_integrator/element/element_piece.hpp"
 #include "saltus/fesd_integrator/run/position_internal.hpp"
 #include "saltus/ode/straight_lines.hpp"
 
