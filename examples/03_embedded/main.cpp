@@ -9,7 +9,7 @@
 #include <saltus/model/builder.hpp>
 #include <saltus/pipeline/simulate.hpp>
 #include <saltus/pipeline/sweep.hpp>
-#include <saltus/pipeline/values_at.hpp>
+#include <saltus/result/continuous.hpp>
 #include <thread>
 #include <vector>
 
@@ -78,10 +78,10 @@ std::vector<double> in_threads(const model::System& system, const std::vector<do
 
 int main() {
   const auto system = value(brake(2));
-  const pipeline::SimulateOptions options{.until = 6.0};
   // [x of t]
+  const pipeline::SimulateOptions options{.until = 6.0, .continuous = true};
   const auto result = value(pipeline::simulate(system, options));
-  const auto at = value(pipeline::values_at(system, options, {0.5, 1.0, 2.0}));  // simulates again: ask for all at once
+  const auto at = value(result.continuous->at({0.5, 1.0, 2.0}));
   for (std::size_t i = 0; i < at.t.size(); ++i) std::printf("x(%g) = %.9f\n", at.t[i], at.x[i][0]);
   const auto written = io::stream_file("brake.json", [&](io::Sink sink) { return io::write_json(result, sink); });
   if (!written) end_on(written.error());

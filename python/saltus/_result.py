@@ -45,10 +45,13 @@ class Result(Facts):
     False
     """
 
-    def __init__(self, run: _core.Run, origin: Origin = None, kept: Kept | None = None) -> None:
+    def __init__(
+        self, run: _core.Run, origin: Origin = None, kept: Kept | None = None, parent: tuple[Result, int] | None = None
+    ) -> None:
         super().__init__(run)
         self._origin = origin
         self._kept = kept
+        self._parent = parent  # of a branch: what it left, and which of its branches it is
         self._asked: tuple[Result, list[float], str] | None = None  # of values: what they are of, when, on which side
 
     @functools.cached_property
@@ -126,7 +129,7 @@ class Result(Facts):
         >>> len(r.branches) > 0
         True
         """
-        return [Result(branch) for branch in self._run.branches]
+        return [Result(branch, parent=(self, number)) for number, branch in enumerate(self._run.branches)]
 
     @functools.cached_property
     def sensitivities(self) -> Sensitivities | None:
@@ -213,11 +216,34 @@ class Result(Facts):
         first = [*options, ("simulate.max_steps", "1", "max_steps=1")]
         return float(model._core.simulate(settings, first, None, []).t[0])
 
+    @functools.cached_property
+    def _tree(self) -> _core.Run | None:
+        """The same run with the polynomials of its steps, and those of its branches; None if it cannot be run again."""
+        if self._run.is_continuous:
+            return self._run
+        if self._parent is not None:
+            parent, number = self._parent
+            return None if parent._tree is None else parent._tree.branches[number]
+        if self._again is None:
+            return None
+        model, settings, options = self._again
+        run: _core.Run = model._core.simulate_between(settings, options, True)
+        return run
+
+    @functools.cached_property
+    def _between(self) -> _core.Run | None:
+        """The same, of a root without its branches unless these are there."""
+        if self._parent is not None or self._run.is_continuous or self._again is None or "_tree" in self.__dict__:
+            return self._tree
+        model, settings, options = self._again
+        run: _core.Run = model._core.simulate_between(settings, options, False)
+        return run
+
     def __call__(self, t: typing.Any, side: str = "right") -> Array:
         """The state at any time, or at several, from the polynomials of the steps; at an event `side` says which of both.
 
-        The model is simulated once more, up to the last of these times: ask for many at once. Of one time an array (n_x,), of
-        several (number, n_x).
+        The first call simulates the model once more and keeps these polynomials; with ``simulate(continuous=True)`` they
+        are kept at once. Of one time an array (n_x,), of several (number, n_x).
 
         >>> r = saltus.catalogue("stick-slip").simulate(until=10)
         >>> r(0.5).shape, r([1, 2, 3]).shape
@@ -238,15 +264,13 @@ class Result(Facts):
             times = np.atleast_1d(np.asarray(t, dtype=float)).ravel()
         except (TypeError, ValueError):
             raise ValueError(f"t={t!r}: expected a time, or a list of times") from None
-        if self._again is None:
-            raise ValueError(
-                "this result has its rows only (it was optimised, is one of several, or its file has no model): simulate "
-                "its model to have values at other times"
-            )
-        model, settings, options = self._again
         with own_results():
-            values = model._core.values_at(self._run, settings, options, times.tolist(), side == "left")
-            found = Result(values)
+            if self._between is None:
+                raise ValueError(
+                    "this result has its rows only (it is one of several, an optimum from a file or with frozen time, or "
+                    "its file has no model): simulate its model to have values at other times"
+                )
+            found = Result(self._run.values_at(self._between, times.tolist(), side == "left"))
             found._asked = self, times.tolist(), side
             return found
 
@@ -394,7 +418,7 @@ class Result(Facts):
         return re.sub(r"(?m)^(events +)none$", rf"\1not kept; {self._lost_events} happened", table)
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
-        if self._asked is not None:
+        if self._asked is not None and self._asked[0]._again is not None:
             return Result.at, self._asked
         # What is simulated to be known is not simulated for that.
         costly = callable(self._origin) and not isinstance(self._origin, functools.partial)

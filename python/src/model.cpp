@@ -27,7 +27,6 @@
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/order.hpp"
 #include "saltus/pipeline/simulate.hpp"
-#include "saltus/pipeline/values_at.hpp"
 #include "saltus/report/mpcc_table.hpp"
 #include "watch.hpp"
 
@@ -122,33 +121,23 @@ nb::object optimize(Model& model, std::vector<std::string> settings, std::vector
   return finished(std::move(result), input, nullptr, watch);
 }
 
-/// Values of a run at any times, as a run with one row for each of them.
-nb::object values_at(Model& model, const Run& run, std::vector<std::string> settings, std::vector<Option> options,
-                     const std::vector<double>& times, bool before) {
+/// The run once more, with what is between its rows; with all its branches, or none.
+nb::object simulate_between(Model& model, std::vector<std::string> settings, std::vector<Option> options,
+                            bool branches) {
   const Request request{std::move(settings), std::move(options), cli::RunMethods::chosen};
-  const auto input = model.stated(request);
+  auto input = model.stated(request);
+  auto& chosen = input.file.simulate;
+  chosen.continuous = chosen.event_rows = true;
+  chosen.kept = {};
+  chosen.output = pipeline::EveryStep{};  // has both sides where inputs break
+  if (!branches) chosen.event.trajectories = 1;
   const auto system = model.system(input, request);
   Watch watch{nb::none()};
-  auto rows = [&] {
+  auto result = [&] {
     const nb::gil_scoped_release released;
-    const auto side = before ? pipeline::SideOfEvent::before : pipeline::SideOfEvent::behind;
-    return pipeline::values_at(*system, input.file.simulate, times, side, watch.observers());
+    return pipeline::simulate(*system, chosen, watch.observers(), &model.kernels());
   }();
-  if (!rows) raise(io::located(rows.error(), input.file));
-  const auto& of = *run.result;
-  auto values = std::make_shared<result::Result>();
-  values->model = of.model;
-  values->method = of.method;
-  values->states = of.states;
-  values->controls = of.controls;
-  values->outputs = of.outputs;
-  values->switching_functions = of.switching_functions;
-  values->region_groups = of.region_groups;
-  values->status = of.status;
-  values->trajectory = std::move(*rows);
-  nb::object found = nb::cast(Run{std::move(values), nullptr, {}, {}, {}});
-  watch.raise_what_came(found);
-  return found;
+  return finished(std::move(result), input, nullptr, watch);
 }
 
 std::string check(Model& model, std::vector<std::string> settings) {
@@ -199,8 +188,7 @@ void add_model(nb::module_& module) {
            nb::arg("schemes"), nb::arg("steps"))
       .def("optimize", optimize, nb::arg("settings"), nb::arg("options"), nb::arg("start"), nb::arg("on_step").none(),
            nb::arg("warnings"))
-      .def("values_at", values_at, nb::arg("run"), nb::arg("settings"), nb::arg("options"), nb::arg("times"),
-           nb::arg("before"))
+      .def("simulate_between", simulate_between, nb::arg("settings"), nb::arg("options"), nb::arg("branches"))
       .def("equations", equations, nb::arg("latex"))
       .def("quantities", quantities, nb::arg("of_states"))
       .def("check", check, nb::arg("settings"));

@@ -288,6 +288,8 @@ void add_result(nb::module_& module) {
           })
       .def_prop_ro("final", final_of)
       .def_prop_ro("branches", branches)
+      .def_prop_ro("is_continuous", [](const Run& self) { return self.result->continuous != nullptr; })
+      .def("values_at", values_at, nb::arg("between"), nb::arg("times"), nb::arg("before"))
       .def_prop_ro("sensitivities", sensitivities)
       .def("drawn", drawn)
       .def("facts", facts)

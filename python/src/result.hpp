@@ -35,6 +35,9 @@ struct RunEvent : result::Event {
 /// An array of Python with its own numbers.
 nanobind::object owned_array(std::vector<double> values);
 
+/// Rows of `between`, which is continuous, at any times, as a run with the columns of `run`.
+nanobind::object values_at(const Run& run, const Run& between, const std::vector<double>& times, bool before);
+
 std::vector<std::string> words_of(const std::vector<result::ContactMode>& modes);
 
 }  // namespace saltus::python

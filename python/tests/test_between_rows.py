@@ -88,3 +88,66 @@ def test_results_from_elsewhere(jumps, tmp_path):
     assert saltus.load(tmp_path / "r.json")(0.3) == jumps(0.3)
     with pytest.raises(ValueError, match="rows only"):
         saltus.catalogue("stick-slip").compare(until=1)(0.3)
+
+
+def test_later_calls_simulate_nothing():
+    r = saltus.Model.from_text(JUMPS).simulate()
+    first = r(0.3)
+    r.__dict__["_again"] = None  # with this it cannot be run
+    assert r(0.3).tobytes() == first.tobytes() and r(0.7) == pytest.approx([0.7])
+
+
+def test_a_run_may_keep_its_polynomials():
+    model = saltus.Model.from_text(JUMPS)
+    kept = model.simulate(continuous=True)
+    kept.__dict__["_again"] = None
+    assert kept(0.3).tobytes() == model.simulate()(0.3).tobytes()
+    assert kept(kept.events[0].t, side="left") == pytest.approx([1], abs=1e-12)
+
+
+def test_branches_follow_their_own_choices():
+    model = saltus.catalogue("stay-or-leave")
+    r, rows = model.simulate(branches="all"), model.simulate(branches="all", points=61)
+    assert len(r.branches) == len(rows.branches) > 1
+    for branch, asked in zip(r.branches, rows.branches):
+        inside = asked.t > asked.t[0]
+        assert branch(asked.t[inside]).tobytes() == asked.x[inside].tobytes()
+        with pytest.raises(ValueError, match="outside"):
+            branch(0.0)
+
+
+BLOCK = """
+[model]
+name = "block"
+[states]
+q = 0
+v = 0
+[controls]
+u = { lower = -5, upper = 5 }
+[dynamics]
+q = "v"
+v = "u"
+[optimize]
+horizon = 4
+control_intervals = 8
+running_cost = "u^2"
+terminal_constraints = ["q == 10", "v == 0"]
+"""
+
+
+def test_optima_are_their_collocation_polynomials(tmp_path):
+    r = saltus.Model.from_text(BLOCK).optimize().require()
+    grid, u = r.optimization["grid"], np.ravel(r.optimization["u"])
+    times = np.linspace(*r.span, 41)
+    x = np.zeros((41, 2))
+    for begin, end, force in zip(grid, grid[1:], u):
+        part = np.clip(times, begin, end) - begin
+        x[:, 0] += np.where(times > begin, x[:, 1] * part + force * part**2 / 2, 0)
+        x[:, 1] += force * part
+    assert np.abs(r(times) - x).max() < 1e-8
+    left, right = (r.at(grid[3], side).u[0, 0] for side in ("left", "right"))
+    assert (left, right) == pytest.approx((u[2], u[3]))
+    assert pickle.loads(pickle.dumps(r.at([1.0]))).x.tobytes() == r([1.0]).tobytes()
+    r.save(tmp_path / "r.json")
+    with pytest.raises(ValueError, match="rows only"):
+        saltus.load(tmp_path / "r.json")(1.0)

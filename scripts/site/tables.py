@@ -196,7 +196,7 @@ CPP_FILES = [
                        "pipeline/compare.hpp", "pipeline/order.hpp", "base/symbolic_lock.hpp"]),
     ("Optimal control", ["model/optimal_control/ocp_builder.hpp", "model/ocp.hpp", "pipeline/optimal_control/optimize.hpp",
                          "pipeline/options/optimize_options.hpp", "result/optimization.hpp"]),
-    ("What one gets", ["result/result.hpp", "result/events.hpp", "result/status.hpp"]),
+    ("What one gets", ["result/result.hpp", "result/continuous.hpp", "result/events.hpp", "result/status.hpp"]),
     ("Reading and writing", ["io/toml/toml_model.hpp", "io/json/json_result.hpp", "io/atomic_file.hpp"]),
     ("Errors", ["base/error.hpp"]),
 ]

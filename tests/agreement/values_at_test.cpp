@@ -71,6 +71,20 @@ TEST(ValuesAt, AreSimulatedNoFurtherThanToTheLastOfThem) {
   EXPECT_NEAR(values->x[1][0], values_at(system, options, {0.25, 0.5})->x[1][0], 1e-9);
 }
 
+TEST(ValuesAt, AreThoseOfTheWholeSpanWhereTimeIsFrozen) {
+  const char* const hopping =
+      "[model]\nname = \"ball\"\n[states]\ny = 1\nv = 0\n[mechanics]\npositions = [\"y\"]\nvelocities = "
+      "[\"v\"]\nforce = { v = \"-10\" }\n[[contacts]]\nname = \"ground\"\ngap = \"y\"\nrestitution = 0.5\n"
+      "[simulate]\nuntil = 0.85\nmethod = \"fesd\"\n";
+  const auto [system, options] = model_of(hopping);
+  ASSERT_TRUE(system.frozen);
+  const auto values = values_at(system, options, {0.25, 0.8});
+  ASSERT_TRUE(values) << to_text(values.error());
+  EXPECT_NEAR(values->x[0][0], 1.0 - 5.0 * 0.0625, 1e-6);
+  const double flight = 0.8 - std::sqrt(0.2);
+  EXPECT_NEAR(values->x[1][0], 0.5 * std::sqrt(20.0) * flight - 5.0 * flight * flight, 1e-4);
+}
+
 TEST(ValuesAt, HaveTwoSidesAtAnEvent) {
   const auto [system, options] = model_of(ball);
   const auto run = simulate(system, options);

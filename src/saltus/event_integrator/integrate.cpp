@@ -43,6 +43,7 @@ Integration integrate(evaluation::ModelKernel& kernel, const model::System& syst
   integration.status = std::move(run.status);
   integration.statistics = run.statistics;
   integration.chosen = run.chosen;
+  integration.pieces = std::move(run.pieces);
   integration.families = recording.listed_families(system);
   integration.family_numbers = recording.family_numbers();
   if (!take) integration.branch_points = std::move(recording.branch_points);

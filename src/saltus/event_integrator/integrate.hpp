@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -11,6 +12,8 @@
 #include "saltus/result/result.hpp"
 
 namespace saltus::event_integrator {
+
+struct Pieces;
 
 /// Holds the parts of a result that an engine computes; `final` is the last row.
 struct Integration {
@@ -22,7 +25,8 @@ struct Integration {
   std::vector<BranchPoint> branch_points;  ///< events with alternatives behind the last choice, ascending
   bool chosen = true;                      ///< false: it stopped before the last choice, and begins at its own start
   std::vector<result::Family> families{};
-  std::vector<long> family_numbers{};  ///< in the run: what a Choice of one names
+  std::vector<long> family_numbers{};      ///< in the run: what a Choice of one names
+  std::shared_ptr<const Pieces> pieces{};  ///< of its Solution, if asked for
 };
 
 /// Takes rows and events, in their order, while a run goes on.

@@ -22,6 +22,7 @@ struct OutputTimes {
   /// input, output and selection, so far; 0: none.
   double straight = 0.0;
   std::size_t selections = 0;  ///< so many of the last outputs are selections, cut to [0, 1]
+  bool pieces = false;         ///< asks for the polynomials of all steps, Integration::pieces
 };
 
 /// Holds the layers of a regularised system: inside one, psi + half_width > 0 > psi - half_width.

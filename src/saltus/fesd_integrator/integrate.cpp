@@ -1,7 +1,12 @@
 #include "saltus/fesd_integrator/integrate.hpp"
 
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/fesd_integrator/run/run_internal.hpp"
+#include "saltus/fesd_integrator/solution.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
@@ -22,17 +27,29 @@ Error no_derivatives() {
 
 Expected<Integration> integrate(const model::System& system, const reformulation::Dcs& dcs,
                                 const IntegrationOptions& options, const StepObserver& observer) {
-  const auto kernel = discretization::StageKernel::compile(dcs, system.parameter_values, options.native);
+  auto kernel = discretization::StageKernel::compile(dcs, system.parameter_values, options.native);
   if (!kernel) return tl::unexpected(kernel.error());
-  const auto functions = discretization::PointFunctions::compile(dcs, system.parameter_values, options.native);
+  auto functions = discretization::PointFunctions::compile(dcs, system.parameter_values, options.native);
   if (!functions) return tl::unexpected(functions.error());
   const Facts known = facts(system, dcs);
+  std::vector<ElementPiece> pieces;
   const auto evaluated = [&](SensitivityPropagation* propagation) {
     Run run(*kernel, *functions, known, options, observer, propagation);
     const SymbolicPause pause;
-    return run.run();
+    auto integration = run.run();
+    pieces = run.take_pieces();
+    return integration;
   };
-  if (!options.sensitivities) return evaluated(nullptr);
+  const auto with_solution = [&](Integration integration) {
+    if (!options.pieces) return integration;
+    IntegrationOptions alone = options;
+    alone.step_problem = nullptr;
+    alone.fallback = {};
+    integration.solution =
+        std::make_shared<Solution>(std::move(*kernel), std::move(*functions), known, alone, std::move(pieces));
+    return integration;
+  };
+  if (!options.sensitivities) return with_solution(evaluated(nullptr));
   if (!dcs.root_exponents.empty()) return tl::unexpected(no_derivatives());
   const auto tangent = discretization::TangentKernel::compile(dcs, system.parameter_values, options.native);
   if (!tangent) return tl::unexpected(tangent.error());
@@ -41,7 +58,7 @@ Expected<Integration> integrate(const model::System& system, const reformulation
   if (integration.status.termination == result::Termination::completed) {
     integration.sensitivities = propagation.sensitivities(system.parameter_names);
   }
-  return integration;
+  return with_solution(std::move(integration));
 }
 
 }  // namespace saltus::fesd_integrator

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 
 namespace saltus::fesd_integrator {
 
+class Solution;
 class StepProblem;
 
 /// Holds options that the pipeline has checked: from < until, steps >= 1, elements >= 1 (2 with switch detection), 0 <
@@ -55,6 +57,7 @@ struct IntegrationOptions {
   evaluation::NativeCode native = evaluation::NativeCode::off;  ///< of everything that is evaluated
   bool sensitivities = false;                                   ///< asks for Integration::sensitivities
   bool record_elements = false;                                 ///< asks for Integration::elements
+  bool pieces = false;                                          ///< asks for Integration::solution
 };
 
 using result::Continue;
@@ -70,6 +73,7 @@ struct Integration {
   result::Statistics statistics;  ///< steps: elements; rejected: simulation steps that were divided
   std::optional<result::Sensitivities> sensitivities;  ///< of a completed run, if asked for
   std::optional<result::Elements> elements;            ///< if asked for; an element that an event stops is not in it
+  std::shared_ptr<Solution> solution{};                ///< if asked for
 };
 
 }  // namespace saltus::fesd_integrator

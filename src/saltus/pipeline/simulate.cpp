@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -17,6 +18,8 @@
 #include "saltus/model/decisions.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
+#include "saltus/pipeline/continuous/continuous_internal.hpp"
+#include "saltus/pipeline/integrand_internal.hpp"
 #include "saltus/pipeline/kept_columns_internal.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -25,8 +28,6 @@
 #include "saltus/pipeline/simulate_elements_internal.hpp"
 #include "saltus/pipeline/step_observer_internal.hpp"
 #include "saltus/pipeline/time_freezing/simulate_frozen_internal.hpp"
-#include "saltus/smoothed/regularise.hpp"
-#include "saltus/smoothed/restate.hpp"
 
 namespace saltus::pipeline {
 
@@ -142,72 +143,6 @@ Expected<IntegrationOptions> integration_options(const model::System& system, co
   return integration;
 }
 
-/// What is integrated: the system itself, or its regularisation.
-class Integrand {
- public:
-  explicit Integrand(const model::System& system) : system_(&system) {}
-  explicit Integrand(smoothed::Regularisation regularisation) : regularisation_(std::move(regularisation)) {}
-  Integrand(Integrand&&) = default;
-  ~Integrand() {
-    if (!regularisation_) return;
-    const SymbolicLock lock;
-    regularisation_.reset();
-  }
-
-  [[nodiscard]] const model::System& system() const { return regularisation_ ? regularisation_->system : *system_; }
-  /// Of the last outputs so many are selections.
-  [[nodiscard]] std::size_t selections() const {
-    if (!regularisation_) return 0;
-    std::size_t count = regularisation_->columns.size();
-    for (const auto& group : regularisation_->regions) count += group.names.size();
-    return count;
-  }
-  [[nodiscard]] event_integrator::ThinLayers layers() const {
-    event_integrator::ThinLayers layers;
-    if (!regularisation_) return layers;
-    layers.half_width = regularisation_->epsilon;
-    const auto function = [&](std::size_t column) { return regularisation_->system.columns[column].function; };
-    for (const auto& layer : regularisation_->layers) {
-      for (const auto& side : layer.sides) {
-        if (side.lower != side.upper) layers.corners.push_back({function(side.lower), function(side.upper)});
-      }
-    }
-    for (const auto& regions : regularisation_->regions) {
-      for (const std::size_t column : regions.columns) layers.weights.push_back(function(column));
-    }
-    layers.weight_range = smoothed::weight_range * regularisation_->epsilon;
-    return layers;
-  }
-  /// What was computed, over the columns of the original system.
-  [[nodiscard]] event_integrator::Integration restated(event_integrator::Integration run) const {
-    if (!regularisation_) return run;
-    run.branch_points.clear();  // the regularised system has one solution
-    run.families.clear();
-    smoothed::restate(*regularisation_, run.events, run.trajectory, run.status);
-    const auto& rows = run.trajectory;
-    run.final.mode = rows.mode.back();
-    run.final.alpha = rows.alpha.back();
-    run.final.outputs = rows.outputs.back();
-    if (!rows.regions.empty()) {
-      run.final.regions = rows.regions.back();
-      run.final.theta = rows.theta.back();
-    }
-    return run;
-  }
-
- private:
-  const model::System* system_ = nullptr;
-  std::optional<smoothed::Regularisation> regularisation_;
-};
-
-Expected<Integrand> integrand(const model::System& system, const SimulateOptions& options) {
-  if (options.method != Method::smoothed) return Integrand(system);
-  const SymbolicLock lock;
-  return smoothed::regularise(system, options.smoothed.epsilon).map([](auto regularisation) {
-    return Integrand(std::move(regularisation));
-  });
-}
-
 result::Result frame(const model::System& system, const SimulateOptions& options) {
   result::Result result;
   result.model.name = system.name;
@@ -253,33 +188,57 @@ bool by_elements(const SimulateOptions& options) {
   return options.method == Method::fesd || options.method == Method::timestepping;
 }
 
+/// The first row, the last, and both of every event: others are at values of a clock to its rounding.
+result::Trajectory rows_at_events(result::Trajectory rows) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < rows.t.size(); ++i) {
+    const bool last = i + 1 == rows.t.size();
+    if (i == 0 || last || side(rows, i) == 1 || side(rows, i + 1) == 1) kept.push_back(i);
+  }
+  rows.keep(kept);
+  return rows;
+}
+
+Expected<result::Result> simulated_by_elements(const model::System& system, const SimulateOptions& options,
+                                               const IntegrationOptions& checked, const Observers& observers) {
+  const SymbolicLock lock;  // its problems are made while it runs
+  const auto& times = checked.output.times;
+  if (!system.frozen) {
+    return simulate_elements(system, options, times, checked.initial_mode, frame(system, options), observers);
+  }
+  SimulateOptions with_rows = options;
+  with_rows.event_rows = options.event_rows || options.continuous;
+  auto result = simulate_frozen(system, with_rows, times, frame(system, options), observers);
+  if (!result || !options.continuous) return result;
+  result->continuous = continuous(rows_at_events(result->trajectory), system, options, nullptr);
+  if (!options.event_rows) leave_out_event_rows(times, result->trajectory);
+  return result;
+}
+
 Expected<result::Result> simulated(const model::System& system, const SimulateOptions& options,
                                    const std::optional<result::KeptColumns>& kept_columns, const Observers& observers,
                                    KernelStore* kernels) {
   auto integration_or = integration_options(system, options);
   if (!integration_or) return tl::unexpected(integration_or.error());
   if (by_elements(options)) {
-    const SymbolicLock lock;  // its problems are made while it runs
-    if (system.frozen) {
-      return simulate_frozen(system, options, std::move(integration_or->output.times), frame(system, options),
-                             observers);
-    }
-    return simulate_elements(system, options, std::move(integration_or->output.times),
-                             std::move(integration_or->initial_mode), frame(system, options), observers);
+    return simulated_by_elements(system, options, *integration_or, observers);
   }
   Stopwatch stopwatch;
-  const auto integrand_or = integrand(system, options);
-  if (!integrand_or) return tl::unexpected(integrand_or.error());
-  integration_or->layers = integrand_or->layers();
-  integration_or->output.selections = integrand_or->selections();
+  const auto own = options.continuous ? own_copy(system) : nullptr;
+  auto made = Integrand::make(own ? *own : system, options);
+  if (!made) return tl::unexpected(made.error());
+  const auto integrand = std::make_shared<const Integrand>(std::move(*made));
+  integration_or->layers = integrand->layers();
+  integration_or->output.selections = integrand->selections();
+  integration_or->output.pieces = options.continuous;
   KernelStore of_this_run;
   if (kernels == nullptr) kernels = &of_this_run;
-  auto kept = kernels->take(integrand_or->system(), native_code(options.native));
+  auto kept = kernels->take(integrand->system(), native_code(options.native));
   if (!kept) return tl::unexpected(kept.error());
 
   auto integration = *integration_or;
   const bool passes_on = observers.on_part && options.method == Method::event && options.event.trajectories == 1 &&
-                         system.contacts.empty() && system.drawing.empty();
+                         !options.continuous && system.contacts.empty() && system.drawing.empty();
   const auto run_one = [&](const Path& path, const Count& count) -> Followed {
     const auto observer = step_observer(observers, {integration.from, integration.until, count.number, count.known});
     integration.choices = path;
@@ -291,8 +250,8 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
       passing.emplace(observers, of_parts, options.event_rows ? nullptr : &integration.output.times);
       take = [&](result::Trajectory rows, result::Events events) { passing->take(std::move(rows), std::move(events)); };
     }
-    auto run = integrand_or->restated(
-        event_integrator::integrate(kept->kernel, integrand_or->system(), integration, observer, take));
+    auto run = integrand->restated(
+        event_integrator::integrate(kept->kernel, integrand->system(), integration, observer, take));
     Followed followed{frame(system, options), std::move(run.branch_points), std::move(run.family_numbers), run.chosen};
     auto& result = followed.result;
     result.families = std::move(run.families);
@@ -300,6 +259,10 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
     result.final = std::move(run.final);
     result.events = std::move(run.events);
     result.trajectory = std::move(run.trajectory);
+    if (own) {
+      const EventRun of_it{own, integrand, integration, native_code(options.native)};
+      result.continuous = continuous(result.trajectory, of_it, kept->kernel, std::move(run.pieces));
+    }
     if (passing) result.passed_on = passing->end();
     if (!options.event_rows) leave_out_event_rows(integration.output.times, result.trajectory);
     result.statistics = run.statistics;

@@ -7,6 +7,7 @@
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/step_problem.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
@@ -82,6 +83,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   fesd_integrator::IntegrationOptions integration = options_of_elements(options, wanted, std::move(*tableau));
   integration.initial_mode = std::move(forced);
   if (system.freezing) integration.clock = static_cast<std::size_t>(system.freezing->clock);
+  integration.pieces = options.continuous && !integration.clock;
   integration.record_elements = values > 0.0 && values <= most_recorded_values;
   if (is_at_times(options.output)) {
     integration.rows = fesd_integrator::IntegrationOptions::Rows::at_times;
@@ -110,7 +112,9 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   const auto observer = step_observer(observers, {integration.from, integration.until});
   auto run = fesd_integrator::integrate(system, *dcs, integration, observer);
   if (!run) return tl::unexpected(run.error());
+  auto solution = std::move(run->solution);
   frame = with_run(std::move(frame), std::move(*run));
+  if (options.continuous) frame.continuous = continuous(frame.trajectory, system, options, std::move(solution));
   if (!options.event_rows) leave_out_event_rows(integration.times, frame.trajectory);
   frame.statistics.wall_seconds = stopwatch.seconds();
   return frame;

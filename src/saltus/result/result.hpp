@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -189,6 +190,8 @@ struct KeptColumns {
   bool operator==(const KeptColumns&) const = default;
 };
 
+class Continuous;
+
 struct Result {
   ModelRecord model;
   std::string command = "simulate";
@@ -220,6 +223,8 @@ struct Result {
   /// Of `compare` and `order`, whose reference run the rest of the result is.
   std::optional<Comparison> comparison;
   std::optional<OrderStudy> order;
+
+  std::shared_ptr<Continuous> continuous;  ///< between the rows, if asked for; in no file
 
   /// Of a branch. It has that event, with the mode that was taken, as its first event.
   std::optional<Departure> left_at;

@@ -98,6 +98,12 @@ class Shown {
 
 }  // namespace
 
+void show_contacts(const model::System& system, result::Trajectory& trajectory) {
+  const Shown shown(system.contacts);
+  for (const auto& x : trajectory.x) trajectory.contact_modes.push_back(shown.modes(x));
+  trajectory.x.narrow(shown.states());
+}
+
 void show_contacts(const model::System& system, result::Final& final, result::Events& events,
                    result::Trajectory& trajectory) {
   const Shown shown(system.contacts);
@@ -121,8 +127,7 @@ void show_contacts(const model::System& system, result::Final& final, result::Ev
     told.push_back(std::move(event));
   }
   events = std::move(told);
-  for (const auto& x : trajectory.x) trajectory.contact_modes.push_back(shown.modes(x));
-  trajectory.x.narrow(shown.states());
+  show_contacts(system, trajectory);
   final.contact_modes = shown.modes(final.x);
   shown.cut(final.x);
 }

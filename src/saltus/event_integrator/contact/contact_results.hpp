@@ -13,4 +13,7 @@ namespace saltus::event_integrator {
 void show_contacts(const model::System& system, result::Final& final, result::Events& events,
                    result::Trajectory& trajectory);
 
+/// Does this for rows.
+void show_contacts(const model::System& system, result::Trajectory& trajectory);
+
 }  // namespace saltus::event_integrator

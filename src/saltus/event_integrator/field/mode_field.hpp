@@ -43,6 +43,9 @@ struct ExitValues {
 
 enum class Region { below, above };
 
+/// Returns whether f is affine in each selection of a system.
+[[nodiscard]] bool is_affine_in_selections(const model::System& system);
+
 /// Evaluates the right-hand side of the index-2 DAE of a mode turned into an ODE ([guglielmi2022], section 6):
 ///   xdot = f(t, x, alpha) - J^+ (J f + d psi_I/dt),  J = grad psi_I,
 /// with alpha_I from the m equations J f + d psi_I/dt = 0. The correction is of rounding size; for a surface that is a
@@ -70,6 +73,8 @@ class ModeField {
     kernel_.prepared_field(t, x, constants_[side == Region::below ? 0 : 1], xdot);
   }
   [[nodiscard]] SlidingSolve solve() const { return solve_; }
+  /// Returns the selections from which those of sliding surfaces are found: of the mode's beginning, or as followed.
+  [[nodiscard]] const std::vector<double>& start() const { return start_alpha_; }
 
   /// Returns, behind an evaluation, the sliding surfaces whose gradients are taken to be independent: all, but for
   /// regions by `indicator` whose weights are those of switching::RegionWeights.

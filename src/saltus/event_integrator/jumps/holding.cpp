@@ -122,12 +122,24 @@ std::vector<double> Holding::free_field(double t, const std::vector<double>& alp
   return f;
 }
 
-/// The kernel holds guards_, and x is there.
-std::optional<std::string> Holding::set(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+void Holding::resize_rows() {
   const auto m = static_cast<Eigen::Index>(guards_.size());
   rows_.resize(m, kernel_.states());
   residual_.resize(m);
   normal_.resize(m, m);
+}
+
+bool Holding::put(const std::vector<HeldGuard>& guards) {
+  release_all();
+  if (guards.empty()) return true;
+  guards_ = guards;
+  resize_rows();
+  return kernel_.hold(holds()).has_value();
+}
+
+/// The kernel holds guards_, and x is there.
+std::optional<std::string> Holding::set(double t, const std::vector<double>& alpha, std::vector<double>& x) {
+  resize_rows();
   if (auto problem = moves_what_is_compared(t, alpha, x)) return problem;
   auto done = kernel_.hold(holds());
   if (!done) return done.error().message;

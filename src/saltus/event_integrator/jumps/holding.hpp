@@ -41,6 +41,8 @@ class Holding {
   [[nodiscard]] std::optional<std::string> hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, double t,
                                                 const std::vector<double>& alpha, std::vector<double>& x);
   void release_all();
+  /// Holds the guards() of another one of this system, which are known to be held; false where the kernel refuses.
+  [[nodiscard]] bool put(const std::vector<HeldGuard>& guards);
   /// Holds contacts at zero with the guards.
   void keep(Contacts* contacts) { contacts_ = contacts; }
   /// Puts x on g = 0, dg/dt = 0; returns whether it changed.
@@ -68,6 +70,7 @@ class Holding {
                                                                   std::vector<double>& x);
   [[nodiscard]] double second_derivative(const HeldGuard& guard, double t, const std::vector<double>& alpha,
                                          const std::vector<double>& x) const;
+  void resize_rows();
   bool find_positions(double t, const std::vector<double>& alpha, const std::vector<double>& x);
   bool find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x);
   bool correct(std::vector<double>& x);

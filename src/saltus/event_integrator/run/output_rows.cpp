@@ -18,11 +18,17 @@ OutputRows::OutputRows(const evaluation::ModelKernel& kernel, const IntegrationO
       recorder_(recorder),
       x_(here.x.size()),
       slope_(x_.size()) {
+  if (options.output.pieces) pieces_.emplace(options.method);
   if (!(options.output.straight > 0.0)) return;
   const std::size_t columns = x_.size() + at(kernel.controls() + kernel.outputs() + kernel.switching_functions());
   const StepTolerances tolerances(options.tolerances);
   lines_.emplace(Lines{ode::ColumnRanges(columns, options.output.straight, tolerances.step())});
   recorder_.widen(lines_->ranges, options.output.selections);
+}
+
+std::shared_ptr<const Pieces> OutputRows::take_pieces(const std::vector<double>& row_times) {
+  if (!pieces_ || row_times.empty()) return nullptr;
+  return std::make_shared<const Pieces>(pieces_->take_from(row_times.front()));
 }
 
 void OutputRows::write(double t, const std::vector<double>& x) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "saltus/event_integrator/jumps/holding.hpp"
 #include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/options.hpp"
+#include "saltus/event_integrator/record/pieces.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
 #include "saltus/ode/straight_lines.hpp"
 
@@ -43,6 +45,18 @@ class OutputRows {
   void each_until(double from, double end, Write write) {
     each_before(from, std::nextafter(end, std::numeric_limits<double>::infinity()), write);
   }
+  /// Returns whether the inside of a step up to a time is asked for.
+  [[nodiscard]] bool any_inside(double t) const { return pieces_ || any_before(t); }
+  /// Keeps the step from the position up to a time, if steps are asked for.
+  void keep(const ode::DenseStep& step, double end) {
+    if (pieces_) pieces_->add(kernel_, here_, field_, holding_, recorder_.events(), step, end);
+  }
+  /// Leaves the inside of a step to be simulated again.
+  void leave_open(double end) {
+    if (pieces_) pieces_->leave_open(end);
+  }
+  /// Returns what has been kept from the first of some rows on; null if nothing was to be.
+  [[nodiscard]] std::shared_ptr<const Pieces> take_pieces(const std::vector<double>& row_times);
   /// Writes rows from the position to `end` (not included) on a curve, which are put on the surfaces of the mode.
   void write_before(double end, FunctionRef<void(double t, double* x)> curve);
   /// Passes requested times up to the position.
@@ -84,6 +98,7 @@ class OutputRows {
   std::size_t arrival_ = 0;
   std::vector<double> x_, slope_;  ///< of a row
   std::optional<Lines> lines_;
+  std::optional<PieceLog> pieces_;
 };
 
 }  // namespace saltus::event_integrator

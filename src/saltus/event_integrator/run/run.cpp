@@ -11,20 +11,13 @@
 #include "saltus/event_integrator/steps/thin_layers.hpp"
 
 namespace saltus::event_integrator {
-namespace {
 
 using result::Termination;
-
-bool is_affine(const model::System& system) {
-  return system.inclusion == model::Inclusion::filippov || system.multi_affine;
-}
-
-}  // namespace
 
 Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options, Way way)
     : kernel_(kernel),
       options_(options),
-      switching_context_{kernel, system, is_affine(system), options.selection, options.scaling},
+      switching_context_{kernel, system, is_affine_in_selections(system), options.selection, options.scaling},
       field_(kernel, switching_context_.affine_in_alpha),
       here_(options.from, system.initial_state),
       tolerances_(options.tolerances),
@@ -231,6 +224,7 @@ CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording
   outcome_.result.recording = recorder_.take();
   outcome_.result.recording.families = choices_.families().take();
   outcome_.result.chosen = choices_.begin_at_choice(outcome_.result.recording, outcome_.result.statistics);
+  outcome_.result.pieces = rows_.take_pieces(outcome_.result.recording.row_times);
   return std::move(outcome_.result);
 }
 

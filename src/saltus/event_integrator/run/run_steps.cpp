@@ -18,6 +18,7 @@ using result::Termination;
 /// Rows at requested times before t_end, from the dense output of the step under way.
 void Run::rows_until(double t_end) {
   const auto& dense = steps_.dense();
+  rows_.keep(dense, t_end);
   rows_.write_before(t_end, [&](double t, double* x) { dense.evaluate((t - dense.t) / dense.h, x); });
 }
 
@@ -25,6 +26,7 @@ void Run::rows_until(double t_end) {
 /// at the times; the step itself is then taken once more, so that it does not depend on the rows.
 void Run::rows_by_steps(double t_new) {
   const auto& dense = steps_.dense();
+  rows_.leave_open(t_new);
   rows_.write_before(t_new, [&](double t, double* x) {
     if (steps_.take(t) == ode::Attempt::finite) {
       std::copy_n(steps_.stepper().x_new(), here_.x.size(), x);
@@ -206,7 +208,7 @@ std::optional<Run::Step> Run::first_event(double t_new) {
   // Events must not depend on the rows: where nothing can vanish there is no search, with and without a dense output.
   // A search is as fast where that is there already.
   const bool may_vanish = steps_.stepper().follows() || search_.may_vanish(steps_.stepper());
-  if (!may_vanish && !rows_.any_before(t_new)) return std::nullopt;
+  if (!may_vanish && !rows_.any_inside(t_new)) return std::nullopt;
   zeros_.forget();  // the search finds the roundings of functions anew
   if (!steps_.make_dense()) {
     if (may_vanish) return shorten_to(0.5);

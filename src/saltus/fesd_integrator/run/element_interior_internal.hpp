@@ -22,6 +22,8 @@ class ElementInterior {
   /// of go_to().
   void take_stage_sets(std::span<const ActiveSet> sets) { stage_sets_ = sets; }
 
+  [[nodiscard]] std::span<const ActiveSet> stage_sets() const { return stage_sets_; }
+
   /// Goes to t + theta h of an element; `selections` are those at its left end.
   void go_to(const Element& element, const std::vector<double>& selections, double theta);
   /// Finds selections that hold the surfaces at a state, from `guess`; those nearest to 1/2 where they are not

@@ -10,10 +10,30 @@ void OutputRows::row_inside(double t) {
   recorder_.row(t, interior_.x(), interior_.set(), interior_.selections(), context_.held.data());
 }
 
+void OutputRows::keep(const Element& element, const std::vector<double>& selections, double until) {
+  const bool is_first = pieces_.empty() || pieces_.back().end <= position_.t();
+  const double begin = is_first ? position_.t() : pieces_.back().end;
+  constexpr std::size_t most_numbers = std::size_t{1} << 27U;
+  numbers_ += element.x.size() + 2 * element.stage_states.size() + element.stage_selections.size() + element.end.size();
+  if (!(begin < until) || numbers_ > most_numbers) return;
+  const double* held = context_.held.data();
+  const auto sets = interior_.stage_sets();
+  pieces_.push_back({begin,
+                     until,
+                     is_first,
+                     element,
+                     selections,
+                     position_.set(),
+                     {sets.begin(), sets.end()},
+                     {held, held + context_.facts.held.size()}});
+}
+
 void OutputRows::emit(const Element& element, const std::vector<double>& selections, double until) {
+  if (context_.options.pieces) keep(element, selections, until);
   if (at_times() && context_.options.clock) return emit_clock_times(element, selections, until);
   const auto& times = at_times() ? context_.options.times : chosen_;
   for (; next_ < times.size() && times[next_] < until; ++next_) {
+    if (recorder_.ends_at(times[next_])) continue;  // an event inside has put it there, to the rounding of its state
     interior_.go_to(element, selections, (times[next_] - element.t) / element.h);
     row_inside(times[next_]);
   }

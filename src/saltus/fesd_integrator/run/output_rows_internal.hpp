@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "saltus/fesd_integrator/element/element_piece.hpp"
 #include "saltus/fesd_integrator/record/recorder.hpp"
 #include "saltus/fesd_integrator/run/context_internal.hpp"
 #include "saltus/fesd_integrator/run/element_interior_internal.hpp"
@@ -27,10 +29,13 @@ class OutputRows {
   void emit(const Element& element, const std::vector<double>& selections, double until);
   /// Writes the row at the position, unless an event has put it there.
   void emit_here();
+  /// Returns the elements that have been emitted, if they were asked for.
+  [[nodiscard]] std::vector<ElementPiece> take_pieces() { return std::move(pieces_); }
   /// Gives times between the position and a time the row of the position.
   void pass(double until);
 
  private:
+  void keep(const Element& element, const std::vector<double>& selections, double until);
   void emit_clock_times(const Element& element, const std::vector<double>& selections, double until);
   /// Time inside an element at which the clock has this value, from theta to `last`, where it has `end`.
   [[nodiscard]] double theta_of(double value, const Element& element, const std::vector<double>& selections,
@@ -48,6 +53,8 @@ class OutputRows {
   std::optional<ode::ColumnRanges> ranges_;
   ode::StraightLines lines_;
   std::vector<double> chosen_, tolerance_;
+  std::vector<ElementPiece> pieces_;  ///< up to a gigabyte of numbers
+  std::size_t numbers_ = 0;
 };
 
 }  // namespace saltus::fesd_integrator

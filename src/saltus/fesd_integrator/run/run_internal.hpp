@@ -36,6 +36,8 @@ class Run {
   Run(const discretization::StageKernel& kernel, const discretization::PointFunctions& functions, const Facts& facts,
       const IntegrationOptions& options, const StepObserver& observer, SensitivityPropagation* propagation);
   [[nodiscard]] Integration run();
+  /// Returns the elements of the run, if they were asked for.
+  [[nodiscard]] std::vector<ElementPiece> take_pieces() { return rows_.take_pieces(); }
 
  private:
   void start();

@@ -17,6 +17,8 @@ class HeldValues {
   HeldValues(const discretization::PointFunctions& functions, const std::vector<HeldFact>& facts);
 
   [[nodiscard]] const double* data() const { return values_.data(); }
+  /// Takes values that were found before.
+  void put(const std::vector<double>& values) { values_ = values; }
   /// Finds the values just behind a time; `reach` is a length that is small against what happens, at whose thousand
   /// millionth part signs are looked at. Returns whether something has changed.
   enum class Change { none, some };

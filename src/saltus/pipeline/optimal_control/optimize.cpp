@@ -226,6 +226,7 @@ void take_run(const model::Ocp& ocp, OptimizedRun& run, result::Result& result) 
   for (std::size_t i = 0; i < result.states.size() && !result.trajectory.x.empty(); ++i) {
     result.model.initial_state.emplace_back(result.states[i], result.trajectory.x.front()[i]);
   }
+  result.continuous = std::move(run.continuous);
   result.events = std::move(run.events);
   result.final = std::move(run.final);
   result.elements = std::move(run.elements);

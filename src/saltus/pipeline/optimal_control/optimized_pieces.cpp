@@ -4,6 +4,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/fesd_integrator/element/element_piece.hpp"
 #include "saltus/fesd_integrator/element/projected_field.hpp"
 #include "saltus/fesd_integrator/watch/held_values.hpp"
 #include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
@@ -178,6 +179,27 @@ std::vector<OptimizedPiece> optimized_pieces(const OcpSolution& solution, const 
     }
   }
   return pieces;
+}
+
+std::shared_ptr<fesd_integrator::Solution> solution_of(const std::vector<OptimizedPiece>& pieces,
+                                                       const discretization::ButcherTableau& tableau,
+                                                       discretization::StageKernel kernel,
+                                                       discretization::PointFunctions functions, const Facts& facts) {
+  std::vector<fesd_integrator::ElementPiece> elements;
+  for (const auto& piece : pieces) {
+    auto element = piece.element;
+    const std::size_t n_x = facts.n_x, n = kernel.selections();
+    element.stage_slopes.resize(element.stage_states.size());
+    for (std::size_t m = 0; m < at(tableau.c.size()); ++m) {
+      kernel.field(element.t + tableau.c[index(m)] * element.h, element.stage_states.data() + m * n_x,
+                   element.stage_selections.data() + m * n, piece.held.data(), element.stage_slopes.data() + m * n_x);
+    }
+    elements.push_back({element.t, piece.end, true, std::move(element), piece.left, piece.set, {}, piece.held});
+  }
+  fesd_integrator::IntegrationOptions options;
+  options.tableau = tableau;
+  return std::make_shared<fesd_integrator::Solution>(std::move(kernel), std::move(functions), facts, options,
+                                                     std::move(elements));
 }
 
 }  // namespace saltus::pipeline

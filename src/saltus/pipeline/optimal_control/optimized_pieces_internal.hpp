@@ -2,14 +2,17 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <vector>
 
+#include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/ocp/ocp_problem.hpp"
 #include "saltus/discretization/point_functions.hpp"
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/element/active_set.hpp"
 #include "saltus/fesd_integrator/element/element.hpp"
 #include "saltus/fesd_integrator/element/facts.hpp"
+#include "saltus/fesd_integrator/solution.hpp"
 
 namespace saltus::pipeline {
 
@@ -32,5 +35,12 @@ struct OptimizedPiece {
                                                            const discretization::StageKernel& kernel,
                                                            const discretization::PointFunctions& functions,
                                                            const fesd_integrator::Facts& facts);
+
+/// Returns what is between the ends of pieces; the functions are for this only from now on.
+[[nodiscard]] std::shared_ptr<fesd_integrator::Solution> solution_of(const std::vector<OptimizedPiece>& pieces,
+                                                                     const discretization::ButcherTableau& tableau,
+                                                                     discretization::StageKernel kernel,
+                                                                     discretization::PointFunctions functions,
+                                                                     const fesd_integrator::Facts& facts);
 
 }  // namespace saltus::pipeline

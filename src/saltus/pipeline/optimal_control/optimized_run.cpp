@@ -10,6 +10,7 @@
 #include "saltus/fesd_integrator/record/element_recorder.hpp"
 #include "saltus/fesd_integrator/record/recorder.hpp"
 #include "saltus/model/decisions.hpp"
+#include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
@@ -258,9 +259,9 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   system = model::with_controls(std::move(system), {times.begin(), times.end() - 1}, solution.controls);
   const auto dcs = reformulation::reformulate(system, form);
   if (!dcs) return tl::unexpected(dcs.error());
-  const auto kernel = discretization::StageKernel::compile(*dcs, solution.parameters);
+  auto kernel = discretization::StageKernel::compile(*dcs, solution.parameters);
   if (!kernel) return tl::unexpected(kernel.error());
-  const auto functions = discretization::PointFunctions::compile(*dcs, solution.parameters);
+  auto functions = discretization::PointFunctions::compile(*dcs, solution.parameters);
   if (!functions) return tl::unexpected(functions.error());
   const Facts known = fesd_integrator::facts(system, *dcs);
 
@@ -290,6 +291,13 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   run.events = std::move(shown.event_list());
   run.trajectory = std::move(shown.trajectory());
   keep_those_of_the_user(ocp, run);
+  if (clock) return run;
+  auto between = solution_of(pieces, tableau, std::move(*kernel), std::move(*functions), known);
+  run.continuous = continuous(run.trajectory, std::move(between),
+                              [controls = at(ocp.user_controls), outputs = at(ocp.user_outputs)](auto& rows) {
+                                rows.u.narrow(controls);
+                                rows.outputs.narrow(outputs);
+                              });
   return run;
 }
 

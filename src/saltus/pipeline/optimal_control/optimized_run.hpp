@@ -1,6 +1,7 @@
 // The trajectory of an optimised point in the columns of a result.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,8 @@ struct OptimizedRun {
   result::Elements elements;
   /// The same for the truth check: nodes, controls, ranges, events in the time of the right-hand side.
   OptimizedPath path;
-  std::vector<std::string> switching_functions;  ///< of a frozen system: those that the result shows
+  std::shared_ptr<result::Continuous> continuous;  ///< null where time is frozen
+  std::vector<std::string> switching_functions;    ///< of a frozen system: those that the result shows
 };
 
 /// Reads the sides of the pairs of an element off its sums over the stages: the smaller one is zero. Where time is

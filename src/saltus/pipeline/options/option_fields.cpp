@@ -21,6 +21,7 @@ constexpr auto method_of = [](auto& o) -> auto& { return o.method; };
 constexpr auto rtol_of = [](auto& o) -> auto& { return o.rtol; };
 constexpr auto atol_of = [](auto& o) -> auto& { return o.atol; };
 constexpr auto event_rows_of = [](auto& o) -> auto& { return o.event_rows; };
+constexpr auto continuous_of = [](auto& o) -> auto& { return o.continuous; };
 constexpr auto native_of = [](auto& o) -> auto& { return o.native; };
 constexpr auto max_steps_of = [](auto& o) -> auto& { return o.max_steps; };
 constexpr auto members_of = [](auto& o) -> auto& { return o.event.members; };
@@ -137,6 +138,11 @@ void put(std::vector<std::pair<std::string, Value>>& entries, std::string_view n
   }
 }
 
+/// No file has what it asks for.
+void record_continuous(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (options.continuous) record.emplace_back(key, true);
+}
+
 void set_initial_mode(SimulateOptions& options, std::string_view name, const OptionValue& value) {
   put(options.initial_mode, name, static_cast<int>(number_in(value)));
 }
@@ -217,6 +223,11 @@ constexpr std::array fields{
                 "Rows have the modes and selections of these switching functions only. Default: all.",
                 set_kept<&KeptNames::surfaces>,
                 record_kept<&KeptNames::surfaces>},
+    OptionField{"continuous",
+                {.truth = true},
+                "Polynomials of all steps are kept, for x(t) in programs. Default: false.",
+                set_truth<continuous_of, SimulateOptions>,
+                record_continuous},
     choice_field<native_of, natives>(
         "native", "Model functions as compiled code, bit-identical; auto: where it pays and there is a compiler."),
     number_field<max_steps_of>(

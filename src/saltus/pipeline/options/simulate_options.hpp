@@ -87,7 +87,8 @@ struct SimulateOptions {
   double atol = 1e-10;
   OutputGrid output = Automatic{};
   KeptNames kept{};
-  bool event_rows = true;  ///< rows before and behind every event; without them no two rows have the same time
+  bool event_rows = true;   ///< rows before and behind every event; without them no two rows have the same time
+  bool continuous = false;  ///< asks for Result::continuous
   Native native = Native::automatic;
   long max_steps = 1000000;
   long max_events = 100000;
