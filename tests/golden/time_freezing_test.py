@@ -115,6 +115,17 @@ class FrozenTest(tool.ToolTest):
 
 
 class TimeFreezing(FrozenTest):
+    def test_events_of_runs_that_fail_do_not_depend_on_the_rows(self):
+        for model in ("falling-rod", "painleve-rod"):
+            found = set()
+            for rows in ("auto", "steps", "{ points = 2 }", "{ every = 0.01 }"):
+                self.run_tool("simulate", model, "--method", "fesd", "--set", f"simulate.output={rows}", "--quiet",
+                              "--out", "r.events.csv", "--out", "r.json", code=3)
+                final = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["final"]
+                found.add((json.dumps(final), (self.folder / "r.events.csv").read_text(encoding="utf-8")))
+            with self.subTest(model=model):
+                self.assertEqual(len(found), 1)
+
     def test_ball_lands_slides_and_stops(self):
         event, frozen = self.assert_agree(BALL, 1e-8)
         self.assertAlmostEqual(frozen["events"][0]["impulse"][0][0], math.sqrt(20), delta=1e-9)
