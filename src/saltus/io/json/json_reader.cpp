@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string_view>
 #include <system_error>
 
@@ -273,7 +274,9 @@ Expected<result::Result> read_result(const std::filesystem::path& file) {
         {file.string(), 0, 0},
         {}});
   }
-  const auto text = read_file(file);
+  // Devices have no end; what a run has written may be as large as it is.
+  const bool has_end = std::filesystem::is_regular_file(file, ignored);
+  const auto text = has_end ? read_file(file, std::numeric_limits<std::size_t>::max()) : read_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_result(*text, file.string());
 }
