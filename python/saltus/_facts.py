@@ -113,7 +113,11 @@ class Facts(Columns):
 
     @property
     def date(self) -> str:
-        """When it was computed, UTC: "2026-01-31T12:00:00Z"; "" if nobody noted it."""
+        """When it was computed, UTC: "2026-01-31T12:00:00Z"; "" if nobody noted it.
+
+        >>> saltus.catalogue("stick-slip").simulate().date.endswith("Z")
+        True
+        """
         found: str = self._facts.get("date", "")
         return found
 
