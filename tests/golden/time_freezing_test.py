@@ -138,6 +138,7 @@ class TimeFreezing(FrozenTest):
                 found.add((json.dumps(final), (self.folder / "r.events.csv").read_text(encoding="utf-8")))
             with self.subTest(model=model):
                 self.assertEqual(len(found), 1)
+                self.run_tool("report", "r.json", code=0)
 
     def test_ball_lands_slides_and_stops(self):
         event, frozen = self.assert_agree(BALL, 1e-8)
