@@ -17,7 +17,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-LEFT_OUT = {"saltus", "command_line", "wall_seconds", "text", "file", "host", "version",
+LEFT_OUT = {"saltus", "record_sha256", "command_line", "wall_seconds", "date", "text", "file", "host", "version",
             "equations", "captions"}  # of the model, not of its solution
 INTEGRATORS = ("dopri5", "dop853", "radau5", "taylor")
 EVENT = [["--method", "event", "--integrator", name, "--set", "simulate.max_steps=20000"] for name in INTEGRATORS]

@@ -112,6 +112,16 @@ class Facts(Columns):
         return np.array(self._run.contact_modes, dtype=str).reshape(-1, max(1, len(self.contacts)))[:, : len(self.contacts)]
 
     @property
+    def date(self) -> str:
+        """When it was computed, UTC: "2026-01-31T12:00:00Z"; "" if nobody noted it.
+
+        >>> saltus.catalogue("stick-slip").simulate().date.endswith("Z")
+        True
+        """
+        found: str = self._facts.get("date", "")
+        return found
+
+    @property
     def penetration(self) -> float | None:
         """With contacts: the largest depth of all rows, 0 without any.
 

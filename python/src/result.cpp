@@ -151,6 +151,7 @@ std::string facts(const Run& run) {
   about.model = of.model;
   about.command = of.command;
   about.command_line = of.command_line;
+  about.date = of.date;
   about.method = of.method;
   about.status = of.status;
   about.statistics = of.statistics;

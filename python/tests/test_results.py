@@ -21,6 +21,7 @@ def without_clock(text):
     stored = json.loads(text)
     stored["statistics"].pop("wall_seconds")
     stored.pop("command_line", None)
+    stored.pop("date")
     return stored
 
 
@@ -215,7 +216,7 @@ def test_a_stored_result_is_a_model_that_runs_again(slip, tmp_path):
 
 #: Of these it is to_dict() that has them: of the file, of pictures, of finite elements.
 IN_THE_FILE = set(
-    "format saltus model command command_line status trajectory surfaces vector_field drawing elements kept_columns region_groups".split()
+    "format saltus record_sha256 model command command_line status trajectory surfaces vector_field drawing elements kept_columns region_groups".split()
 )
 RENAMED = {"outputs": "output_names"}
 

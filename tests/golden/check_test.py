@@ -228,6 +228,7 @@ class Overview(tool.ToolTest):
     def test_ranks_are_there_for_the_asking(self):
         plain, _ = self.run_tool("check", "two-belts", code=0)
         self.assertNotIn("rank", plain)
+        self.assertNotIn("complementarity", plain)
         more, _ = self.run_tool("check", "two-belts", "--well-posedness", code=0)
         self.assertTrue(more.startswith(plain))
         self.assertIn("rank 2 of 2", more)

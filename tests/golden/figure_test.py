@@ -1,8 +1,10 @@
 """Drawings without a browser: saltus report --figure, --phase, --open."""
 
 import json
+import math
 import os
 import pathlib
+import re
 import stat
 import time
 import xml.etree.ElementTree as tree
@@ -138,12 +140,45 @@ class Figure(tool.ToolTest):
         out, _ = self.run_tool("simulate", "u.toml", code=0)
         self.assertRegex(out, r"(?m)^where +h: height  v: velocity$")
 
+    def test_results_are_drawn_over_each_other(self):
+        self.run_tool("simulate", "stick-slip", "--until", "25", "--set", "belt=0.3", "--out", "faster.json", "--quiet",
+                      code=0)
+        for words in ([], ["--phase", "q,v"]):
+            self.run_tool("report", "r.json", "faster.json", "--figure", "a.svg", *words, code=0)
+            self.assertIn("faster.json", self.words("a.svg"))
+            lines = [line for line in self.marks("a.svg", "path", "stroke", "#e8590c") if line.get("clip-path") is None]
+            self.assertGreater(len(lines), 1)  # of the curves, and of the legend
+        self.run_tool("report", "r.json", "faster.json", "--figure", "a.svg", "--columns", "q", code=0)
+        self.assertIn("25", self.words("a.svg"))  # the time of both
+
+    def turns(self, name, color):
+        """The angles in degrees by which a curve turns at its points, those at events (two points in one place) aside."""
+        angles = []
+        for line in self.marks(name, "path", "stroke", color):
+            numbers = [float(number) for number in re.findall(r"-?[0-9.]+(?:e-?[0-9]+)?", line.get("d"))]
+            points = list(zip(numbers[::2], numbers[1::2]))
+            moves = [(c - a, d - b) for (a, b), (c, d) in zip(points, points[1:])]
+            angles += [abs(math.degrees(math.atan2(a * d - b * c, a * c + b * d)))
+                       for (a, b), (c, d) in zip(moves, moves[1:]) if min(math.hypot(a, b), math.hypot(c, d)) > 2.0]
+        return angles
+
+    def test_curves_in_a_plane_have_no_corners_of_their_own(self):
+        ring = "[model]\nname = \"ring\"\n[states]\nx = 1\ny = 0\n[dynamics]\nx = \"y\"\ny = \"-x\"\n[simulate]\nuntil = 6\n"
+        relay = ring.replace('"-x"', '"-sign(x) - x"')
+        for text in (ring, relay):
+            self.run_tool("simulate", self.write("m.toml", text), "--out", "m.json", "--quiet", code=0)
+            self.run_tool("report", "m.json", "--figure", "a.svg", "--phase", "x,y", code=0)
+            turns = self.turns("a.svg", "#1f66b0")
+            self.assertGreater(len(turns), 60)
+            self.assertLess(max(turns), 4.0)
+
     def test_what_is_wrong_is_refused_before_anything_is_written(self):
+        self.run_tool("simulate", "crossing", "--out", "other.json", "--quiet", code=0)
         for arguments, part in ((["--figure", "a.gif"], ".svg, .pdf or .png"),
                                 (["--figure", "a.svg", "--phase", "q,w"], "no column 'w'"),
                                 (["--figure", "a.svg", "--phase", "q"], "two columns"),
                                 (["--figure", "none/a.svg"], "none"),
-                                (["r.json", "--figure", "a.svg"], "draws one result"),
+                                (["other.json", "--figure", "a.svg"], "is a result of the model 'crossing'"),
                                 (["--figure", "a.svg", "--columns", "q,w"], "no column 'w'"),
                                 (["--figure", "a.svg", "--columns", "t"], "no column 't'"),
                                 (["--figure", "a.svg", "--columns", "q", "--phase", "q,v"], "one of them"),

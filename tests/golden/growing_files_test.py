@@ -43,12 +43,28 @@ max_steps = 1000000000
 max_events = 100000000
 """
 
+# Nine rows to an event.
+PARABOLAS = """
+[model]
+name = "parabolas"
+[states]
+x = 1
+v = 0
+[dynamics]
+x = "v"
+v = "-sign(x)"
+[simulate]
+until = 1.6e5
+max_events = 100000
+"""
+
 
 def numbers(path):
     """A result without what depends on the call and the clock."""
     result = json.loads(path.read_text(encoding="utf-8"))
     result["statistics"].pop("wall_seconds")
     result.pop("command_line")
+    result.pop("date")
     return result
 
 
@@ -124,6 +140,23 @@ class GrowingFiles(tool.ToolTest):
             peaks.append(usage.ru_maxrss / 1024)
         # The times that are asked for are there: 8 bytes for each row; and a block of the archive.
         self.assertLess(peaks[1], peaks[0] + 40, peaks)
+
+    def test_rows_between_very_many_events_are_thinned(self):
+        self.write("m.toml", PARABOLAS)
+        table, notes = self.run_tool("simulate", "m.toml", "--out", "r.json", "--out", "r.events.csv", code=0)
+        # The file is announced when it gets large, before it is written.
+        self.assertRegex(notes, r"note: r.json grows beyond 50 MB; .*npz.*\nnote: r.json has \d+ MB\n")
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        rows, thinned_from = result["trajectory"]["t"], result["statistics"]["thinned_from"]
+        times = [event["t"] for event in result["events"]]
+        self.assertLess(len(rows), 2 * 250_000 + 2 * len(times))
+        self.assertIn("rows        those between events are thinned from t = ", table)
+        at_events = {*times, rows[-1]}
+        self.assertGreaterEqual(min(b - a for a, b in zip(rows, rows[1:]) if a > thinned_from and b not in at_events),
+                                rows[-1] / 250_000)
+        self.assertEqual(sum(a == b for a, b in zip(rows, rows[1:])), len(times))
+        self.run_tool("simulate", "m.toml", "--quiet", "--set", "simulate.output=steps", "--out", "s.events.csv", code=0)
+        self.assertEqual((self.folder / "r.events.csv").read_bytes(), (self.folder / "s.events.csv").read_bytes())
 
     def test_rows_that_cannot_be_put_aside_say_why(self):
         self.write("m.toml", LONG.replace("UNTIL", "3000"))

@@ -94,7 +94,7 @@ class Multipliers(tool.ToolTest):
 
     def sizes(self, text):
         self.write("m.toml", text)
-        out, _ = self.run_tool("check", "m.toml", code=0)
+        out, _ = self.run_tool("check", "m.toml", "--well-posedness", code=0)
         rows = [line for line in out.splitlines() if line.startswith(("  step", "  stewart"))]
         # n_theta, n_beta, n_alg, n_comp, n_eq
         return {row[:30].strip(): [int(n) for n in row[30:].split()[1:]] for row in rows if row[30:].split()}

@@ -2,6 +2,7 @@
 
 import ast
 import csv
+import datetime
 import hashlib
 import json
 import re
@@ -10,7 +11,7 @@ import zipfile
 
 import tool
 
-KEYS = ["format", "saltus", "model", "command", "command_line", "method", "status", "states", "controls", "switching_functions",
+KEYS = ["format", "saltus", "record_sha256", "model", "command", "command_line", "date", "method", "status", "states", "controls", "switching_functions",
         "outputs", "final", "events", "trajectory", "surfaces", "vector_field", "statistics", "options"]
 OF_ONE_STATE = [key for key in KEYS if key != "vector_field"]
 EVENT_KEYS = ["t", "kind", "name", "surfaces", "mode_before", "mode_after", "alpha_before", "alpha_after", "x",
@@ -105,8 +106,47 @@ class Json(tool.ToolTest):
     def test_runs_write_equal_results_but_for_the_clock(self):
         self.run_tool("simulate", "stick-slip", "--out", "s.json", "--quiet", code=0)
         def timeless(name):
-            return re.sub(r'"wall_seconds": [^\n]*', "", (self.folder / name).read_text(encoding="utf-8"))
+            return re.sub(r'"(wall_seconds|date)": [^\n]*', "", (self.folder / name).read_text(encoding="utf-8"))
         self.assertEqual(timeless("r.json"), timeless("s.json"))
+
+    def test_the_date_of_a_run(self):
+        begin = datetime.datetime.now(datetime.timezone.utc).replace(microsecond=0)
+        self.run_tool("simulate", "stick-slip", "--out", "s.json", "--quiet", code=0)
+        stored = json.loads((self.folder / "s.json").read_text(encoding="utf-8"))
+        date = datetime.datetime.strptime(stored["date"], "%Y-%m-%dT%H:%M:%S%z")
+        self.assertTrue(begin <= date <= datetime.datetime.now(datetime.timezone.utc))
+        self.run_tool("simulate", "stick-slip", "--out", "old.json", "--quiet", code=0,
+                      environment={"SOURCE_DATE_EPOCH": "1700000000"})
+        self.assertIn('"date": "2023-11-14T22:13:20Z"', (self.folder / "old.json").read_text(encoding="utf-8"))
+        self.assertIn("the same", self.run_tool("diff", "s.json", "old.json", code=0)[0])
+        self.run_tool("report", "old.json", code=0)
+        self.assertIn("2023-11-14T22:13:20Z", (self.folder / "old.html").read_text(encoding="utf-8"))
+
+    def test_what_was_edited_by_hand_is_refused(self):
+        def edit(*path, value):
+            result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+            *parents, last = path
+            place = result
+            for key in parents:
+                place = place[key]
+            self.assertNotEqual(place[last], value)
+            place[last] = value
+            self.write("edited.json", json.dumps(result))
+        for path, value in ((("model", "initial_state", "q"), 0.25), (("model", "parameters", "belt"), 0.25),
+                            (("model", "set"), ["belt=0.3"]), (("final", "x"), [1.0, 2.0]),
+                            (("options", "simulate.rtol"), 1e-3), (("status", "time_reached"), 3.0)):
+            edit(*path, value=value)
+            for command in (["simulate", "edited.json"], ["diff", "r.json", "edited.json"], ["report", "edited.json"]):
+                with self.subTest(path=path, command=command[0]):
+                    self.assertIn("this result was edited", self.run_tool(*command, code=2)[1])
+
+    def test_another_layout_of_the_same_numbers_is_no_edit(self):
+        self.write("sorted.json", json.dumps(self.result, sort_keys=True, indent=7))
+        self.assertIn("the same", self.run_tool("diff", "r.json", "sorted.json", code=0)[0])
+        del self.result["record_sha256"]  # as of earlier versions
+        self.result["model"]["initial_state"]["q"] = 0.25
+        self.write("earlier.json", json.dumps(self.result))
+        self.run_tool("diff", "r.json", "earlier.json", code=0)
 
 
 def npy(data):

@@ -115,6 +115,31 @@ class FrozenTest(tool.ToolTest):
 
 
 class TimeFreezing(FrozenTest):
+    def test_events_do_not_depend_on_rows_at_their_times(self):
+        # The ball meets its box at t = 0.5, but for a rounding.
+        found = []
+        for rows in ("auto", "{ every = 0.01 }"):
+            self.run_tool("simulate", "ball-in-box", "--method", "fesd", "--set", "simulate.max_steps=60", "--set",
+                          f"simulate.output={rows}", "--quiet", "--out", "r.json", code=3)
+            result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+            times = [event["t"] for event in result["events"]]
+            found.append(times)
+            self.assertEqual([result["trajectory"]["t"].count(t) for t in times], [2] * len(times))
+        self.assertAlmostEqual(found[0][0], 0.5, delta=1e-9)
+        self.assertEqual(*found)
+
+    def test_events_of_runs_that_fail_do_not_depend_on_the_rows(self):
+        for model in ("falling-rod", "painleve-rod"):
+            found = set()
+            for rows in ("auto", "steps", "{ points = 2 }", "{ every = 0.01 }"):
+                self.run_tool("simulate", model, "--method", "fesd", "--set", f"simulate.output={rows}", "--quiet",
+                              "--out", "r.events.csv", "--out", "r.json", code=3)
+                final = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["final"]
+                found.add((json.dumps(final), (self.folder / "r.events.csv").read_text(encoding="utf-8")))
+            with self.subTest(model=model):
+                self.assertEqual(len(found), 1)
+                self.run_tool("report", "r.json", code=0)
+
     def test_ball_lands_slides_and_stops(self):
         event, frozen = self.assert_agree(BALL, 1e-8)
         self.assertAlmostEqual(frozen["events"][0]["impulse"][0][0], math.sqrt(20), delta=1e-9)

@@ -674,17 +674,21 @@ test("intervals of modes below a pixel keep their parts of the time", () => {
   assert.deepEqual(cells.at(-1), {from: 1, to: 10, share: {minus: 0, sliding: 1, plus: 0}, count: 1});
 });
 
-test("differences to another result are taken at the times of the first, and not where the other has ended", () => {
+test("differences to another result are taken at the times of both, on both sides of jumps, where both are", () => {
   const first = {t: [0, 1, 2, 2, 3], x: [[0, 1, 2, 5, 6]]};
   const other = {t: [0, 2, 2.5], x: [[1, 3, 3]]};
   const {x, y, largest} = saltus.differenceOf(first, other, {sort: "state", index: 0});
-  assert.deepEqual(x, first.t);
-  assert.deepEqual(y, [1, 1, null, -2, null]);
-  assert.equal(largest, 2);
+  assert.deepEqual(x, [0, 1, 2, 2, 2.5, 3]);
+  assert.deepEqual(y, [1, 1, 1, -2, -2.5, null]);
+  assert.equal(largest, 2.5);
   assert.equal(saltus.differenceOf(first, {t: [0], x: [[]]}, {sort: "state", index: 0}).largest, null);
-  // No gap where the column of the first goes on.
+  // The other jumps where the first has no row.
+  const jumping = {t: [0, 1.5, 1.5, 3], x: [[0, 1.5, 9, 9]]};
+  const between = saltus.differenceOf({t: [0, 3], x: [[0, 3]]}, jumping, {sort: "state", index: 0});
+  assert.deepEqual([between.x, between.y], [[0, 1.5, 1.5, 3], [0, 0, 7.5, 6]]);
+  // One point where nothing jumps.
   const bent = {t: [0, 1, 1, 2], x: [[0, 1, 1, 0]]};
-  assert.deepEqual(saltus.differenceOf(bent, other, {sort: "state", index: 0}).y, [1, 1, 1, 3]);
+  assert.deepEqual(saltus.differenceOf(bent, other, {sort: "state", index: 0}).y, [1, 1, 3, null]);
 });
 
 test("the rows of a page are a table with both sides of events", () => {

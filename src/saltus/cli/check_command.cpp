@@ -45,10 +45,10 @@ ExitCode refuse_model(const CheckArguments& arguments, const Error& first, const
   return ExitCode::bad_input;
 }
 
-/// What takes a simulation.
-ExitCode print_ranks(const ModelInput& input, const model::System& system) {
+/// What is for specialists, and takes a simulation.
+ExitCode print_well_posedness(const ModelInput& input, const model::System& system) {
   ProgressLine progress(ShowProgress::when_terminal);
-  const auto text = ranks_text(system, input.file.simulate, watched(progress));
+  const auto text = reformulation_text(system) + ranks_text(system, input.file.simulate, watched(progress));
   progress.clear();
   print(text);
   if (!interrupted()) return ExitCode::done;
@@ -76,7 +76,7 @@ ExitCode run_check(const CheckArguments& arguments) {
     return ExitCode::done;
   }
   print(check_text(*input, *system, overview, *optimization));
-  return arguments.well_posedness ? print_ranks(*input, *system) : ExitCode::done;
+  return arguments.well_posedness ? print_well_posedness(*input, *system) : ExitCode::done;
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ Command add_check(CLI::App& app) {
   command->add_flag("--json", arguments->json, "print it for programs, mistakes included");
   command
       ->add_flag("--well-posedness", arguments->well_posedness,
-                 "simulate, and print the ranks of the systems for the multipliers along the solution")
+                 "print the complementarity systems, simulate, and print the ranks of those for the multipliers")
       ->excludes("--json");
   command->footer("Example:\n  saltus check stick-slip");
   return {"check", [arguments] { return run_check(*arguments); }};

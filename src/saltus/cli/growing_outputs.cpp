@@ -1,6 +1,5 @@
 #include "saltus/cli/growing_outputs.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -10,11 +9,14 @@
 
 namespace saltus::cli {
 
-void note_if_large(const std::string& file, std::size_t bytes) {
-  constexpr std::size_t large = 50000000;
-  if (bytes < large) return;
-  print_error(fmt::format("note: {} has {:.0f} MB{}", file, static_cast<double>(bytes) / 1e6,
+void SizeNote::grows(const std::string& file) {
+  said_ = true;
+  print_error(fmt::format("note: {} grows beyond {} MB{}", file, large / 1000000,
                           file.ends_with(".npz") ? "" : "; --out NAME.npz holds the same numbers in a fraction of it"));
+}
+
+void SizeNote::end(const std::string& file, std::size_t bytes) const {
+  if (bytes >= large) print_error(fmt::format("note: {} has {:.0f} MB", file, static_cast<double>(bytes) / 1e6));
 }
 
 bool GrowingOutputs::pass(File& file, std::string_view piece) {

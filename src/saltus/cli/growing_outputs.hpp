@@ -1,6 +1,7 @@
 // Files of --out that are written while a run goes on.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -15,8 +16,18 @@
 
 namespace saltus::cli {
 
-/// Notices a file of 50 MB or more.
-void note_if_large(const std::string& file, std::size_t bytes);
+/// Says once of a file that it becomes large, as soon as it does; at the end, how large.
+class SizeNote {
+ public:
+  /// Returns whether it is time to say so.
+  [[nodiscard]] bool is_due(std::size_t bytes) const { return !said_ && bytes >= large; }
+  void grows(const std::string& file);
+  void end(const std::string& file, std::size_t bytes) const;
+
+ private:
+  static constexpr std::size_t large = 50000000;
+  bool said_ = false;
+};
 
 /// Gets the parts of a run (pipeline::Observers::on_part). Begins with the first one.
 class GrowingOutputs {
@@ -31,6 +42,13 @@ class GrowingOutputs {
   [[nodiscard]] bool only_counts() const { return names_.empty(); }
   /// Returns false if something could not be written: a run need not go on.
   bool add(const result::Result& part);
+  /// Calls say(note, file) for those that have become large.
+  template <class Say>
+  void for_each_due_note(Say say) {
+    for (auto& file : files_) {
+      if (file->note.is_due(std::max(file->bytes, file->parts->bytes_aside()))) say(file->note, file->name);
+    }
+  }
   /// Returns the first and the last events.
   [[nodiscard]] result::Events ends() const;
   /// Writes the rest and puts the files in their places; returns the first failure.
@@ -39,7 +57,7 @@ class GrowingOutputs {
                                       const std::function<bool(const std::string& name, std::size_t bytes)>& watch);
 
   void note_large_files() const {
-    for (const auto& file : files_) note_if_large(file->name, file->bytes);
+    for (const auto& file : files_) file->note.end(file->name, file->bytes);
   }
 
  private:
@@ -50,6 +68,7 @@ class GrowingOutputs {
     std::unique_ptr<io::ResultParts> parts;
     bool good = true;
     std::size_t bytes = 0;
+    SizeNote note;
   };
   void begin();
   bool pass(File& file, std::string_view piece);

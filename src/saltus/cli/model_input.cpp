@@ -1,6 +1,10 @@
 #include "saltus/cli/model_input.hpp"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <string_view>
 #include <utility>
@@ -159,9 +163,25 @@ std::vector<std::string> options_without_effect(const io::ModelFile& file) {
 
 namespace {
 
-void complete_record_of(const ModelInput& input, const std::vector<result::StatedEquation>& equations,
-                        result::Result& result) {
+/// Now, or when the sources of reproducible files are from (reproducible-builds.org).
+std::string date() {
+  std::time_t now = std::time(nullptr);
+  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
+    const std::string_view text(epoch);
+    long long given = 0;
+    const auto read = std::from_chars(text.data(), text.data() + text.size(), given);
+    if (read.ec == std::errc() && read.ptr == text.data() + text.size()) now = static_cast<std::time_t>(given);
+  }
+  std::tm utc{};
+  if (gmtime_r(&now, &utc) == nullptr) return {};
+  std::array<char, 64> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc)};
+}
+
+void complete_record_of(const ModelInput& input, const std::string& date,
+                        const std::vector<result::StatedEquation>& equations, result::Result& result) {
   result.command_line = input.call;
+  result.date = date;
   result.model.sha256 = input.file.sha256;
   result.model.file = input.file.description.file;
   result.model.text = input.file.text;
@@ -172,14 +192,14 @@ void complete_record_of(const ModelInput& input, const std::vector<result::State
   for (const auto& value : input.file.description.inputs) {
     result.options.emplace_back(fmt::format("simulate.inputs.{}", value.name), expression::to_text(*value.expression));
   }
-  for (auto& branch : result.branches) complete_record_of(input, equations, branch);
+  for (auto& branch : result.branches) complete_record_of(input, date, equations, branch);
 }
 
 }  // namespace
 
 void complete_record(const ModelInput& input, result::Result& result) {
   constexpr std::size_t equations_shown = 200;
-  complete_record_of(input, io::stated_equations(input.file.description, equations_shown), result);
+  complete_record_of(input, date(), io::stated_equations(input.file.description, equations_shown), result);
 }
 
 std::string command_line(const std::vector<std::string>& arguments) {

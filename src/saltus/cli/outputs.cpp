@@ -87,12 +87,16 @@ class WatchedWriting {
   bool pass(std::string_view piece, io::Sink sink) {
     bytes_ += piece.size();
     if (interrupted()) return false;
+    if (show_ != ShowProgress::never && note_.is_due(bytes_)) {
+      line_.clear();
+      note_.grows(file_);
+    }
     line_.show([&] { return fmt::format("writing {}   {:.0f} MB", file_, static_cast<double>(bytes_) / 1e6); });
     return sink(piece);
   }
   void end() {
     line_.clear();
-    if (show_ != ShowProgress::never) note_if_large(file_, bytes_);
+    if (show_ != ShowProgress::never) note_.end(file_, bytes_);
   }
 
  private:
@@ -100,6 +104,7 @@ class WatchedWriting {
   ShowProgress show_;
   ProgressLine line_;
   std::size_t bytes_ = 0;
+  SizeNote note_;
 };
 
 Expected<void> write_one(const std::string& file, const std::string& format, const result::Result& result,

@@ -24,7 +24,8 @@ struct ReportArguments {
 };
 
 /// All drawings, or the first mistake; nothing is written before all is known to be right.
-Expected<void> write_figures(const ReportArguments& arguments, const result::Result& result) {
+Expected<void> write_figures(const ReportArguments& arguments, const result::Result& result,
+                             const std::vector<report::Overlay>& overlays) {
   std::optional<report::PhaseAxes> phase;
   if (!arguments.phase.empty()) {
     auto axes = report::phase_axes(result, arguments.phase);
@@ -41,7 +42,7 @@ Expected<void> write_figures(const ReportArguments& arguments, const result::Res
     if (auto possible = check_figure(file); !possible) return possible;
   }
   if (arguments.figures.empty()) return {};
-  const auto svg = report::to_svg(result, phase, columns);
+  const auto svg = report::to_svg(result, phase, columns, overlays);
   if (!svg) return tl::unexpected(svg.error());
   for (const auto& file : arguments.figures) {
     if (auto written = write_figure(file, *svg); !written) return written;
@@ -63,9 +64,8 @@ Expected<std::vector<report::Overlay>> read_overlays(const std::vector<std::stri
   return overlays;
 }
 
-Expected<void> write_page(const std::string& page, const ReportArguments& arguments, const result::Result& result) {
-  const auto overlays = read_overlays(arguments.results, result);
-  if (!overlays) return tl::unexpected(overlays.error());
+Expected<void> write_page(const std::string& page, const ReportArguments& arguments, const result::Result& result,
+                          const std::vector<report::Overlay>& overlays) {
   const OutputNames names{.report = page, .report_option = "--out"};
   for (const auto& input : arguments.results) {
     // None of the results that are read may be written over.
@@ -73,7 +73,7 @@ Expected<void> write_page(const std::string& page, const ReportArguments& argume
   }
   const auto output = Outputs::make(names, arguments.results.front());
   if (!output) return tl::unexpected(output.error());
-  if (auto written = output->write(result, ShowProgress::when_terminal, *overlays); !written) {
+  if (auto written = output->write(result, ShowProgress::when_terminal, overlays); !written) {
     return tl::unexpected(written.error());
   }
   print(page + "\n");
@@ -97,22 +97,17 @@ ExitCode run_report(const ReportArguments& arguments) {
                    {},
                    {}});
   }
-  if (!arguments.figures.empty() && arguments.results.size() > 1) {
-    return refuse({ErrorCode::invalid_option,
-                   fmt::format("--figure draws one result, and {} are given", arguments.results.size()),
-                   "leave --figure out: the page lays results over each other",
-                   {},
-                   {}});
-  }
   const auto result = io::read_result(arguments.results.front());
   if (!result) return refuse(result.error());
-  if (auto drawn = write_figures(arguments, *result); !drawn) return refuse(drawn.error());
+  const auto overlays = read_overlays(arguments.results, *result);
+  if (!overlays) return refuse(overlays.error());
+  if (auto drawn = write_figures(arguments, *result, *overlays); !drawn) return refuse(drawn.error());
   // With drawings alone no page is made unless it is asked for.
   if (!arguments.figures.empty() && arguments.page.empty() && !arguments.open) return ExitCode::done;
   const auto page = arguments.page.empty()
                         ? std::filesystem::path(arguments.results.front()).replace_extension(".html").string()
                         : arguments.page;
-  if (auto written = write_page(page, arguments, *result); !written) return refuse(written.error());
+  if (auto written = write_page(page, arguments, *result, *overlays); !written) return refuse(written.error());
   if (!arguments.open) return ExitCode::done;
   // The page is there, whoever can show it.
   if (auto opened = open_page(page); !opened) {

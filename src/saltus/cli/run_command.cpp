@@ -43,7 +43,14 @@ Expected<result::Result> compute_all(const RunArguments& arguments, const ModelI
   auto observers = watched(progress);
   bool can_write = true;
   if (growing != nullptr) {
-    observers.on_part = [&](const result::Result& part) { can_write = growing->add(part) && can_write; };
+    observers.on_part = [&](const result::Result& part) {
+      can_write = growing->add(part) && can_write;
+      if (arguments.quiet) return;
+      growing->for_each_due_note([&](SizeNote& note, const std::string& file) {
+        progress.clear();
+        note.grows(file);
+      });
+    };
     observers.on_step = [&can_write, on_step = std::move(observers.on_step)](const pipeline::StepRecord& step) {
       return can_write ? on_step(step) : pipeline::Proceed::stop;
     };

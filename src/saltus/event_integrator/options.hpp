@@ -13,13 +13,16 @@
 
 namespace saltus::event_integrator {
 
+/// So many rows show a trajectory on any screen, and in a part of a hundredth of it.
+inline constexpr std::size_t many_rows = 250000;
+
 /// Says which rows the trajectory has beside the two of every event and the last one.
 struct OutputTimes {
   enum class Rows { at_times, at_steps };
   Rows rows = Rows::at_steps;
   std::vector<double> times;  ///< ascending, inside [from, until]; for at_times
   /// For at_steps: between the steps as many rows as keep straight lines within this part of the range of every state,
-  /// input, output and selection, so far; 0: none.
+  /// input, output and selection, so far; behind many_rows rows none closer than the span / many_rows; 0: none.
   double straight = 0.0;
   std::size_t selections = 0;  ///< so many of the last outputs are selections, cut to [0, 1]
   bool pieces = false;         ///< asks for the polynomials of all steps, Integration::pieces

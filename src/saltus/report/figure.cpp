@@ -1,6 +1,8 @@
 #include "saltus/report/figure.hpp"
 
 #include <algorithm>
+#include <deque>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -25,6 +27,21 @@ Error unknown_column(const std::vector<FigureColumn>& columns, const std::string
           suggest(name, known),
           {},
           {}};
+}
+
+/// The other results, in the pens of the page.
+/// @param redrawn  keeps those that are drawn otherwise than they are stored
+FigureOverlays figure_overlays(const std::vector<Overlay>& overlays, std::deque<result::Result>& redrawn) {
+  constexpr std::string_view dashes[] = {"", "7 4", "2 3", "7 3 2 3"};
+  FigureOverlays others;
+  for (const auto& [label, stored] : overlays) {
+    const std::size_t i = others.size(), colors = paper::overlays.size();
+    auto drawn = as_drawn(stored);
+    const auto& result = drawn ? redrawn.emplace_back(std::move(*drawn)) : stored;
+    const Pen pen{paper::overlays[i % colors], 1.5, dashes[i / colors % std::size(dashes)]};
+    others.push_back({label, result, figure_columns(result), pen});
+  }
+  return others;
 }
 
 }  // namespace
@@ -70,8 +87,10 @@ Expected<PhaseAxes> phase_axes(const result::Result& result, const std::string& 
 }
 
 Expected<std::string> to_svg(const result::Result& result, const std::optional<PhaseAxes>& phase,
-                             const std::vector<std::string>& names) {
-  if (const auto drawn = as_drawn(result)) return to_svg(*drawn, phase, names);
+                             const std::vector<std::string>& names, const std::vector<Overlay>& overlays) {
+  if (const auto drawn = as_drawn(result)) return to_svg(*drawn, phase, names, overlays);
+  std::deque<result::Result> redrawn;
+  const auto others = figure_overlays(overlays, redrawn);
   const auto columns = figure_columns(result);
   if (!phase) {
     std::vector<FigureColumn> chosen;
@@ -79,12 +98,12 @@ Expected<std::string> to_svg(const result::Result& result, const std::optional<P
       if (named(columns, name) == nullptr) return tl::unexpected(unknown_column(columns, "--columns", name));
       chosen.push_back(*named(columns, name));
     }
-    return draw_over_time(result, chosen);
+    return draw_over_time(result, chosen, others);
   }
   for (const auto& name : {phase->first, phase->second}) {
     if (named(columns, name) == nullptr) return tl::unexpected(unknown_column(columns, "--phase", name));
   }
-  return draw_in_a_plane(result, *named(columns, phase->first), *named(columns, phase->second));
+  return draw_in_a_plane(result, *named(columns, phase->first), *named(columns, phase->second), others);
 }
 
 }  // namespace saltus::report

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
+#include "saltus/report/overlay.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {
@@ -25,8 +26,10 @@ using PhaseAxes = std::pair<std::string, std::string>;
 /// Draws one SVG document, 960 by as many pixels as it needs: over time the events, the bands of modes and every column
 /// that moves, as the page draws them, or the columns `names`; with `phase` these two columns against each other, with
 /// the surfaces of their plane, its vector field and the events. Curves are thinned to their extremes per pixel; where
-/// they chatter their envelope and mean are drawn. Cost: O(rows * columns).
+/// they chatter their envelope and mean are drawn. Over them lie the same columns of `overlays`. Cost: O(rows *
+/// columns).
 [[nodiscard]] Expected<std::string> to_svg(const result::Result& result, const std::optional<PhaseAxes>& phase = {},
-                                           const std::vector<std::string>& names = {});
+                                           const std::vector<std::string>& names = {},
+                                           const std::vector<Overlay>& overlays = {});
 
 }  // namespace saltus::report

@@ -382,7 +382,8 @@ json counts_data(const result::Statistics& statistics) {
   return {{"steps", statistics.steps},
           {"rejected", statistics.rejected},
           {"rhs_evaluations", statistics.rhs_evaluations},
-          {"wall_seconds", statistics.wall_seconds}};
+          {"wall_seconds", statistics.wall_seconds},
+          {"thinned_from", or_null(statistics.thinned_from)}};
 }
 
 }  // namespace
@@ -397,6 +398,7 @@ json page_data(const result::Result& result, std::size_t limit, const GoOn& go_o
           {"model", model_data(result.model)},
           {"command", result.command},
           {"command_line", result.command_line},
+          {"date", result.date},
           {"method", result.method},
           {"status", status_data(result.status)},
           {"states", shown(result.states)},

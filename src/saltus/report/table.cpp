@@ -236,6 +236,11 @@ std::string to_table(const result::Result& result, std::size_t shown_events, con
   text += paragraph("statistics", fmt::format("{} steps, {} rejected, {} evaluations of the right-hand side, {:.3g} s",
                                               statistics.steps, statistics.rejected, statistics.rhs_evaluations,
                                               statistics.wall_seconds));
+  if (statistics.thinned_from) {
+    text += paragraph("rows", fmt::format("those between events are thinned from t = {} on, as there are very many; "
+                                          "output = \"steps\" has those of all steps",
+                                          *statistics.thinned_from));
+  }
   return text;
 }
 

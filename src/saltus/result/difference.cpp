@@ -174,6 +174,7 @@ void compare_lines(const Result& rows, const Result& lines, bool swapped, const 
   const auto& t = lines.trajectory.t;
   for (std::size_t i = 0; i < rows.trajectory.t.size(); ++i) {
     const double when = rows.trajectory.t[i];
+    if (when > lines.statistics.thinned_from.value_or(when)) break;  // lines between few rows say nothing
     const auto behind = std::lower_bound(t.begin(), t.end(), when);
     if (behind == t.begin() || behind == t.end() || *behind == when) continue;
     const double near = time.atol + time.rtol * std::abs(when);

@@ -196,6 +196,7 @@ struct Result {
   ModelRecord model;
   std::string command = "simulate";
   std::string command_line;  ///< the call, without what says where its results go; empty if there was none
+  std::string date;          ///< when it was computed: ISO 8601, UTC; empty if nobody noted it
   std::string method = "event";
   Status status;
   std::vector<std::string> states, controls, switching_functions, outputs;

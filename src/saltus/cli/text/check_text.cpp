@@ -15,11 +15,6 @@ namespace {
 
 bool is_large(const model::System& system) { return system.switching.size() > most_reformulated; }
 
-std::string complementarity_text(const model::System& system) {
-  if (!is_large(system)) return reformulation_text(system);
-  return fmt::format("\ncomplementarity systems\n  not made: more than {} switching functions\n", most_reformulated);
-}
-
 /// Which methods can run the model.
 std::string methods_text(const model::System& system) {
   if (is_large(system)) {
@@ -46,8 +41,8 @@ std::string methods_text(const model::System& system) {
 
 std::string check_text(const ModelInput& input, const model::System& system, const io::ModelOverview& overview,
                        const std::optional<pipeline::OcpOverview>& optimization) {
-  return overview_text(overview, input.path) + methods_text(system) + complementarity_text(system) +
-         warnings_text(overview) + (optimization ? optimize_text(*optimization) : "");
+  return overview_text(overview, input.path) + methods_text(system) + warnings_text(overview) +
+         (optimization ? optimize_text(*optimization) : "");
 }
 
 Expected<std::string> check_text(const ModelInput& input) {

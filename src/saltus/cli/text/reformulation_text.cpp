@@ -93,6 +93,9 @@ std::string reason_of(const Error& error) { return fmt::format("{}; {}", error.m
 }  // namespace
 
 std::string reformulation_text(const model::System& system) {
+  if (system.switching.size() > most_reformulated) {
+    return fmt::format("\ncomplementarity systems\n  not made: more than {} switching functions\n", most_reformulated);
+  }
   const std::string text = "\ncomplementarity systems (numbers of one stage, Table 4 of Nurkanović et al. 2024)\n";
   const auto forms = sizes_by_form(system);
   if (forms.empty()) return text + "  none: nothing switches with the state\n";

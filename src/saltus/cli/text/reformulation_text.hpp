@@ -14,7 +14,8 @@ namespace saltus::cli {
 /// Switching functions up to which a check makes the complementarity systems: their cost grows faster than the model.
 inline constexpr std::size_t most_reformulated = 100;
 
-/// Returns the sizes of Table 4 of [nurkanovic2024] for every form, in total and per group, or why there is none.
+/// Returns the sizes of Table 4 of [nurkanovic2024] for every form, in total and per group, or why there is none:
+/// of more than most_reformulated functions none are made.
 [[nodiscard]] std::string reformulation_text(const model::System& system);
 
 /// Returns lists the totals of the same table as plain data.

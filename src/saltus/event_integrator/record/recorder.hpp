@@ -80,8 +80,10 @@ class Recorder {
   }
   /// Returns what has been recorded so far, between two steps; the recording goes on behind it.
   [[nodiscard]] Recording hand_over();
-  [[nodiscard]] bool ends_at(double t) const {
-    return recording_.row_times.empty() ? past_.rows > 0 && past_.last_row == t : recording_.row_times.back() == t;
+  [[nodiscard]] bool ends_at(double t) const { return rows() > 0 && last_row() == t; }
+  /// Returns the time of the last row; there must be one.
+  [[nodiscard]] double last_row() const {
+    return recording_.row_times.empty() ? past_.last_row : recording_.row_times.back();
   }
   /// Returns `unique` of the last event; there must be one.
   [[nodiscard]] std::optional<bool> last_unique() const {

@@ -40,7 +40,16 @@ void OutputRows::write(double t, const std::vector<double>& x) {
 void OutputRows::write_end_of_step() {
   const bool requested = next_ < times().size() && times()[next_] == here_.t;
   if (requested) ++next_;
-  if (at_steps() || requested || here_.t >= options_.until) write_here();
+  if (here_.t >= options_.until || requested || (at_steps() && !is_too_close(here_.t))) write_here();
+}
+
+/// No picture shows rows between events as closely as this, where there are many; files of them grow without end.
+bool OutputRows::is_too_close(double t) {
+  if (!lines_ || recorder_.rows() < many_rows) return false;
+  const double closest = (options_.until - options_.from) / static_cast<double>(many_rows);
+  if (t - recorder_.last_row() >= closest) return false;
+  if (!thinned_from_) thinned_from_ = recorder_.last_row();
+  return true;
 }
 
 void OutputRows::write_before(double end, FunctionRef<void(double t, double* x)> curve) {
@@ -106,13 +115,13 @@ void OutputRows::write_lines(double t_end, const ode::DenseStep& dense) {
   for (std::size_t k = 0; k < tolerance.size(); ++k) tolerance[k] = ranges.tolerance(column(k));
   // Stiff steps may have bends that nobody would see, nor wait for.
   constexpr double invisible = 1e-7;
-  if (t_end - here_.t <= invisible * (options_.until - options_.from)) return;
+  if (t_end - here_.t <= invisible * (options_.until - options_.from) || is_too_close(t_end)) return;
   // Series take steps over whole periods.
   const int parts = dense.is_series() ? 8 : 2;
   const auto curve = [&](double theta, double* columns) { columns_at(theta, dense, columns); };
   for (const double theta : points.points(curve, end, parts, tolerance)) {
     const double t = dense.t + theta * dense.h;
-    if (!(t > here_.t && t < t_end)) continue;
+    if (!(t > here_.t && t < t_end) || is_too_close(t)) continue;
     dense.evaluate((t - dense.t) / dense.h, x_.data());
     write_on_surfaces(t);
   }

@@ -75,6 +75,8 @@ class OutputRows {
   [[nodiscard]] bool may_bend(const ode::Stepper& stepper);
   /// Writes rows before t_end that keep straight lines close to the dense output of the step from the position.
   void write_lines(double t_end, const ode::DenseStep& dense);
+  /// Returns from when on rows were left out because there are very many.
+  [[nodiscard]] std::optional<double> thinned_from() const { return thinned_from_; }
 
  private:
   /// Columns are states, inputs, outputs, selections.
@@ -86,6 +88,7 @@ class OutputRows {
 
   [[nodiscard]] const std::vector<double>& times() const { return options_.output.times; }
   void write_on_surfaces(double t);
+  [[nodiscard]] bool is_too_close(double t);
   void columns_at(double theta, const ode::DenseStep& dense, double* columns);
 
   const evaluation::ModelKernel& kernel_;
@@ -99,6 +102,7 @@ class OutputRows {
   std::vector<double> x_, slope_;  ///< of a row
   std::optional<Lines> lines_;
   std::optional<PieceLog> pieces_;
+  std::optional<double> thinned_from_;
 };
 
 }  // namespace saltus::event_integrator

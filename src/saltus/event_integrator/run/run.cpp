@@ -219,6 +219,7 @@ CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording
                     outcome_.result.status.message.empty() ? "" : "; ", *stiff_at);
   }
   outcome_.result.status.time_reached = here_.t;
+  outcome_.result.statistics.thinned_from = rows_.thinned_from();
   outcome_.result.statistics.rhs_evaluations = kernel_.field_evaluations() - outcome_.evaluations_before;
   choices_.families().close(here_.t);
   outcome_.result.recording = recorder_.take();

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <string_view>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "saltus/io/atomic_file.hpp"
+#include "saltus/io/json/json_facts_internal.hpp"
 #include "saltus/io/json/json_record_members_internal.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/json/json_shapes_internal.hpp"
@@ -98,6 +100,16 @@ void read_option_record(JsonReader& reader, const Json& json, const std::string&
       add(double{});
     }
   }
+}
+
+/// Refuses a record that was edited; results of earlier versions have no fingerprint.
+void check_record(JsonReader& reader, const Json& json, const std::string& path, const result::Result& result) {
+  std::string fingerprint;
+  reader.read_if_there(json, path, "record_sha256", fingerprint);
+  if (reader.error() || fingerprint.empty() || fingerprint == record_sha256(result)) return;
+  reader.fail(path,
+              "this result was edited: its model, status, end state or options are not those that were "
+              "written; saltus simulate RESULT.json --set NAME=VALUE changes a value and runs it again");
 }
 
 void read_format(JsonReader& reader, const Json& json) {
@@ -195,6 +207,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   read_with(reader, json, path, "model", read_model, result.model);
   reader.read_member(json, path, "command", result.command);
   reader.read_if_there(json, path, "command_line", result.command_line);
+  reader.read_if_there(json, path, "date", result.date);
   reader.read_member(json, path, "method", result.method);
   read_part(reader, json, path, "status", result.status);
   reader.read_member(json, path, "states", result.states);
@@ -229,6 +242,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   read_part_if_there(reader, json, path, "families", result.families);
   if (has("left_at")) read_with(reader, json, path, "left_at", read_departure, result.left_at);
   if (!reader.error()) check_shapes(reader, path, result);
+  check_record(reader, json, path, result);
   if (has("branches")) {
     read_branches(reader, json["branches"], path + "/branches", depth + 1, result);
   }
@@ -260,7 +274,9 @@ Expected<result::Result> read_result(const std::filesystem::path& file) {
         {file.string(), 0, 0},
         {}});
   }
-  const auto text = read_file(file);
+  // Devices have no end; what a run has written may be as large as it is.
+  const bool has_end = std::filesystem::is_regular_file(file, ignored);
+  const auto text = has_end ? read_file(file, std::numeric_limits<std::size_t>::max()) : read_file(file);
   if (!text) return tl::unexpected(text.error());
   return parse_result(*text, file.string());
 }

@@ -67,7 +67,8 @@ struct RecordMembers<result::Statistics> {
   using R = result::Statistics;
   static constexpr auto list = std::make_tuple(
       field("steps", &R::steps), field("rejected", &R::rejected), field("rhs_evaluations", &R::rhs_evaluations),
-      field("wall_seconds", &R::wall_seconds), field("error_estimate", &R::error_estimate, Presence::if_any));
+      field("wall_seconds", &R::wall_seconds), field("thinned_from", &R::thinned_from, Presence::if_any),
+      field("error_estimate", &R::error_estimate, Presence::if_any));
 };
 
 template <>

@@ -1,6 +1,7 @@
 // Result <-> JSON (format saltus-result/1), and trajectory and events as CSV and as arrays of NumPy.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -38,6 +39,8 @@ class ResultParts {
   /// Adds a part: rows and events behind those before it.
   /// @return why not everything was taken; where the sink refused, it knows better
   [[nodiscard]] virtual Expected<void> add(const result::Result& part) = 0;
+  /// Returns how many bytes it has put aside, which finish() will write.
+  [[nodiscard]] virtual std::size_t bytes_aside() const { return 0; }
   /// Writes all that is not in parts; returns as add.
   [[nodiscard]] virtual Expected<void> finish(const result::Result& rest) = 0;
 };

@@ -77,8 +77,11 @@ void check_contacts(JsonReader& reader, const std::string& path, const result::R
   for (std::size_t i = 0; i < result.events.size(); ++i) {
     const auto& event = result.events[i];
     const auto here = fmt::format("{}/events/{}", path, i);
-    check_length(reader, here + "/contact_modes_before", event.contact_modes_before, contacts);
-    check_length(reader, here + "/contact_modes_after", event.contact_modes_after, contacts);
+    // Nothing is before what happens at the start.
+    if (event.mode_before || !event.contact_modes_before.empty() || !event.contact_modes_after.empty()) {
+      check_length(reader, here + "/contact_modes_before", event.contact_modes_before, contacts);
+      check_length(reader, here + "/contact_modes_after", event.contact_modes_after, contacts);
+    }
     if (!event.impulse) continue;
     check_length(reader, here + "/impulse", *event.impulse, contacts);
     for (const auto& one : *event.impulse) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "saltus/base/version.hpp"
+#include "saltus/io/json/json_facts_internal.hpp"
 #include "saltus/io/json/json_record_members_internal.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/json/json_stream_internal.hpp"
@@ -14,23 +15,6 @@
 
 namespace saltus::io {
 namespace {
-
-Json model_json(const result::ModelRecord& model) {
-  Json json = Json::object();
-  json["name"] = model.name;
-  json["sha256"] = model.sha256;
-  json["parameters"] = numbers_json(model.parameters);
-  json["initial_state"] = numbers_json(model.initial_state);
-  json["description"] = model.description;
-  for (const auto& [name, caption] : model.captions) json["captions"][name] = record_json(caption);
-  if (!model.equations.empty()) json["equations"] = value_json(model.equations);
-  if (model.text.empty()) return json;
-  json["file"] = model.file;
-  json["text"] = model.text;
-  json["files"] = value_json(model.files);
-  json["set"] = model.settings;
-  return json;
-}
 
 Json departure_json(const result::Departure& departure) {
   Json json = Json::object();
@@ -100,14 +84,6 @@ void append_trajectory(TextStream& stream, const result::Trajectory& trajectory,
   object.end();
 }
 
-Json options_json(const result::OptionRecord& options) {
-  Json json = Json::object();
-  for (const auto& [name, value] : options) {
-    std::visit([&json, &key = name](const auto& content) { json[key] = content; }, value);
-  }
-  return json;
-}
-
 void append_drawing(TextStream& stream, const result::Drawing& drawing, std::size_t indent) {
   ObjectStream object(stream, indent);
   Json shapes = Json::array();
@@ -128,9 +104,11 @@ void append_optimum(ObjectStream& object, const result::Optimization& optimizati
 void append_head(ObjectStream& object, const result::Result& result) {
   object.member("format", "saltus-result/1");
   object.member("saltus", version);
+  object.member("record_sha256", record_sha256(result));
   object.member("model", model_json(result.model));
   object.member("command", result.command);
   if (!result.command_line.empty()) object.member("command_line", result.command_line);
+  if (!result.date.empty()) object.member("date", result.date);
   object.member("method", result.method);
   object.member("status", record_json(result.status));
   object.member("states", result.states);
@@ -208,6 +186,7 @@ class SpooledList {
     return file_.outcome();
   }
   [[nodiscard]] Expected<void> outcome() const { return file_.outcome(); }
+  [[nodiscard]] std::size_t bytes() const { return file_.size(); }
   void append_to(TextStream& stream) {
     static_cast<void>(file_.copy_to([&](std::string_view piece) {
       stream.text() += piece;
@@ -250,6 +229,12 @@ class JsonParts : public ResultParts {
       if (auto flushed = spooled->flush(); !flushed) return flushed;
     }
     return {};
+  }
+
+  [[nodiscard]] std::size_t bytes_aside() const override {
+    std::size_t bytes = 0;
+    for (const auto& [name, spooled] : lists_) bytes += spooled->bytes();
+    return bytes;
   }
 
   Expected<void> finish(const result::Result& rest) override {

@@ -54,21 +54,25 @@ class PhysicalTime {
     for (const auto& x : raw.x) {
       for (const int v : freezing_.velocities) fastest_ = std::max(fastest_, std::abs(x[at(v)]));
     }
-    std::size_t next = 0;
+    last_clock_ = raw.x.back()[clock_];
+    const auto stops = instants(events, raw);
+    auto stop = stops.begin();
+    // Rows whose clock is that of the next instant, or has passed it.
+    const auto is_at_stop = [&](double clock) {
+      return stop != stops.end() && (clock >= stop->t || same_time(clock, stop->t));
+    };
     for (std::size_t r = 0; r < raw.t.size();) {
+      const bool stands = is_at_stop(clock_at(raw.x[r]));
+      double t = stands ? stop->t : clock_at(raw.x[r]);
+      const auto goes_on = [&](double clock) {
+        return stands ? clock <= t || same_time(t, clock) : same_time(t, clock) && !is_at_stop(clock);
+      };
       std::size_t last = r;
-      while (last + 1 < raw.t.size() && same_time(raw.x[r][clock_], raw.x[last + 1][clock_])) ++last;
+      while (last + 1 < raw.t.size() && goes_on(clock_at(raw.x[last + 1]))) ++last;
       // Where an impact begins the run its error may take the clock back.
-      double t = raw.x[r][clock_];
       if (!run_.trajectory.t.empty()) t = std::max(t, run_.trajectory.t.back());
-      std::vector<Event> here;
-      for (; next < events.size() && (events.x(next)[clock_] <= t || same_time(events.x(next)[clock_], t)); ++next) {
-        here.push_back(events[next]);
-      }
-      // Where a run ends in a collision no event is behind it.
-      if (!here.empty()) here.back().x_after = raw.x[last];
       const std::size_t before = run_.events.size();
-      if (!here.empty()) take_events(here, t);
+      if (stands) take_events((stop++)->events, t);
       const bool is_event = run_.events.size() > before;
       if (last > r && (is_event || std::vector<double>(raw.u[r]) != std::vector<double>(raw.u[last])))
         add_row(raw, r, t);
@@ -76,14 +80,7 @@ class PhysicalTime {
       add_row(raw, last, t, impulse.value_or(std::vector<std::vector<double>>()));
       r = last + 1;
     }
-    auto& rows = run_.trajectory;
-    auto& final = run_.final;
-    final = {rows.t.back(), rows.x.back(), rows.mode.back(), rows.alpha.back(), rows.outputs.back()};
-    if (!rows.contact_modes.empty()) final.contact_modes = rows.contact_modes.back();
-    if (!rows.regions.empty()) {
-      final.regions = rows.regions.back();
-      final.theta = rows.theta.back();
-    }
+    take_final();
     std::vector<std::string> names;
     for (const std::size_t c : kept_) names.push_back(system_.columns[c].name);
     return names;
@@ -92,6 +89,44 @@ class PhysicalTime {
  private:
   [[nodiscard]] bool same_time(double a, double b) const {
     return std::abs(a - b) <= std::max(standing_, 8.0 * rounding_unit * std::max(1.0, std::abs(a)));
+  }
+
+  /// Of the last row.
+  void take_final() {
+    auto& rows = run_.trajectory;
+    auto& final = run_.final;
+    final = {rows.t.back(), rows.x.back(), rows.mode.back(), rows.alpha.back(), rows.outputs.back()};
+    if (!rows.contact_modes.empty()) final.contact_modes = rows.contact_modes.back();
+    if (!rows.regions.empty()) {
+      final.regions = rows.regions.back();
+      final.theta = rows.theta.back();
+    }
+  }
+
+  /// An error at the end may take the clock back, too.
+  template <class State>
+  [[nodiscard]] double clock_at(const State& x) const {
+    return std::min<double>(x[clock_], last_clock_);
+  }
+
+  /// Holds the events at one reading of the clock.
+  struct Instant {
+    double t = 0.0;
+    std::vector<Event> events;
+  };
+
+  /// By the clocks of the events alone: rows must make no difference to them.
+  [[nodiscard]] std::vector<Instant> instants(const result::Events& events, const result::Trajectory& raw) const {
+    std::vector<Instant> list;
+    const auto is_here = [&](double clock) { return clock <= list.back().t || same_time(clock, list.back().t); };
+    for (const Event& event : events) {
+      const double clock = clock_at(event.x);
+      if (list.empty() || !is_here(clock)) list.push_back({std::max(clock, clock_at(raw.x.front())), {}});
+      list.back().events.push_back(event);
+    }
+    // Where a run ends in a collision no event is behind it.
+    if (!list.empty() && is_here(last_clock_)) list.back().events.back().x_after = raw.x.back();
+    return list;
   }
 
   /// Of a simulation, not of an optimum.
@@ -304,7 +339,7 @@ class PhysicalTime {
   const model::TimeFreezing& freezing_;
   result::Result& run_;
   std::size_t clock_ = 0;
-  double standing_ = 0.0, fastest_ = 0.0;
+  double standing_ = 0.0, fastest_ = 0.0, last_clock_ = 0.0;
   bool shows_regions_ = true;      ///< they are the user's
   std::vector<std::size_t> kept_;  ///< columns
 };

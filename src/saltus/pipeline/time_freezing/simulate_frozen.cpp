@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -42,11 +43,13 @@ model::System clocked(model::System system, double from, double until) {
 }
 
 /// Rows at times that were asked for are at those times, not at their roundings.
-void put_on_times(const std::vector<double>& times, double until, result::Trajectory& rows) {
+/// @param events  whose rows stay at their times
+void put_on_times(const std::vector<double>& times, double until, const std::set<double>& events,
+                  result::Trajectory& rows) {
   for (double& t : rows.t) {
     const double rounding = 1e-13 * std::max(1.0, std::abs(until));
     const auto next = std::lower_bound(times.begin(), times.end(), t - rounding);
-    if (next != times.end() && *next <= t + rounding) t = *next;
+    if (next != times.end() && *next <= t + rounding && !events.contains(t)) t = *next;
     if (std::abs(t - until) <= rounding) t = until;
   }
 }
@@ -95,7 +98,9 @@ Expected<result::Result> simulate_frozen(const model::System& system, const Simu
   status.time_reached = ended ? until : reached;
   const double standing = standing_part * (until - from) / static_cast<double>(options.fesd.steps);
   run->switching_functions = to_physical_time(made, standing, *run);
-  put_on_times(times, until, run->trajectory);
+  std::set<double> event_times;
+  for (std::size_t i = 0; options.event_rows && i < run->events.size(); ++i) event_times.insert(run->events.t(i));
+  put_on_times(times, until, event_times, run->trajectory);
   if (!options.event_rows) leave_out_event_rows(times, run->trajectory);
   run->final.t = run->trajectory.t.back();
   return run;

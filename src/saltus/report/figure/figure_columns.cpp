@@ -89,6 +89,22 @@ Range time_range(const result::Result& result) {
   return t.front() < t.back() ? Range{t.front(), t.back()} : Range{t.front() - 0.5, t.front() + 0.5};
 }
 
+Range time_range(const result::Result& result, const FigureOverlays& overlays) {
+  Range hull = time_range(result);
+  for (const auto& overlay : overlays) {
+    const Range own = time_range(overlay.result);
+    hull = {std::min(hull.from, own.from), std::max(hull.to, own.to)};
+  }
+  return hull;
+}
+
+const FigureColumn* FigureOverlay::like(const FigureColumn& column) const {
+  const auto found = std::find_if(columns.begin(), columns.end(), [&](const FigureColumn& one) {
+    return one.name == column.name && one.sort == column.sort;
+  });
+  return found == columns.end() ? nullptr : &*found;
+}
+
 std::string heading_of(const result::Result& result) {
   return result.model.name.empty() ? "simulation" : result.model.name;
 }
@@ -166,13 +182,11 @@ std::vector<Chattering> chattering_pixels(const std::vector<double>& t, const st
   return pixels;
 }
 
-void draw_pieces(Svg& svg, const CurvePieces& pieces, std::string_view color, std::string_view jump_color,
-                 double wide) {
+void draw_pieces(Svg& svg, const CurvePieces& pieces, const Pen& pen, std::string_view jump_color, double wide) {
   for (const auto& piece : pieces.lines) {
-    const bool marked = piece.sliding && wide > 0.0;
-    const Pen pen{marked ? paper::sliding : color, marked ? wide : 1.6};
-    if (piece.points.size() == 1) svg.disc(piece.points.front(), pen.width / 2, pen.color, "none");
-    svg.path(piece.points, pen);
+    const Pen own = piece.sliding && wide > 0.0 ? Pen{paper::sliding, wide} : pen;
+    if (piece.points.size() == 1) svg.disc(piece.points.front(), own.width / 2, own.color, "none");
+    svg.path(piece.points, own);
   }
   for (const auto& jump : pieces.jumps) svg.path(jump, {jump_color, 1.0, "2 3"});
 }
@@ -207,11 +221,12 @@ CurvePieces curve_pieces(const result::Trajectory& trajectory, const std::vector
     }
     const bool sliding = slides(trajectory, open ? previous : row);
     if (!open) {
-      pieces.lines.push_back({{here}, sliding});
+      pieces.lines.push_back({{here}, {t[row]}, sliding});
     } else {
       if (!together && pieces.lines.back().sliding != sliding)
-        pieces.lines.push_back({{pieces.lines.back().points.back()}, sliding});
+        pieces.lines.push_back({{pieces.lines.back().points.back()}, {t[previous]}, sliding});
       pieces.lines.back().points.push_back(here);
+      pieces.lines.back().t.push_back(t[row]);
     }
     open = true;
     previous = row;

@@ -22,12 +22,25 @@ struct FigureColumn {
   result::Caption caption{};
 };
 
+/// Holds another result of the model that is drawn over the first one.
+struct FigureOverlay {
+  std::string label;
+  const result::Result& result;
+  std::vector<FigureColumn> columns;
+  Pen pen;
+
+  /// Returns what it has of a column of the first one; null if it has none of that name.
+  [[nodiscard]] const FigureColumn* like(const FigureColumn& column) const;
+};
+using FigureOverlays = std::vector<FigureOverlay>;
+
 /// Measures and colours that all drawings share: those of the page on paper.
 namespace paper {
 inline constexpr double width = 960.0, left = 70.0;
 inline constexpr std::string_view sliding = "#ef7d00", minus = "#1f4e8c", plus = "#9cc9ee", jump = "#0b7285",
                                   alarm = "#c2185b", mark = "#8d97a5", axis = "#b9c0ca", text = "#1c2430",
                                   quiet = "#66707f";
+inline constexpr std::array<std::string_view, 4> overlays{"#e8590c", "#0b7285", "#c2185b", "#2b8a3e"};
 inline constexpr std::array<std::string_view, 6> curves{"#1f66b0", "#11806a", "#8a4fb0",
                                                         "#6b7400", "#5a6b7d", "#b03a5b"};
 }  // namespace paper
@@ -66,6 +79,7 @@ struct Chattering {
 struct CurvePieces {
   struct Piece {
     std::vector<Point> points;
+    std::vector<double> t;  ///< of the points; two at one time may be a corner
     bool sliding = false;
   };
   std::vector<Piece> lines;
@@ -77,9 +91,15 @@ struct CurvePieces {
 
 /// Draws lines, and dotted the jumps in a colour of their own.
 /// @param wide  of lines that slide, in their colour; 0 draws them as all others
-void draw_pieces(Svg& svg, const CurvePieces& pieces, std::string_view color, std::string_view jump_color, double wide);
+void draw_pieces(Svg& svg, const CurvePieces& pieces, const Pen& pen, std::string_view jump_color, double wide);
+
+/// Puts points between those of lines, on cubics in time whose rates are those of parabolas over three points: rows
+/// true to each column leave corners in a plane. Lines stay straight where that would be more than a line's width away.
+void round_corners(CurvePieces& pieces);
 
 [[nodiscard]] Range time_range(const result::Result& result);
+/// Returns the range of them all.
+[[nodiscard]] Range time_range(const result::Result& result, const FigureOverlays& overlays);
 [[nodiscard]] std::string heading_of(const result::Result& result);
 
 /// Panels, and bands, of a figure at most: a sheet of paper is no longer. Letters of a line beside them.
@@ -94,8 +114,10 @@ double draw_bands(Svg& svg, const result::Result& result, const std::vector<std:
                   double top);
 
 /// Draws these columns over time, one below the other; of none those that move, as the page draws them.
-[[nodiscard]] std::string draw_over_time(const result::Result& result, const std::vector<FigureColumn>& columns);
+[[nodiscard]] std::string draw_over_time(const result::Result& result, const std::vector<FigureColumn>& columns,
+                                         const FigureOverlays& overlays);
 /// Draws one column over another one, with the surfaces of the plane, its vector field and the events.
-[[nodiscard]] std::string draw_in_a_plane(const result::Result& result, const FigureColumn& x, const FigureColumn& y);
+[[nodiscard]] std::string draw_in_a_plane(const result::Result& result, const FigureColumn& x, const FigureColumn& y,
+                                          const FigureOverlays& overlays);
 
 }  // namespace saltus::report

@@ -152,9 +152,11 @@ void draw_events(Svg& svg, const result::Result& result, const Plot& time, doubl
   }
 }
 
-/// Of the bands and the lines of events.
-std::vector<LegendEntry> legend_over_time(const result::Result& result, bool with_bands) {
+/// Of other results, the bands and the lines of events.
+std::vector<LegendEntry> legend_over_time(const result::Result& result, const FigureOverlays& overlays,
+                                          bool with_bands) {
   std::vector<LegendEntry> entries;
+  for (const auto& overlay : overlays) entries.push_back({overlay.label, overlay.pen});
   if (with_bands) {
     entries.push_back({"psi < 0", {paper::minus}, LegendEntry::Mark::box});
     entries.push_back({"sliding", {paper::sliding}, LegendEntry::Mark::box});
@@ -210,16 +212,15 @@ void draw_stems(Svg& svg, const std::vector<double>& t, const std::vector<double
   svg.path(line, {color, 1.6});
 }
 
-void draw_curve(Svg& svg, const result::Result& result, const FigureColumn& column, const Plot& plot,
-                std::string_view color) {
-  if (is_impulse(result, column)) return draw_stems(svg, result.trajectory.t, column.values, plot, color);
+void draw_curve(Svg& svg, const result::Result& result, const FigureColumn& column, const Plot& plot, const Pen& pen) {
+  if (is_impulse(result, column)) return draw_stems(svg, result.trajectory.t, column.values, plot, pen.color);
   const double pixel = (plot.x.to - plot.x.from) / plot.width;
   const auto& t = result.trajectory.t;
   const auto chattering = chattering_pixels(t, column.values, pixel, 1e-5 * span_of(column));
-  draw_chattering(svg, chattering, plot, color);
+  draw_chattering(svg, chattering, plot, pen.color);
   const bool steps = is_step(result, column);
-  draw_pieces(svg, curve_pieces(result.trajectory, t, column.values, plot, pixel / 2, steps, chattering), color, color,
-              0.0);
+  draw_pieces(svg, curve_pieces(result.trajectory, t, column.values, plot, pixel / 2, steps, chattering), pen,
+              pen.color, 0.0);
 }
 
 /// Beside a panel: the unit on a line of its own if it is long, and behind it what the model says.
@@ -232,21 +233,36 @@ std::vector<std::string> lines_beside(const FigureColumn& column, bool alone) {
   return lines;
 }
 
-void draw_panel(Svg& svg, const result::Result& result, const Curves& curves, Plot plot, bool last) {
+/// Of the curves in a panel, those of other results among them.
+Range hull_of(const Curves& curves, const FigureOverlays& overlays) {
+  if (std::all_of(curves.begin(), curves.end(), is_fraction)) return {-0.06, 1.06};
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const auto& column : curves) {
+  const auto widen = [&](const FigureColumn& column) {
     const Range one = range_of(column.values);
     range = {std::min(range.from, one.from), std::max(range.to, one.to)};
+  };
+  for (const auto& column : curves) {
+    widen(column);
+    for (const auto& overlay : overlays) {
+      if (const auto* other = overlay.like(column)) widen(*other);
+    }
   }
-  const bool fractions = std::all_of(curves.begin(), curves.end(), is_fraction);
-  plot.y = fractions ? Range{-0.06, 1.06} : roomy(range);
+  return roomy(range);
+}
+
+void draw_panel(Svg& svg, const result::Result& result, const Curves& curves, const FigureOverlays& overlays, Plot plot,
+                bool last) {
+  plot.y = hull_of(curves, overlays);
   draw_axes(svg, plot, last);
   std::vector<std::pair<std::string, std::string_view>> lines;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     const std::size_t place = curves.size() == 1 ? static_cast<std::size_t>(curves[i].sort) : i;
     const auto color = paper::curves[place % paper::curves.size()];
     svg.clip(plot.corner, plot.width, plot.height);
-    draw_curve(svg, result, curves[i], plot, color);
+    draw_curve(svg, result, curves[i], plot, {color, 1.6});
+    for (const auto& overlay : overlays) {
+      if (const auto* other = overlay.like(curves[i])) draw_curve(svg, overlay.result, *other, plot, overlay.pen);
+    }
     svg.clip(std::nullopt);
     for (const auto& line : lines_beside(curves[i], curves.size() == 1)) lines.emplace_back(line, color);
   }
@@ -272,7 +288,8 @@ double room_beside(const result::Result& result, const std::vector<Curves>& pane
 
 }  // namespace
 
-std::string draw_over_time(const result::Result& result, const std::vector<FigureColumn>& columns) {
+std::string draw_over_time(const result::Result& result, const std::vector<FigureColumn>& columns,
+                           const FigureOverlays& overlays) {
   std::vector<Curves> panels;
   for (const auto& column : columns) panels.push_back({column});
   if (panels.empty()) panels = first_panels(result);
@@ -285,7 +302,7 @@ std::string draw_over_time(const result::Result& result, const std::vector<Figur
       44.0 + 20.0 * static_cast<double>(bands.size()) + static_cast<double>(panels.size()) * (high + gap) + 56.0;
   Svg svg(paper::width, height);
   const double wide = paper::width - paper::left - room_beside(result, panels);
-  Plot plot{{paper::left, 40.0}, wide, high, time_range(result), {0.0, 1.0}};
+  Plot plot{{paper::left, 40.0}, wide, high, time_range(result, overlays), {0.0, 1.0}};
   svg.text({paper::left, 22.0},
            fmt::format("{}: {} to t = {:.6g}{}", heading_of(result), result::name(result.status.termination),
                        result.status.time_reached, left_out > 0 ? fmt::format(", {} more columns", left_out) : ""),
@@ -293,9 +310,9 @@ std::string draw_over_time(const result::Result& result, const std::vector<Figur
   plot.corner.y = draw_bands(svg, result, bands, plot, 40.0);
   draw_events(svg, result, plot, 32.0, height - 56.0);
   for (std::size_t i = 0; i < panels.size(); ++i, plot.corner.y += high + gap)
-    draw_panel(svg, result, panels[i], plot, i + 1 == panels.size());
+    draw_panel(svg, result, panels[i], overlays, plot, i + 1 == panels.size());
   svg.text({paper::left + plot.width / 2, height - 14.0}, "t", "middle", paper::text);
-  draw_legend(svg, legend_over_time(result, !bands.empty()), paper::left, paper::width - 20.0, height + 2.0);
+  draw_legend(svg, legend_over_time(result, overlays, !bands.empty()), paper::left, paper::width - 20.0, height + 2.0);
   return svg.document(heading_of(result));
 }
 

@@ -156,27 +156,60 @@ std::string axis_text(const FigureColumn& column) {
   return column.caption.label.empty() ? title_of(column) : fmt::format("{} {}", column.caption.label, title_of(column));
 }
 
+/// Of a column in all results.
+Range axis_range(const FigureColumn& column, const FigureOverlays& overlays) {
+  Range hull = range_of(column.values);
+  for (const auto& overlay : overlays) {
+    const auto* other = overlay.like(column);
+    if (other == nullptr) continue;
+    const Range own = range_of(other->values);
+    hull = {std::min(hull.from, own.from), std::max(hull.to, own.to)};
+  }
+  return roomy(hull);
+}
+
+CurvePieces orbit_pieces(const result::Result& result, const FigureColumn& x, const FigureColumn& y, const Plot& plot) {
+  const Range time = time_range(result);
+  const bool over_time = x.sort == ColumnSort::time;
+  const double pixel = (time.to - time.from) / (over_time ? 2.0 * plot.width : 20000.0);
+  auto pieces = curve_pieces(result.trajectory, x.values, y.values, plot, pixel, false);
+  round_corners(pieces);
+  return pieces;
+}
+
+/// Returns those that have both columns.
+std::vector<LegendEntry> draw_overlays(Svg& svg, const FigureOverlays& overlays, const Plot& plot,
+                                       const FigureColumn& x, const FigureColumn& y) {
+  std::vector<LegendEntry> drawn;
+  for (const auto& overlay : overlays) {
+    const auto *own_x = overlay.like(x), *own_y = overlay.like(y);
+    if (own_x == nullptr || own_y == nullptr) continue;
+    draw_pieces(svg, orbit_pieces(overlay.result, *own_x, *own_y, plot), overlay.pen, overlay.pen.color, 0.0);
+    drawn.push_back({overlay.label, overlay.pen});
+  }
+  return drawn;
+}
+
 }  // namespace
 
-std::string draw_in_a_plane(const result::Result& result, const FigureColumn& x, const FigureColumn& y) {
+std::string draw_in_a_plane(const result::Result& result, const FigureColumn& x, const FigureColumn& y,
+                            const FigureOverlays& overlays) {
   constexpr double height = 720.0;
   Svg svg(paper::width, height);
   const Plot plot{{paper::left, 40.0},
                   paper::width - paper::left - 40.0,
                   height - 100.0,
-                  roomy(range_of(x.values)),
-                  roomy(range_of(y.values))};
+                  axis_range(x, overlays),
+                  axis_range(y, overlays)};
   svg.text({paper::left, 22.0}, fmt::format("{}: {} over {}", heading_of(result), y.name, x.name), "start",
            paper::text);
   draw_axes(svg, plot, true);
   svg.clip(plot.corner, plot.width, plot.height);
   const bool with_field = draw_field(svg, result, plot, x, y);
   const auto surfaces = draw_surfaces(svg, result, plot, x, y);
-  const Range time = time_range(result);
-  const bool over_time = x.sort == ColumnSort::time;
-  const double pixel = (time.to - time.from) / (over_time ? 2.0 * plot.width : 20000.0);
-  const auto pieces = curve_pieces(result.trajectory, x.values, y.values, plot, pixel, false);
-  draw_pieces(svg, pieces, paper::curves[0], paper::jump, 3.0);
+  const auto pieces = orbit_pieces(result, x, y, plot);
+  draw_pieces(svg, pieces, {paper::curves[0], 1.6}, paper::jump, 3.0);
+  const auto others = draw_overlays(svg, overlays, plot, x, y);
   draw_event_points(svg, result, plot, x, y);
   svg.clip(std::nullopt);
   const std::size_t rows = x.values.size();
@@ -189,6 +222,7 @@ std::string draw_in_a_plane(const result::Result& result, const FigureColumn& x,
   svg.text({paper::left + plot.width / 2, height - 18.0}, axis_text(x), "middle", paper::text);
   svg.text({18.0, 40.0 + plot.height / 2}, axis_text(y), "middle", paper::text, -90.0);
   auto legend = legend_of_plane(result, pieces, with_field);
+  legend.insert(legend.begin() + 1, others.begin(), others.end());
   legend.insert(legend.end(), surfaces.begin(), surfaces.end());
   draw_legend(svg, legend, paper::left, paper::width - 40.0, height + 2.0);
   return svg.document(heading_of(result));

@@ -199,6 +199,8 @@ saltus.infoCards = (result) => {
     ["right-hand sides evaluated", statistics.rhs_evaluations.toLocaleString("en-US")],
     ["wall time", `${saltus.brief(statistics.wall_seconds, 4)} s`]
   ];
+  if (statistics.thinned_from !== null)
+    numbers.push(["rows between events thinned from", `t = ${saltus.brief(statistics.thinned_from, 8)}`]);
   const quiet = (text) => saltus.element("p", {class: "quiet"}, text);
   return [
     saltus.modelCard(result),

@@ -25,7 +25,7 @@ saltus.openLoopDifference = (trajectory, simulated, state) => {
   return {
     x: common ? pairs.map(([i]) => t[i]) : t,
     y: common ? pairs.map(([i, k]) => values(trajectory.x[state][i], simulated.x[state][k])) :
-                t.map((time, i) => values(trajectory.x[state][i], saltus.interpolated(simulated.t, simulated.x[state], time))),
+                t.map((time, i) => values(trajectory.x[state][i], saltus.sidesAt(simulated.t, simulated.x[state], time)[1])),
   };
 };
 

@@ -54,30 +54,32 @@ saltus.overlayOrbits = (result, choice, view, palette, type) => (result.overlays
   ];
 });
 
-/** Value of a column at a time, linear between rows; at doubled rows the one behind. Null outside of its times. */
-saltus.interpolated = (t, values, time) => {
-  if (t.length === 0 || time < t[0] || time > t[t.length - 1]) return null;
+/** Values of a column before and behind a time, linear between rows. Null outside of its times. */
+saltus.sidesAt = (t, values, time) => {
+  if (values.length === 0 || t.length === 0 || time < t[0] || time > t[t.length - 1]) return [null, null];
   const i = saltus.lowerBound(t, time);
-  if (t[i] === time) return values[saltus.rowsAtOneTime(t, i)[1]];
+  if (t[i] === time) return saltus.rowsAtOneTime(t, i).map((row) => values[row]);
   const [from, to] = [values[i - 1], values[i]];
-  return from === null || to === null ? null : from + ((time - t[i - 1]) / (t[i] - t[i - 1])) * (to - from);
+  const between = from === null || to === null ? null : from + ((time - t[i - 1]) / (t[i] - t[i - 1])) * (to - from);
+  return [between, between];
 };
 
-/** Other minus first at the times of the first, and the largest absolute value. */
+/** Other minus first at the times of both, on both sides where one of them jumps, and the largest absolute value. */
 saltus.differenceOf = (first, other, column) => {
-  const [own, values] = [saltus.columnOf(first, column), saltus.columnOf(other, column) ?? []];
+  const [own, values] = [first, other].map((trajectory) => saltus.columnOf(trajectory, column) ?? []);
+  const times = Float64Array.from(new Set([...first.t, ...other.t])).sort();
+  const [x, y] = [[], []];
   let largest = null;
-  const [least, greatest] = saltus.range(own);
-  // Of doubled rows the last alone where the column jumps: events of the two are hardly ever at one time.
-  const leaves = (row) => !(Math.abs(own[row + 1] - own[row]) <= 1e-9 * (greatest - least));
-  const y = first.t.map((time, row) => {
-    const out = values.length === 0 || (first.t[row + 1] === time && leaves(row));
-    const at = out ? null : saltus.interpolated(other.t, values, time);
-    const difference = at === null || own[row] === null ? null : at - own[row];
-    if (difference !== null) largest = Math.max(largest ?? 0, Math.abs(difference));
-    return difference;
-  });
-  return {x: first.t, y, largest};
+  for (const time of times) {
+    const [ours, theirs] = [saltus.sidesAt(first.t, own, time), saltus.sidesAt(other.t, values, time)];
+    const sides = ours.map((value, side) => (value === null || theirs[side] === null ? null : theirs[side] - value));
+    for (const difference of sides[0] === sides[1] ? [sides[0]] : sides) {
+      x.push(time);
+      y.push(difference);
+      if (difference !== null) largest = Math.max(largest ?? 0, Math.abs(difference));
+    }
+  }
+  return {x, y, largest};
 };
 
 /** One row for every result: what differs from the first, and how far it is from it. */
@@ -146,7 +148,7 @@ saltus.differencePicture = (result, timeline) => {
   const card = saltus.drawingCard(
       result, {
         title: "Differences",
-        note: "The other results minus this one, at its times; between rows the others are interpolated linearly.",
+        note: "The other results minus this one, at the times of both and on both sides of jumps; linear between rows.",
         file: "differences",
         controls: ["of ", picker],
       },

@@ -80,6 +80,7 @@ saltus.startCard = (result) => {
   if (initial.length === 0 && call === "") return null;
   const parts = [];
   if (initial.length > 0) parts.push(saltus.pairTable(initial.map(([name, value]) => saltus.captionedRow(result, name, value))));
+  if (result.date) parts.push(saltus.element("p", {}, `Computed ${result.date.replace("T", " ").replace("Z", " UTC")}`));
   if (settings.length > 0) parts.push(saltus.element("p", {}, `Set: ${settings.join(", ")}`));
   if (call !== "") parts.push(saltus.element("pre", {class: "source", tabindex: "0", "aria-label": "command"}, call));
   return saltus.card("Start", ...parts);
