@@ -11,8 +11,8 @@ using model::Builder;
 using model::Direction;
 using result::Termination;
 
-constexpr ode::Method all_methods[] = {ode::Method::dopri5, ode::Method::dop853,  ode::Method::radau5,
-                                       ode::Method::radau9, ode::Method::radau13, ode::Method::taylor};
+constexpr ode::Method methods_at_zero[] = {ode::Method::dopri5, ode::Method::dop853,  ode::Method::radau5,
+                                           ode::Method::radau9, ode::Method::radau13, ode::Method::taylor};
 
 Integration run_with(Builder& builder, double until, ode::Method method) {
   IntegrationOptions options;
@@ -29,7 +29,7 @@ double counted(const Integration& run) {
 }
 
 TEST(JumpsAtZero, AGuardThatIsSetToZeroIsPassedOnce) {
-  for (const auto method : all_methods) {
+  for (const auto method : methods_at_zero) {
     Builder b("counter");
     const SX x = b.state("x", {1.0});
     const SX n = b.state("n", {0.0});
@@ -42,7 +42,7 @@ TEST(JumpsAtZero, AGuardThatIsSetToZeroIsPassedOnce) {
 
 /// x = cos(t) 0.9^n.
 TEST(JumpsAtZero, AGuardThatIsScaledAtZeroIsPassedOnce) {
-  for (const auto method : all_methods) {
+  for (const auto method : methods_at_zero) {
     Builder b("scaled");
     const SX x = b.state("x", {1.0});
     const SX v = b.state("v", {0.0});
@@ -58,7 +58,7 @@ TEST(JumpsAtZero, AGuardThatIsScaledAtZeroIsPassedOnce) {
 }
 
 TEST(JumpsAtZero, AGuardThatIsASwitchingFunctionGoesWhereItGoes) {
-  for (const auto method : all_methods) {
+  for (const auto method : methods_at_zero) {
     for (int k = 0; k < 20; ++k) {
       Builder b("down");
       const SX x = b.state("x", {0.3 + 0.1 * k});
@@ -73,7 +73,7 @@ TEST(JumpsAtZero, AGuardThatIsASwitchingFunctionGoesWhereItGoes) {
 
 /// A block that sticks counts where it begins to move.
 TEST(JumpsAtZero, AGuardThatIsSlidOnPassesWhereSlidingEnds) {
-  for (const auto method : all_methods) {
+  for (const auto method : methods_at_zero) {
     for (const auto& [force, motions] : {std::pair{2.23, 3.0}, std::pair{0.5, 0.0}}) {
       Builder b("stick and slip");
       const SX q = b.state("q", {0.0});
@@ -89,7 +89,7 @@ TEST(JumpsAtZero, AGuardThatIsSlidOnPassesWhereSlidingEnds) {
 }
 
 TEST(JumpsAtZero, AGuardThatTwoSurfacesKeepIsNotCounted) {
-  for (const auto method : all_methods) {
+  for (const auto method : methods_at_zero) {
     Builder b("corner");
     const SX x = b.state("x", {1.0});
     const SX y = b.state("y", {0.7});
@@ -104,7 +104,7 @@ TEST(JumpsAtZero, AGuardThatTwoSurfacesKeepIsNotCounted) {
 
 /// The level of a tank that is put back to the rim, where the inflow goes on.
 TEST(JumpsAtZero, AJumpThatIsTakenBackAtOnceEndsTheRun) {
-  for (const auto method : all_methods) {
+  for (const auto method : methods_at_zero) {
     Builder b("tank");
     const SX h = b.state("h", {0.0});
     b.dynamics("h", 1.0);

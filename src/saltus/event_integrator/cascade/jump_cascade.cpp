@@ -63,8 +63,8 @@ bool JumpCascade::is_unchanged(int function) const {
   const auto f = at(function);
   const double value = values_.value[f], before = zero_values_[f];
   const double of_time = std::abs(here_.t) * largest_rates_[f].value;
-  return std::abs(value) <= std::abs(before) ||
-         std::abs(value - before) <= 8.0 * rounding_unit * (values_.magnitude[f] + of_time);
+  const bool closer = std::abs(value) <= std::abs(before) && !contacts_.guards(function);
+  return closer || std::abs(value - before) <= 8.0 * rounding_unit * (values_.magnitude[f] + of_time);
 }
 
 void JumpCascade::drop_zeros() {

@@ -23,9 +23,9 @@ namespace saltus::event_integrator {
 struct Hit {
   std::size_t function = 0;
   double theta = 0.0;
-  double slope = 0.0;        ///< d phi / dt there
-  int sign = 1;              ///< of the function before
-  bool is_doubtful = false;  ///< hardly more than errors of the step: one that is far shorter has to show it, too
+  double slope = 0.0;  ///< d phi / dt there
+  int sign = 1;        ///< of the function before
+  int doubts = 0;      ///< so many steps, each half as long, have to show it, too, as it may be an error of the step
 };
 
 enum class SearchOutcome {

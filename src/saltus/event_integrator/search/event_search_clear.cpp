@@ -30,7 +30,7 @@ bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
   std::vector<double> slope(x_.size());
   field_(t, x_.data(), slope.data());
   const double rate = errors_.rate_along(function.index, t, x_.data(), mode_.state.alpha.data(), slope);
-  return hit.sign * rate < 0.1 * hit.sign * hit.slope;
+  return hit.sign * rate < 1e-3 * hit.sign * hit.slope;
 }
 
 /// Whether a zero of a user function is one of its roundings, as the surfaces that are slid on keep it.
@@ -88,7 +88,7 @@ EventSearch::Finding EventSearch::find_clear(const ode::DenseStep& step, double 
     if (!change) return finding.hit.reset();
     // Of the steps of explicit methods that are too long for what decays some are off by thousands of tolerances.
     constexpr double doubtful = 1e4;
-    hit.is_doubtful = !change_beyond(doubtful * error);
+    hit.doubts = change_beyond(doubtful * error) ? 0 : 3;
     // A zero before it is one of a dip into the errors.
     constexpr double bracket = 0x1p-30;
     if (hit.theta >= from + (to - from) * (change->lower - bracket)) return;
