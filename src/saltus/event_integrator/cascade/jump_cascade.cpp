@@ -6,6 +6,7 @@
 
 #include "saltus/event_integrator/decide/sets/find_resting_surfaces.hpp"
 #include "saltus/event_integrator/decide/start.hpp"
+#include "saltus/event_integrator/mode/kept_by_sliding.hpp"
 
 namespace saltus::event_integrator {
 
@@ -18,6 +19,7 @@ void JumpCascade::find_values() {
 void JumpCascade::begin() {
   if (jumps_.none()) return;
   executed_.clear();
+  left_.clear();
   zeros_ = here_.state.sliding;
   zeros_.insert(zeros_.end(), here_.state.resting.begin(), here_.state.resting.end());
   const auto n = at(kernel_.event_functions());
@@ -55,10 +57,14 @@ void JumpCascade::note_guards() {
   }
 }
 
-/// Whether jumps have left the value of a function as it was.
+/// Whether jumps have left a function at zero, to its rounding and to that of the time it was located at, or no farther
+/// from it.
 bool JumpCascade::is_unchanged(int function) const {
   const auto f = at(function);
-  return std::abs(values_.value[f] - zero_values_[f]) <= 8.0 * rounding_unit * values_.magnitude[f];
+  const double value = values_.value[f], before = zero_values_[f];
+  const double of_time = std::abs(here_.t) * largest_rates_[f].value;
+  const bool closer = std::abs(value) <= std::abs(before) && !contacts_.guards(function);
+  return closer || std::abs(value - before) <= 8.0 * rounding_unit * (values_.magnitude[f] + of_time);
 }
 
 void JumpCascade::drop_zeros() {
@@ -111,12 +117,18 @@ SwitchingPoint JumpCascade::at_this_time() const {
 
 Motion JumpCascade::find_motion(int function) {
   // The derivatives along fixed selections are not those of a motion that slides.
-  if (!surfaces_keeping(function).empty()) return {};
+  const bool kept = is_kept_by_sliding(kernel_, here_.state, function, here_.t, here_.x.data());
+  if (kept || !surfaces_keeping(function).empty()) return {};
   // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
   // than sign_tolerance / 1000 of them.
   constexpr double cancelled = 1e-3;
   const Rate rate = rates_.here(function);
   const Rate& here = largest_rates_[at(function)];
+  // What kept its rate at 0 has just let go: errors are left of it, unless a jump changes it.
+  const auto left = std::find_if(left_.begin(), left_.end(), [&](const auto& l) { return l.function == function; });
+  if (left != left_.end() && std::abs(rate.value) <= 2.0 * here.value) {
+    return {{0.0, left->side > 0 ? switching::Drift::up : switching::Drift::down}, 2};
+  }
   const double scale = std::max({here.value, std::abs(rate.value), cancelled * here.terms, cancelled * rate.terms});
   const auto by_rate = ProjectedFields::motion_by_velocity(rate.value, scale);
   // The mode of a contact has been decided with the next derivatives, and holds.
@@ -263,6 +275,7 @@ void JumpCascade::leave_guards(const std::vector<int>& zero_order) {
       const int side = side_ahead(switching_context_, here_.state, at_this_time(), here_.x, function);
       if (side == 0) continue;
       add_zero(function);
+      left_.push_back({function, side});
       signs[user] = side;
       vanish[user] = true;
       orders[user] = 2;  // at least: its rate was held at 0

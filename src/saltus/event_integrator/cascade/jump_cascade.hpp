@@ -74,6 +74,10 @@ class JumpCascade {
   /// @param zero_order  of the mode's surfaces
   void leave_guards(const std::vector<int>& zero_order);
 
+  /// Returns a jump that sets what it compares to where its condition becomes true, while the motion leads on through
+  /// there: it would be executed again and again at this time. To be asked behind give_directions().
+  [[nodiscard]] std::optional<int> endless_jump();
+
   struct RestingGuards {
     std::vector<HeldGuard> held, loose;  ///< by their own jumps; with others only
   };
@@ -89,11 +93,17 @@ class JumpCascade {
   [[nodiscard]] SwitchingPoint at_this_time() const;
   void find_values();
   [[nodiscard]] bool is_unchanged(int function) const;
+  [[nodiscard]] bool is_taken_back(const ExecutedJump& executed, int guard);
   [[nodiscard]] double size_at(int function);
   [[nodiscard]] Motion motion_of(int function);
   [[nodiscard]] Motion find_motion(int function);
   [[nodiscard]] std::vector<int> surfaces_keeping(int function);
 
+  /// A guard that sliding kept at zero until this time, and where it goes.
+  struct LeftGuard {
+    int function;
+    int side;
+  };
   /// All functions of the kernel at one point.
   struct FunctionValues {
     std::vector<double> value, magnitude, slope;
@@ -114,6 +124,7 @@ class JumpCascade {
   std::vector<Rate> largest_rates_;  ///< by event function: of guards of jumps at this time
   std::vector<std::optional<Motion>> motions_;  ///< by event function: found since the mode here was decided
   std::vector<HeldGuard> held_before_;
+  std::vector<LeftGuard> left_;
   std::vector<int> resting_;
   Transition transition_;
   FunctionValues values_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::event_integrator {

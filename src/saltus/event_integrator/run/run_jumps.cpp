@@ -101,6 +101,13 @@ bool Run::settle_jumps() {
     jumps_.update(jump_point());
     if (jumps_have_problem()) return false;
   } while (jumps_.due(here_.t));
+  if (const auto endless = cascade_.endless_jump()) {
+    fail(Termination::outside_class,
+         fmt::format("the jump {} at t = {:.17g} sets what it compares to the limit itself, and the motion passes it "
+                     "again at once; state the limit in [dynamics], as x = \"if(x < limit, f, min(f, 0))\"",
+                     jump_names({*endless}), here_.t));
+    return false;
+  }
   if (!contact_modes_hold()) return false;
   if (!cascade_.executed().empty()) cascade_.executed().back().x_after = here_.x;
   return true;

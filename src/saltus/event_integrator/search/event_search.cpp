@@ -288,7 +288,7 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location,
   }
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
   if (outcome == SearchOutcome::hit) {
-    hit.is_doubtful = hit.is_doubtful || !is_confirmed(step, hit);
+    if (!is_confirmed(step, hit)) hit.doubts = 6;
     // All of them whatever the bounds, or within bounds that hold for the location.
     if (suspects_.size() == mode_.present || location == Location::along) {
       candidates_ = suspects_;

@@ -24,9 +24,9 @@ namespace saltus::event_integrator {
 struct Hit {
   std::size_t function = 0;
   double theta = 0.0;
-  double slope = 0.0;        ///< d phi / dt there
-  int sign = 1;              ///< of the function before
-  bool is_doubtful = false;  ///< hardly more than errors of the step: one that is far shorter has to show it, too
+  double slope = 0.0;  ///< d phi / dt there
+  int sign = 1;        ///< of the function before
+  int doubts = 0;      ///< so many steps, each half as long, have to show it, too, as it may be an error of the step
 };
 
 enum class SearchOutcome {
@@ -144,6 +144,7 @@ class EventSearch {
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
   [[nodiscard]] Finding find_along(const ode::DenseStep& step, std::size_t i) const;
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
+  [[nodiscard]] bool is_rounding(const ode::DenseStep& step, const Hit& hit);
   [[nodiscard]] bool is_confirmed(const ode::DenseStep& step, const Hit& hit);
   Finding find_clear(const ode::DenseStep& step, double from, double to, std::size_t i);
   template <class Take>

@@ -3,9 +3,15 @@
 #include <cmath>
 #include <vector>
 
+#include "saltus/event_integrator/mode/kept_by_sliding.hpp"
 #include "saltus/event_integrator/search/event_search_internal.hpp"
 
 namespace saltus::event_integrator {
+namespace {
+
+constexpr double by_far = 1e6;  // a zero that passes so many accuracies in a step is none of its errors
+
+}  // namespace
 
 bool EventSearch::is_within_errors(int function, double value, double t, const double* x) {
   return kernel_.is_listed_only(function) &&
@@ -15,7 +21,6 @@ bool EventSearch::is_within_errors(int function, double value, double t, const d
 /// Whether a zero of a surface or a guard is more than errors of the step by far, or the field leads through it. A step
 /// that is too long for what decays ends beyond zero, where the field would not have gone.
 bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
-  constexpr double by_far = 1e6;
   const auto& function = mode_.functions[hit.function];
   const bool is_read = function.kind == FunctionKind::surface || function.kind == FunctionKind::user;
   const double passed = std::abs(hit.slope) * step.h;
@@ -25,7 +30,17 @@ bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
   std::vector<double> slope(x_.size());
   field_(t, x_.data(), slope.data());
   const double rate = errors_.rate_along(function.index, t, x_.data(), mode_.state.alpha.data(), slope);
-  return hit.sign * rate < 0.1 * hit.sign * hit.slope;
+  return hit.sign * rate < 1e-3 * hit.sign * hit.slope;
+}
+
+/// Whether a zero of a user function is one of its roundings, as the surfaces that are slid on keep it.
+bool EventSearch::is_rounding(const ode::DenseStep& step, const Hit& hit) {
+  const auto& function = mode_.functions[hit.function];
+  if (function.kind != FunctionKind::user || mode_.state.sliding.empty()) return false;
+  const double passed = std::abs(hit.slope) * step.h;
+  if (!(passed <= by_far * levels_.accuracy[hit.function])) return false;
+  step.evaluate(hit.theta, x_.data());
+  return is_kept_by_sliding(kernel_, mode_.state, function.index, step.t + hit.theta * step.h, x_.data());
 }
 
 /// Coefficients of a function over [from, to] as `find` has them, handed to `take`.
@@ -54,6 +69,7 @@ void EventSearch::take_coefficients(const ode::DenseStep& step, double from, dou
 /// tells. All that is left of a state that has decayed is errors of both signs.
 EventSearch::Finding EventSearch::find_clear(const ode::DenseStep& step, double from, double to, std::size_t i) {
   Finding finding = find(step, from, to, i);
+  if (finding.hit && is_rounding(step, *finding.hit)) return {};
   if (!finding.hit || !is_listed_only(i)) return finding;
   Hit& hit = *finding.hit;
   const auto& function = mode_.functions[i];
@@ -72,7 +88,7 @@ EventSearch::Finding EventSearch::find_clear(const ode::DenseStep& step, double 
     if (!change) return finding.hit.reset();
     // Of the steps of explicit methods that are too long for what decays some are off by thousands of tolerances.
     constexpr double doubtful = 1e4;
-    hit.is_doubtful = !change_beyond(doubtful * error);
+    hit.doubts = change_beyond(doubtful * error) ? 0 : 3;
     // A zero before it is one of a dip into the errors.
     constexpr double bracket = 0x1p-30;
     if (hit.theta >= from + (to - from) * (change->lower - bracket)) return;

@@ -255,12 +255,16 @@ void Locator::find_vanishing_with(std::size_t located) {
   if (candidates.size() == 1) return;
   if (trial_.h == 0.0) return find_same_at_start(located);
   const double back = look_back();
+  const auto rate_of = [&](std::size_t k) { return sign(candidates[k]) * (beside_[k] - trial_.values[k]) / back; };
+  // What implicit steps leave of the located one, their iteration leaves of functions that are the same.
+  const double left = std::max(0.0, std::abs(trial_.values[place_]) / rate_of(place_));
+  const double apart = 2.0 * std::max(time_resolution(), explicit_ || !std::isfinite(left) ? 0.0 : left);
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const std::size_t i = candidates[k];
     if (i == located || sign(i) == 0) continue;
     const double ahead = beside_[k] * sign(i);
-    const double rate = (ahead - trial_.values[k] * sign(i)) / back;
-    const double resolution = std::max(search_.noise(i), 2.0 * rate * time_resolution());
+    const double rate = rate_of(k);
+    const double resolution = std::max(search_.noise(i), rate * apart);
     if (ahead > 2.0 * resolution && rate > 0.0 && std::abs(trial_.values[k]) <= resolution) {
       located_.functions.push_back(i);
     }

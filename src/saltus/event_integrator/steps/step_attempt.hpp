@@ -33,9 +33,8 @@ class StepAttempt {
     was_undefined_ = false;
     doubts_ = 0;
   }
-  /// Returns whether a zero that an attempt at this step shows is to be doubted: six times, in a step half as long
-  /// each.
-  [[nodiscard]] bool doubts() { return doubts_++ < 6; }
+  /// Returns whether a zero that an attempt at this step shows is to be doubted: in a step half as long each time.
+  [[nodiscard]] bool doubts(int most) { return doubts_ < most && ++doubts_ > 0; }
   void note_undefined() { was_undefined_ = true; }
   /// Returns whether the right-hand side was undefined in an attempt at this step.
   [[nodiscard]] bool was_undefined() const { return was_undefined_; }

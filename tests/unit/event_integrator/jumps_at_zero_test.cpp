@@ -1,0 +1,120 @@
+// Guards of jumps that are at zero where something happens: what a jump leaves there, and what slides there.
+#include <cmath>
+
+#include "run_model.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+using casadi::SX;
+using model::Builder;
+using model::Direction;
+using result::Termination;
+
+constexpr ode::Method methods_at_zero[] = {ode::Method::dopri5, ode::Method::dop853,  ode::Method::radau5,
+                                           ode::Method::radau9, ode::Method::radau13, ode::Method::taylor};
+
+Integration run_with(Builder& builder, double until, ode::Method method) {
+  IntegrationOptions options;
+  options.method = method;
+  options.tolerances = {1e-8, 1e-10};
+  options.until = until;
+  return testing::run_model(builder, options);
+}
+
+/// Columns of the state that counts.
+double counted(const Integration& run) {
+  EXPECT_EQ(run.status.termination, Termination::completed) << run.status.message;
+  return run.final.x.back();
+}
+
+TEST(JumpsAtZero, AGuardThatIsSetToZeroIsPassedOnce) {
+  for (const auto method : methods_at_zero) {
+    Builder b("counter");
+    const SX x = b.state("x", {1.0});
+    const SX n = b.state("n", {0.0});
+    b.dynamics("x", -sin(b.time()));
+    b.dynamics("n", 0.0);
+    b.jump(x, Direction::both, {{"x", 0.0}, {"n", n + 1.0}});
+    EXPECT_EQ(counted(run_with(b, 10.0, method)), 3.0) << static_cast<int>(method);
+  }
+}
+
+/// x = cos(t) 0.9^n.
+TEST(JumpsAtZero, AGuardThatIsScaledAtZeroIsPassedOnce) {
+  for (const auto method : methods_at_zero) {
+    Builder b("scaled");
+    const SX x = b.state("x", {1.0});
+    const SX v = b.state("v", {0.0});
+    const SX n = b.state("n", {0.0});
+    b.dynamics("x", v);
+    b.dynamics("v", -x);
+    b.dynamics("n", 0.0);
+    b.jump(x, Direction::both, {{"x", 0.9 * x}, {"v", 0.9 * v}, {"n", n + 1.0}});
+    const auto run = run_with(b, 10.0, method);
+    EXPECT_EQ(counted(run), 3.0) << static_cast<int>(method);
+    EXPECT_NEAR(run.final.x[0], std::pow(0.9, 3) * std::cos(10.0), 1e-7) << static_cast<int>(method);
+  }
+}
+
+TEST(JumpsAtZero, AGuardThatIsASwitchingFunctionGoesWhereItGoes) {
+  for (const auto method : methods_at_zero) {
+    for (int k = 0; k < 20; ++k) {
+      Builder b("down");
+      const SX x = b.state("x", {0.3 + 0.1 * k});
+      const SX n = b.state("n", {0.0});
+      b.dynamics("x", -1.0 - 0.5 * b.sign(x) - 0.3 * x);
+      b.dynamics("n", 0.0);
+      b.jump(x, Direction::up, {{"n", n + 1.0}});
+      EXPECT_EQ(counted(run_with(b, 4.0, method)), 0.0) << static_cast<int>(method) << " " << k;
+    }
+  }
+}
+
+/// A block that sticks counts where it begins to move.
+TEST(JumpsAtZero, AGuardThatIsSlidOnPassesWhereSlidingEnds) {
+  for (const auto method : methods_at_zero) {
+    for (const auto& [force, motions] : {std::pair{2.23, 3.0}, std::pair{0.5, 0.0}}) {
+      Builder b("stick and slip");
+      const SX q = b.state("q", {0.0});
+      const SX v = b.state("v", {0.0});
+      const SX n = b.state("n", {0.0});
+      b.dynamics("q", v);
+      b.dynamics("v", force * sin(b.time()) - b.sign(v) - 0.2 * q);
+      b.dynamics("n", 0.0);
+      b.jump(v, Direction::up, {{"n", n + 1.0}});
+      EXPECT_EQ(counted(run_with(b, 15.0, method)), motions) << static_cast<int>(method);
+    }
+  }
+}
+
+TEST(JumpsAtZero, AGuardThatTwoSurfacesKeepIsNotCounted) {
+  for (const auto method : methods_at_zero) {
+    Builder b("corner");
+    const SX x = b.state("x", {1.0});
+    const SX y = b.state("y", {0.7});
+    const SX n = b.state("n", {0.0});
+    b.dynamics("x", -b.sign(x + y) - 0.3 * b.sign(x - 0.5 * y) + 0.2 * sin(3.0 * b.time()));
+    b.dynamics("y", -b.sign(x + y) + 0.9 * b.sign(x - 0.5 * y) + 0.2 * cos(2.0 * b.time()));
+    b.dynamics("n", 0.0);
+    b.jump(x, Direction::up, {{"n", n + 1.0}});
+    EXPECT_EQ(counted(run_with(b, 8.0, method)), 0.0) << static_cast<int>(method);
+  }
+}
+
+/// The level of a tank that is put back to the rim, where the inflow goes on.
+TEST(JumpsAtZero, AJumpThatIsTakenBackAtOnceEndsTheRun) {
+  for (const auto method : methods_at_zero) {
+    Builder b("tank");
+    const SX h = b.state("h", {0.0});
+    b.dynamics("h", 1.0);
+    b.jump(model::less(1.0, h), {{"h", 1.0}});
+    const auto run = run_with(b, 5.0, method);
+    EXPECT_EQ(run.status.termination, Termination::outside_class) << static_cast<int>(method);
+    EXPECT_NEAR(run.final.x[0], 1.0, 1e-12);
+    EXPECT_NE(run.status.message.find("state the limit in [dynamics]"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator
