@@ -12,7 +12,7 @@ namespace {
 using model::JumpTrigger;
 
 /// Whether a jump has set a state to what it was, to its rounding and what location leaves.
-bool is_kept(const ExecutedJump& executed, std::size_t state, double left) {
+bool sets_the_same(const ExecutedJump& executed, std::size_t state, double left) {
   const double size = std::max(std::abs(executed.x[state]), std::abs(executed.x_after[state]));
   return std::abs(executed.x_after[state] - executed.x[state]) <= 64.0 * rounding_unit * size + left;
 }
@@ -25,7 +25,7 @@ bool JumpCascade::is_taken_back(const ExecutedJump& executed, int guard) {
   if (!contains(zeros_, function) || holding_.holds(function) || jumps_.is_discrete_guard(function)) return false;
   const auto& entry = switching_context_.system.jumps[at(executed.jump)];
   const double left = 64.0 * rounding_unit * std::abs(here_.t) * rate(function);
-  const auto kept = [&](int state) { return is_kept(executed, at(state), left); };
+  const auto kept = [&](int state) { return sets_the_same(executed, at(state), left); };
   const bool nothing_else = std::all_of(entry.targets.begin(), entry.targets.end(), kept);
   if (entry.trigger != JumpTrigger::condition && !nothing_else) return false;
   double in_time = 0.0;

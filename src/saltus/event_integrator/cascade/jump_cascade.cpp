@@ -57,7 +57,7 @@ void JumpCascade::note_guards() {
   }
 }
 
-/// Whether jumps have left a function at zero, to its rounding and to that of the time it was located at, or no farther
+/// Whether jumps have left a function at zero: to its rounding and that of the time of its location, or no farther
 /// from it.
 bool JumpCascade::is_unchanged(int function) const {
   const auto f = at(function);
