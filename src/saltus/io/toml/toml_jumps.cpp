@@ -103,7 +103,11 @@ class JumpReader {
     }
     if (jump_.when) return;
     if (direction_.line > 0) misplaced("direction", "the jump happens at given times", direction_);
-    if (at_start_.line > 0) misplaced("at_start", "list the first time in `at` instead", at_start_);
+    if (at_start_.line > 0)
+      misplaced("at_start",
+                jump_.every ? "give the start a jump of its own: `at` with that time, and the same `set`"
+                            : "list the first time in `at` instead",
+                at_start_);
     if (not_persistent_.line > 0)
       misplaced("persistent", "given times have no condition that could become false", not_persistent_);
     jump_.trigger = model::JumpTrigger::times;

@@ -60,8 +60,11 @@ std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& state
   if (!node) return with_location(node.error(), thresholds.location);
   const KindSet moving = recognition.graph.tape()[*node].reached;
   if ((moving & kind_bit(VariableKind::state)) == 0) {
-    return hysteresis_error(thresholds, fmt::format("the input of the hysteresis '{}' has no state", thresholds.name),
-                            "`input` is an expression of states and parameters");
+    return hysteresis_error(
+        thresholds,
+        fmt::format("the input of the hysteresis '{}' has no state that moves between jumps", thresholds.name),
+        "`input` is an expression of such states; what changes at jumps only switches there: a jump "
+        "for each threshold");
   }
   constexpr KindSet allowed = kind_bit(VariableKind::state) | kind_bit(VariableKind::discrete) |
                               kind_bit(VariableKind::parameter) | kind_bit(VariableKind::alpha) |
