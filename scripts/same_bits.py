@@ -81,6 +81,7 @@ def main():
     arguments = parser.parse_args()
 
     listed = subprocess.run([arguments.old, "models"], capture_output=True, text=True, check=True).stdout
+    listed = listed.partition("\n\n")[0]
     ways = {"event": EVENT, "fesd": FESD}.get(arguments.engine, EVENT + FESD)
     runs = [(line.split()[0], options) for line in listed.splitlines() if line.strip() for options in ways]
     with tempfile.TemporaryDirectory() as folder:

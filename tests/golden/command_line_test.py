@@ -278,7 +278,7 @@ until = 1
 
     def test_takes_every_model_of_the_catalogue(self):
         listed, _ = self.run_tool("models", code=0)
-        for line in listed.splitlines():
+        for line in listed.partition("\n\n")[0].splitlines():
             self.run_tool("check", line.split()[0], code=0)
 
 
@@ -286,7 +286,7 @@ class Models(tool.ToolTest):
     def test_lists_names_and_descriptions(self):
         out, _ = self.run_tool("models", code=0)
         self.assertRegex(out, r"(?m)^stick-slip +a block on a moving belt sticks and slips$")
-        names = [line.split()[0] for line in out.splitlines()]
+        names = [line.split()[0] for line in out.partition("\n\n")[0].splitlines()]
         self.assertEqual(names, sorted(path.stem for path in (tool.SOURCE / "models").glob("*.toml")))
 
     def test_prints_a_file(self):

@@ -96,7 +96,7 @@ Command add_models(CLI::App& app) {
   auto settings = std::make_shared<std::vector<std::string>>();
   command->add_option("--set", *settings, "NAME=N of a model of any size, as blocks=1000; may repeat");
   command->footer(
-      "Examples:\n  saltus models stick-slip > my-model.toml\n"
+      "Example:\n"
       "  saltus models spring-block --set blocks=1000 > chain.toml");
   return {"models", [name, settings] { return name->empty() ? list_models() : show_model(*name, *settings); }};
 }

@@ -74,7 +74,7 @@ TEST(TomlJumps, MistakesAreFoundWithTheirPlace) {
       {"[[jumps]]\nat = []\nset = { x = 1 }\n", 9, "is empty", "at = [1, 2.5]"},
       {"[[jumps]]\nat = 1\nset = { x = 1 }\n", 9, "expected a list of times", ""},
       {"[[jumps]]\nevery = 1\ndirection = 'up'\nset = { x = 1 }\n", 10, "`direction` belongs to jumps with `when`", ""},
-      {"[[jumps]]\nevery = 1\nat_start = true\nset = { x = 1 }\n", 10, "`at_start` belongs to", "first time"},
+      {"[[jumps]]\nevery = 1\nat_start = true\nset = { x = 1 }\n", 10, "`at_start` belongs to", "a jump of its own"},
       {"[[jumps]]\nevery = 1\npersistent = false\nset = { x = 1 }\n", 10, "`persistent` belongs to", "no condition"},
       {"[[jumps]]\nwhen = 'x'\ndirection = 'upp'\nset = { x = 1 }\n", 10, "found the string \"upp\"", "'up'"},
       {"[[jumps]]\nwhen = 'x > 0'\nvalues = 'triger'\nset = { x = 1 }\n", 10, "\"trigger\"", "'trigger'"},
