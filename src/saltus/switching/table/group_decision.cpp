@@ -116,8 +116,7 @@ std::optional<SurfaceDecision> decide_by_rule(const CornerTable& table, const Re
   if (const auto own = own_situation(table, restricted, j)) {
     SurfaceDecision result = decide_surface(*own);
     // An interpolated tangency has no higher derivatives in the table to decide it.
-    const bool is_tangent = own->below.drift == Drift::stays || own->above.drift == Drift::stays;
-    if (is_tangent && restricted.is_interpolated()) result.verdict = Verdict::coupled;
+    if (result.verdict == Verdict::stands && restricted.is_interpolated()) result.verdict = Verdict::coupled;
     return result;
   }
   if (const auto drift = definite_drift(table, restricted, j)) {
