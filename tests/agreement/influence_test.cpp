@@ -94,5 +94,30 @@ until = 3
                       });
 }
 
+// x, y and z are slid on with sign(y) = 0.2, sign(x) = -0.04 and sign(z) = 0.6 t - 0.132, or minus that. At
+// t = 1.132/0.6 z leaves, x and y go on.
+TEST(Influence, OfThreeSurfacesOneIsLeft) {
+  const double leaves = 1.132 / 0.6, end = 0.3 * (16.0 - leaves * leaves) - 1.132 * (4.0 - leaves);
+  for (const bool up : {true, false}) {
+    const std::string x = "x = \"0.1 - sign(x) - 0.7*sign(y)\"\n", y = "y = \"0.2 - sign(y)\"\n",
+                      z = up ? "z = \"0.6*t - sign(z) - 0.66*sign(y)\"\n" : "z = \"-0.6*t - sign(z) + 0.66*sign(y)\"\n";
+    for (const std::string& dynamics : {x + y + z, z + y + x, y + z + x}) {
+      SCOPED_TRACE(dynamics);
+      in_every_integrator("[model]\nname = \"three\"\n[states]\nx = 0.1\ny = 0.2\nz = -0.3\n[dynamics]\n" + dynamics +
+                              "[simulate]\nuntil = 4\n",
+                          [&](const Result& result) {
+                            const auto switches = switches_of(result);
+                            ASSERT_FALSE(switches.empty());
+                            EXPECT_EQ(switches.back().kind, EventKind::leave_sliding);
+                            EXPECT_EQ(switches.back().unique, true);
+                            EXPECT_NEAR(switches.back().t, leaves, 1e-9);
+                            EXPECT_EQ(result.final.x[0], 0.0);
+                            EXPECT_EQ(result.final.x[1], 0.0);
+                            EXPECT_NEAR(result.final.x[2], up ? end : -end, 1e-8);
+                          });
+    }
+  }
+}
+
 }  // namespace
 }  // namespace saltus::problems

@@ -1,4 +1,7 @@
 // Gaps that close or open with no velocity and no acceleration.
+#include <cmath>
+#include <numbers>
+
 #include "run_model.hpp"
 
 namespace saltus::event_integrator::testing {
@@ -59,6 +62,129 @@ TEST(ContactsThatTouch, AForceThatEndsFlatlyLiftsOffOnce) {
     EXPECT_EQ(run.events[0].kind, EventKind::lift_off);
     EXPECT_NEAR(run.events[0].t, 1.0, 1e-5);
     EXPECT_NEAR(run.final.x[0], 0.05, 1e-9);
+  }
+}
+
+/// Friction alone holds the block when the force of the wall has ended: its slip begins without an acceleration.
+void expect_slip_from_wall(model::Builder& model, ode::Method method, double force_ends, double slip_begins,
+                           std::size_t velocity, double speed) {
+  const auto run = run_by(model, method);
+  ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+  ASSERT_EQ(run.events.size(), 2U);
+  EXPECT_EQ(run.events[0].kind, EventKind::lift_off);
+  EXPECT_EQ(run.events[0].surfaces, std::vector<std::string>{"wall"});
+  EXPECT_NEAR(run.events[0].t, force_ends, 1e-8);
+  EXPECT_EQ(run.events[1].kind, EventKind::slip);
+  EXPECT_EQ(run.events[1].surfaces, std::vector<std::string>{"ground"});
+  EXPECT_NEAR(run.events[1].t, slip_begins, 1e-8);
+  EXPECT_NEAR(run.final.x[velocity], speed, 1e-6);
+  EXPECT_EQ(run.final.contact_modes, (std::vector<ContactMode>{ContactMode::slip, ContactMode::open}));
+}
+
+TEST(ContactsThatTouch, AStickingBlockSlipsAwayFromAWall) {
+  for (const auto method : every_method) {
+    for (const double friction : {0.1, 0.2, 0.3, 0.5}) {
+      SCOPED_TRACE(::testing::Message() << friction << " " << static_cast<int>(method));
+      model::Builder model("block");
+      const SX x = model.state("x", {0.0}), y = model.state("y", {0.0});
+      static_cast<void>(model.state("vx", {0.0}));
+      static_cast<void>(model.state("vy", {0.0}));
+      model.mechanics({.positions = {"x", "y"},
+                       .velocities = {"vx", "vy"},
+                       .force = {{"vx", 5.0 - 8.0 * model.time()}, {"vy", -8.0}}});
+      model.contact("ground", y, {.tangent = {{"x", 1.0}}, .friction = friction});
+      model.contact("wall", -x);
+      const double begins = 0.625 + friction, left = 2.0 - begins;
+      expect_slip_from_wall(model, method, 0.625, begins, 2, -4.0 * left * left);
+    }
+  }
+}
+
+/// In a plane: slips begin under forces that are stiff, and DOPRI5 would take very small steps.
+constexpr auto methods_in_plane = {ode::Method::dop853, ode::Method::radau5};
+
+/// A block on the ground, beside a wall along the diagonal of the plane.
+model::Builder block_in_a_plane(double friction, const SX& push_x, const SX& push_y, model::Builder model) {
+  const SX x = model.state("x", {0.0}), y = model.state("y", {0.0}), z = model.state("z", {0.0});
+  for (const char* velocity : {"vx", "vy", "vz"}) static_cast<void>(model.state(velocity, {0.0}));
+  model.mechanics({.positions = {"x", "y", "z"},
+                   .velocities = {"vx", "vy", "vz"},
+                   .force = {{"vx", push_x}, {"vy", push_y}, {"vz", -8.0}}});
+  model.contact("ground", z, {.tangent = {{"x", 1.0}}, .friction = friction, .second_tangent = {{"y", 1.0}}});
+  model.contact("wall", -0.6 * x - 0.8 * y);
+  return model;
+}
+
+TEST(ContactsThatTouch, ABlockSlipsAwayFromAWallInThePlane) {
+  for (const auto method : methods_in_plane) {
+    for (const double friction : {0.1, 0.3}) {
+      SCOPED_TRACE(::testing::Message() << friction << " " << static_cast<int>(method));
+      model::Builder empty("block");
+      const SX push = 5.0 - 8.0 * empty.time();
+      auto model = block_in_a_plane(friction, 0.6 * push, 0.8 * push, std::move(empty));
+      const double begins = 0.625 + friction, left = 2.0 - begins;
+      expect_slip_from_wall(model, method, 0.625, begins, 3, -0.6 * 4.0 * left * left);
+    }
+  }
+}
+
+/// The wall takes three fifths of the force 5 t, the ground holds the rest, 4 t, up to the friction 2.4.
+TEST(ContactsThatTouch, ABlockSlipsAlongAWallInThePlane) {
+  for (const auto method : methods_in_plane) {
+    SCOPED_TRACE(static_cast<int>(method));
+    model::Builder empty("block");
+    const SX push = 5.0 * empty.time();
+    auto model = block_in_a_plane(0.3, push, 0.0, std::move(empty));
+    const auto run = run_by(model, method);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_EQ(run.events.size(), 1U);
+    EXPECT_EQ(run.events[0].kind, EventKind::slip);
+    EXPECT_NEAR(run.events[0].t, 0.6, 1e-7);
+    const double left = 2.0 - 0.6, speed = 2.0 * left * left;
+    EXPECT_NEAR(run.final.x[3], 0.8 * speed, 1e-5);
+    EXPECT_NEAR(run.final.x[4], -0.6 * speed, 1e-5);
+    EXPECT_EQ(run.final.contact_modes, (std::vector<ContactMode>{ContactMode::slip, ContactMode::closed}));
+  }
+}
+
+/// Two blocks of mass 1 that touch, one of them pushed by 12 sin t: both slip once it is twice their friction, 3.
+TEST(ContactsThatTouch, BlocksThatTouchSlipTogether) {
+  for (const auto method : every_method) {
+    for (const double until : {2.0, 3.0, 6.0}) {
+      SCOPED_TRACE(::testing::Message() << until << " " << static_cast<int>(method));
+      model::Builder model("blocks");
+      const SX a = model.state("a", {0.0}), b = model.state("b", {0.1});
+      const SX ya = model.state("ya", {0.0}), yb = model.state("yb", {0.0});
+      for (const char* velocity : {"va", "vb", "vya", "vyb"}) static_cast<void>(model.state(velocity, {0.0}));
+      model.mechanics({.positions = {"a", "b", "ya", "yb"},
+                       .velocities = {"va", "vb", "vya", "vyb"},
+                       .force = {{"va", 12.0 * sin(model.time())}, {"vya", -10.0}, {"vyb", -10.0}}});
+      model.contact("ga", ya, {.tangent = {{"a", 1.0}}, .friction = 0.3});
+      model.contact("gb", yb, {.tangent = {{"b", 1.0}}, .friction = 0.3});
+      model.contact("ab", b - a - 0.1);
+      IntegrationOptions options;
+      options.method = method;
+      options.until = until;
+      const auto run = run_model(model, options);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+      ASSERT_FALSE(run.events.empty());
+      const double begins = std::numbers::pi / 6.0;
+      EXPECT_EQ(run.events[0].kind, EventKind::slip);
+      EXPECT_EQ(run.events[0].surfaces, (std::vector<std::string>{"ga", "gb"}));
+      EXPECT_NEAR(run.events[0].t, begins, 1e-8);
+      const auto speed = [&](double t) { return 6.0 * (std::cos(begins) - std::cos(t)) - 3.0 * (t - begins); };
+      if (until < 3.1) {
+        EXPECT_EQ(run.events.size(), 1U);
+        EXPECT_NEAR(run.final.x[4], speed(until), 1e-6);
+        EXPECT_NEAR(run.final.x[5], speed(until), 1e-6);
+      } else {
+        // They part at pi, when nothing pushes any more, and the second one slides to its stop.
+        ASSERT_EQ(run.events.size(), 4U);
+        EXPECT_NEAR(run.events[1].t, std::numbers::pi, 1e-6);
+        EXPECT_NEAR(run.events[3].t, std::numbers::pi + speed(std::numbers::pi) / 3.0, 1e-6);
+        EXPECT_EQ(run.final.x[5], 0.0);
+      }
+    }
   }
 }
 

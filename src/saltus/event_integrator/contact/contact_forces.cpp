@@ -154,14 +154,18 @@ void take_best(const ContactPoint& point, const std::vector<int>& resting, Conta
   }
 }
 
-/// Against the forces that would keep these contacts from slipping.
+/// Against the forces that would keep these contacts from slipping; where others hold them, too, these forces are not
+/// one, and the way is that of a motion without friction.
 void guess_directions(const ContactPoint& point, const std::vector<int>& resting, const std::vector<int>& free,
                       ContactForces& result) {
-  ContactForces sticking = result;
-  for (const int i : free) sticking.modes[static_cast<std::size_t>(i)] = ContactMode::stick;
-  const bool solved = solve_forces(point, resting, sticking);
+  ContactForces guess = result;
+  for (const int i : free) guess.modes[static_cast<std::size_t>(i)] = ContactMode::stick;
+  const bool sticks = solve_forces(point, resting, guess) && !guess.is_open;
+  const bool moves = !sticks && solve_forces(point, resting, guess = result);
   for (const int i : free) {
-    const Vector2d needed = solved ? Vector2d(-point.along(sticking.forces, i)) : point.along(point.acceleration, i);
+    const Vector2d needed = sticks  ? Vector2d(-point.along(guess.forces, i))
+                            : moves ? point.along(guess.acceleration, i)
+                                    : point.along(point.acceleration, i);
     result.directions[static_cast<std::size_t>(i)] = needed.norm() > 0.0 ? needed.normalized() : Vector2d(1.0, 0.0);
   }
 }

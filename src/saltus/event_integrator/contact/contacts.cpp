@@ -163,20 +163,19 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
   std::vector<int> touching;
   const ContactPoint limit = point_at(moment.t, moment.alpha, x);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    auto& closed = x[at(contacts_[i].closed)];
-    const bool rests = closed != 0.0 || contains(jumps, contacts_[i].jump);
+    const bool closed = x[at(contacts_[i].closed)] != 0.0, rests = closed || contains(jumps, contacts_[i].jump);
     if (!rests && !comes_to_rest(moment, static_cast<int>(i), limit, x)) continue;
     touching.push_back(static_cast<int>(i));
-    if (closed == 0.0) x[at(contacts_[i].active)] = 1.0;
-    closed = 1.0;
+    if (!closed) x[at(contacts_[i].active)] = 1.0;
   }
   // What is left of velocities into the gaps is more than rounding: to keep a slip would be work on it.
   static_cast<void>(project(moment.t, moment.alpha, x, {}, Slips::free));
   ContactPoint point = point_at(moment.t, moment.alpha, x);
   clean(moment, point, x, {});
-  // The limit is extrapolated, to the tolerances.
+  // The limit is extrapolated, to the tolerances. Along the ground it goes on: impulses that vanish have no friction.
   const double none = rests_below * slowest(moment, point, x);
   for (const int i : touching) {
+    point.velocity(i) = 0.0;
     if (point.along(point.velocity, i).norm() > none) continue;
     for (int k = 0; k < point.tangents[at(i)]; ++k) point.velocity(point.tangent_row(i, k)) = 0.0;
   }
@@ -223,7 +222,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
         "jam)",
         names(touching), moment.t);
   }
-  const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, resting, found, x);
+  const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, point, resting, found, x);
   determined_ = have_one_motion(point, resting, found, chosen);
   enter(moment, point, found[chosen], x);
   static_cast<void>(project(moment.t, moment.alpha, x, touching));
@@ -238,8 +237,9 @@ void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<dou
 }
 
 /// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin.
-std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<int>& resting,
-                                 const std::vector<ContactForces>& found, const std::vector<double>& x) {
+std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint& point,
+                                 const std::vector<int>& resting, const std::vector<ContactForces>& found,
+                                 const std::vector<double>& x) {
   std::size_t best = 0;
   double largest = -std::numeric_limits<double>::infinity();
   const double h = ahead_by * moment.time_scale;
@@ -251,8 +251,10 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const std::vector<
     move_ahead(moment, h, ahead);
     ContactPoint later = point_at(moment.t + h, moment.alpha, ahead);
     for (const int i : resting) {
-      // The sign of the slip is that of the mode.
-      if (found[k].modes[at(i)] != ContactMode::stick) continue;
+      // The sign of the slip is that of the mode; where it begins without an acceleration, that of a rounding.
+      const auto mode = found[k].modes[at(i)];
+      const bool begins = slips(mode) && !point.in_plane(i) && point.along(point.velocity, i).isZero(0.0);
+      if (mode != ContactMode::stick && !begins) continue;
       for (int tangent = 0; tangent < later.tangents[at(i)]; ++tangent) {
         later.velocity(later.tangent_row(i, tangent)) = 0.0;
       }

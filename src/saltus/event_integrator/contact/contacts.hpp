@@ -144,8 +144,9 @@ class Contacts {
   [[nodiscard]] std::optional<std::string> find_modes(const ContactMoment& moment, const std::vector<int>& touching,
                                                       std::vector<std::vector<ContactMode>> excluded,
                                                       ContactPoint& point, std::vector<double>& x);
-  [[nodiscard]] std::size_t best_ahead(const ContactMoment& moment, const std::vector<int>& resting,
-                                       const std::vector<ContactForces>& found, const std::vector<double>& x);
+  [[nodiscard]] std::size_t best_ahead(const ContactMoment& moment, const ContactPoint& point,
+                                       const std::vector<int>& resting, const std::vector<ContactForces>& found,
+                                       const std::vector<double>& x);
   void enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
              std::vector<double>& x);
   void set_units(const ContactMoment& moment, const ContactPoint& point, int i, std::vector<double>& x) const;

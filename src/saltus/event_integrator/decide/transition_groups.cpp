@@ -138,6 +138,19 @@ int Decider::lost_at_exit(const std::vector<int>& group) const {
   return found == group.end() ? -1 : *found;
 }
 
+/// Whether sliding would go on where it ends: one field has turned away from the surface, the other one moves along it.
+/// Of several surfaces that is what selections of the others make of it, which know first derivatives only.
+bool Decider::slides_past_exit(const std::vector<int>& group, const switching::GroupDecision& decision) const {
+  if (decision.verdict != Verdict::decided) return false;
+  for (std::size_t k = 0; k < group.size(); ++k) {
+    const auto& surface = decision.surfaces[k];
+    const bool at_exit =
+        contains(switching_point_.exit_below, group[k]) || contains(switching_point_.exit_above, group[k]);
+    if (at_exit && surface.verdict == Verdict::decided && surface.mode == 0) return true;
+  }
+  return false;
+}
+
 bool Decider::decide(const std::vector<int>& group) {
   if (regions_meet(group)) return decide_regions(group);
   if (const int j = lost_at_exit(group); j >= 0) {
@@ -170,7 +183,8 @@ bool Decider::decide(const std::vector<int>& group) {
   }
   const auto decision = ask(group, table);
   if (passes_kink(group, decision)) return true;
-  if (decision.verdict == Verdict::coupled) return decide_coupled(group, table);
+  const bool goes_on = group.size() > 1 && slides_past_exit(group, decision);
+  if (decision.verdict == Verdict::coupled || goes_on) return decide_coupled(group, table);
   return take_separate(group, decision);
 }
 
@@ -188,16 +202,13 @@ bool Decider::take_separate(const std::vector<int>& group, const switching::Grou
                             "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
                             s_.system.switching[at(culprit)].name, switching_point_.t));
   }
+  // The solution can go on there and leave at any later time.
+  if (group.size() == 1 && slides_past_exit(group, decision)) {
+    return fail(result::Termination::outside_class,
+                two_fold_at(s_.system.switching[at(group.front())].name, switching_point_.t));
+  }
   for (std::size_t k = 0; k < group.size(); ++k) {
     SurfaceDecision surface = decision.surfaces[k];
-    // One field has turned away from the surface, the other one moves along it: the solution can go on there and leave
-    // at any later time.
-    const bool turned =
-        contains(switching_point_.exit_below, group[k]) || contains(switching_point_.exit_above, group[k]);
-    if (turned && surface.verdict == Verdict::decided && surface.mode == 0 && group.size() == 1) {
-      return fail(result::Termination::outside_class,
-                  two_fold_at(s_.system.switching[at(group[k])].name, switching_point_.t));
-    }
     if (surface.verdict == Verdict::stands) {
       const int kept = before_.mode[at(group[k])] != 0 && !switching_point_.start ? before_.mode[at(group[k])] : 1;
       surface = {Verdict::decided, kept, kept > 0 ? 1.0 : 0.0, {}, "psi stays 0 and the fields agree"};

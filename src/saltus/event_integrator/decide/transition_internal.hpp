@@ -157,6 +157,7 @@ class Decider {
  private:
   bool decide(const std::vector<int>& group);
   [[nodiscard]] bool regions_meet(const std::vector<int>& group) const;
+  [[nodiscard]] bool slides_past_exit(const std::vector<int>& group, const switching::GroupDecision& decision) const;
   [[nodiscard]] int lost_at_exit(const std::vector<int>& group) const;
   bool take_separate(const std::vector<int>& group, const switching::GroupDecision& decision);
   [[nodiscard]] bool standing_fields_agree(const std::vector<int>& group,
