@@ -1,6 +1,7 @@
 // Zeros that are none, of surfaces and guards: what a jump leaves at zero, what slides there, what decays to it.
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "run_model.hpp"
 
@@ -86,6 +87,25 @@ TEST(JumpsAtZero, AGuardThatIsSlidOnPassesWhereSlidingEnds) {
       b.jump(v, Direction::up, {{"n", n + 1.0}});
       EXPECT_EQ(counted(run_with(b, 15.0, method)), motions) << static_cast<int>(method);
     }
+  }
+}
+
+/// It arrives from below and stays: it is not above, and equality is true from there on.
+TEST(JumpsAtZero, ConditionsOfWhatIsSlidOnAreAtEquality) {
+  for (const auto method : methods_at_zero) {
+    Builder b("arrival");
+    const SX x = b.state("x", {-1.0});
+    std::vector<SX> n;
+    for (const char* name : {"above", "not_below", "below", "not_above"}) n.push_back(b.state(name, {0.0}));
+    b.dynamics("x", -b.sign(x));
+    for (const char* name : {"above", "not_below", "below", "not_above"}) b.dynamics(name, 0.0);
+    b.jump(model::less(0.0, x), {{"above", n[0] + 1.0}});
+    b.jump(model::less_equal(0.0, x), {{"not_below", n[1] + 1.0}});
+    b.jump(model::less(x, 0.0), {{"below", n[2] + 1.0}});
+    b.jump(model::less_equal(x, 0.0), {{"not_above", n[3] + 1.0}});
+    const auto run = run_with(b, 3.0, method);
+    EXPECT_EQ(run.status.termination, Termination::completed) << run.status.message;
+    EXPECT_EQ(run.final.x, (std::vector<double>{0.0, 0.0, 1.0, 0.0, 0.0})) << static_cast<int>(method);
   }
 }
 

@@ -54,6 +54,16 @@ Jumps::Jumps(const evaluation::ModelKernel& kernel, const model::System& system,
 
 bool Jumps::is_discrete_guard(int function) const { return kernel_.is_discrete_guard(function); }
 
+bool Jumps::is_compared(int function) const {
+  for (std::size_t k = 0; k < system_.jumps.size(); ++k) {
+    if (system_.jumps[k].trigger != JumpTrigger::condition) continue;
+    for (int g = 0; g < static_cast<int>(system_.jumps[k].guards.numel()); ++g) {
+      if (kernel_.jump_guard(static_cast<int>(k), g) == function) return true;
+    }
+  }
+  return false;
+}
+
 /// The next time of a jump with given times.
 double Jumps::time_of(int jump) const {
   const auto& entry = system_.jumps[at(jump)];

@@ -51,6 +51,8 @@ class Jumps {
 
   /// Returns whether the condition of a jump held when it was read last.
   [[nodiscard]] bool holds(int jump) const { return truth_[static_cast<std::size_t>(jump)] != 0U; }
+  /// Returns whether an event function is compared in a condition.
+  [[nodiscard]] bool is_compared(int function) const;
   /// Returns whether a guard depends on discrete states and constants only: compared exactly, changed by jumps only.
   [[nodiscard]] bool is_discrete_guard(int function) const;
   /// Returns the sign of a guard (event function) that triggers its jump, with all others as they are: -1 or 1; 0 if it

@@ -164,6 +164,7 @@ class Run {
   Step jump_in_time();
   bool jump(const ModeState& before, const std::vector<double>& x_before);
   bool settle_jumps();
+  void stop_conditions_slid_on(const Located& located);
   bool execute_jump();
   [[nodiscard]] ContactMoment contact_moment() const;
   [[nodiscard]] bool only_slips_on() const;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/decide/start.hpp"
+#include "saltus/event_integrator/mode/kept_by_sliding.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -86,6 +87,30 @@ bool Run::decide_behind_jumps() {
   }
   choices_.choose(cascade_.transition(), progress());
   return enter(cascade_.transition());
+}
+
+/// Conditions that compare what is slid on from here are at equality: the function that was located passes nothing.
+void Run::stop_conditions_slid_on(const Located& located) {
+  if (jumps_.none()) return;
+  SwitchingPoint point;
+  point.begin(here_.t, here_.x.data(), here_.time_scale);
+  point.at_zero = here_.state.sliding;
+  std::vector<std::size_t> compared;
+  for (const std::size_t place : located.functions) {
+    const auto& function = search_.functions()[place];
+    if (function.kind == FunctionKind::surface) point.touched.push_back(function.index);
+    if (function.kind == FunctionKind::user && jumps_.is_compared(function.index)) compared.push_back(place);
+  }
+  if (compared.empty() || point.touched.empty()) return;
+  point.at_zero.insert(point.at_zero.end(), point.touched.begin(), point.touched.end());
+  std::sort(point.at_zero.begin(), point.at_zero.end());
+  const Transition next = decide_mode(switching_context_, here_.state, point);
+  if (next.termination != Termination::completed) return;
+  for (const std::size_t place : compared) {
+    const int function = search_.functions()[place].index;
+    if (!is_kept_by_sliding(kernel_, next.state, function, here_.t, here_.x.data())) continue;
+    search_.set_user_sign(place, 0, here_.t, here_.x.data());
+  }
 }
 
 /// Executes everything that is due at here_.t, with all that follows at once; the mode behind is in force then.
