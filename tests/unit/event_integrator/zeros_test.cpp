@@ -90,6 +90,38 @@ TEST(JumpsAtZero, AGuardThatIsSlidOnPassesWhereSlidingEnds) {
   }
 }
 
+/// What a second jump of the same time triggers does not look at the rounding of the first one's guard again.
+TEST(JumpsAtZero, ABounceIsOneWhateverElseHappensThere) {
+  for (const auto method : methods_at_zero) {
+    for (int k = 0; k < 10; ++k) {
+      const double height = 0.6 + 0.0813 * k;
+      Builder b("ball");
+      const SX y = b.state("y", {height});
+      const SX v = b.state("v", {0.0});
+      const SX w = b.state("w", {0.0});
+      const SX n = b.state("n", {0.0});
+      b.dynamics("y", v);
+      b.dynamics("v", -9.81);
+      b.dynamics("w", 1.0);
+      b.dynamics("n", 0.0);
+      b.jump(model::less(y, 0.0), {{"v", -0.8 * v}, {"w", 0.0}});
+      b.jump(model::greater(y + w, 0.0), {{"n", n + 1.0}});
+      const auto run = run_with(b, 2.0, method);
+      ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
+      const double fall = std::sqrt(2.0 * height / 9.81);
+      double speed = 9.81 * fall, t = fall;
+      double bounces = 0.0;
+      for (double length = 0.0; t < 2.0; t += length, ++bounces) {
+        speed *= 0.8;
+        length = 2.0 * speed / 9.81;
+      }
+      const double left = t - 2.0;  // before the next bounce
+      EXPECT_NEAR(run.final.x[0], (speed - 0.5 * 9.81 * left) * left, 1e-7)
+          << static_cast<int>(method) << " " << height;
+    }
+  }
+}
+
 /// It arrives from below and stays: it is not above, and equality is true from there on.
 TEST(JumpsAtZero, ConditionsOfWhatIsSlidOnAreAtEquality) {
   for (const auto method : methods_at_zero) {

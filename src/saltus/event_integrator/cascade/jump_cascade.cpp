@@ -39,6 +39,11 @@ void JumpCascade::begin(const Located& located) {
     const auto& entry = search_.functions()[function];
     if (entry.kind == FunctionKind::surface || entry.kind == FunctionKind::user) zeros_.push_back(entry.index);
   }
+  // Where no time has passed since the last jumps what they have left at zero still is.
+  const auto& vanish = search_.user_zeros();
+  for (std::size_t user = 0; user < vanish.size(); ++user) {
+    if (vanish[user]) add_zero(kernel_.switching_functions() + static_cast<int>(user));
+  }
 }
 
 void JumpCascade::note_guards() {
@@ -57,20 +62,40 @@ void JumpCascade::note_guards() {
   }
 }
 
-/// Whether jumps have left a function at zero: to its rounding and that of the time of its location, or no farther
-/// from it.
-bool JumpCascade::is_unchanged(int function) const {
+/// How far the time here may be from that of the event, to its rounding and by what is left of what was located. The
+/// iteration of implicit steps leaves more than rounding.
+double JumpCascade::time_resolution() const {
+  const double rounding = rounding_unit * std::abs(here_.t);
+  double left = 0.0;
+  for (const int zero : zeros_) {
+    const double rate = largest_rates_[at(zero)].value;
+    if (rate > 0.0) left = std::max(left, std::abs(zero_values_[at(zero)]) / rate);
+  }
+  constexpr double least = 8.0, most = 1e4;
+  return std::clamp(2.0 * left, least * rounding, most * rounding);
+}
+
+/// Rounding of a function here, and what that of the time leaves of it where it was located.
+double JumpCascade::resolution(int function) const {
   const auto f = at(function);
-  const double value = values_.value[f], before = zero_values_[f];
-  const double of_time = std::abs(here_.t) * largest_rates_[f].value;
-  const bool closer = std::abs(value) <= std::abs(before) && !contacts_.guards(function);
-  return closer || std::abs(value - before) <= 8.0 * rounding_unit * (values_.magnitude[f] + of_time);
+  return 8.0 * rounding_unit * values_.magnitude[f] + time_resolution() * largest_rates_[f].value;
+}
+
+/// Whether jumps have left the value of a function as it was.
+bool JumpCascade::is_unchanged(int function) const {
+  return std::abs(values_.value[at(function)] - zero_values_[at(function)]) <= resolution(function);
+}
+
+/// Whether jumps have left a function at zero, or no farther from it.
+bool JumpCascade::stays_at_zero(int function) const {
+  const bool closer = std::abs(values_.value[at(function)]) <= std::abs(zero_values_[at(function)]);
+  return is_unchanged(function) || (closer && !contacts_.guards(function));
 }
 
 void JumpCascade::drop_zeros() {
   if (zeros_.empty()) return;
   find_values();
-  std::erase_if(zeros_, [&](int function) { return !is_unchanged(function); });
+  std::erase_if(zeros_, [&](int function) { return !stays_at_zero(function); });
 }
 
 void JumpCascade::read_user_signs() {
@@ -82,8 +107,9 @@ void JumpCascade::read_user_signs() {
     const int function = kernel_.switching_functions() + static_cast<int>(user);
     const double value = values_.value[at(function)];
     const bool located = contains(zeros_, function);
-    vanish[user] =
-        located || holding_.holds(function) || std::abs(value) <= 8.0 * rounding_unit * values_.magnitude[at(function)];
+    const double rounding =
+        is_unchanged(function) ? 8.0 * rounding_unit * values_.magnitude[at(function)] : resolution(function);
+    vanish[user] = located || holding_.holds(function) || std::abs(value) <= rounding;
     if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
     const bool turns = signs[user] * value < 0.0;
     const bool keeps_sign =

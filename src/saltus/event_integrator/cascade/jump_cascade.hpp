@@ -92,7 +92,10 @@ class JumpCascade {
   [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
   [[nodiscard]] SwitchingPoint at_this_time() const;
   void find_values();
+  [[nodiscard]] double time_resolution() const;
+  [[nodiscard]] double resolution(int function) const;
   [[nodiscard]] bool is_unchanged(int function) const;
+  [[nodiscard]] bool stays_at_zero(int function) const;
   [[nodiscard]] bool is_taken_back(const ExecutedJump& executed, int guard);
   [[nodiscard]] double size_at(int function);
   [[nodiscard]] Motion motion_of(int function);
