@@ -144,9 +144,6 @@ std::string converter_ladder(std::int64_t n, std::int64_t seed) {
                    "until = 10\n");
 }
 
-using Writer = std::string (*)(std::int64_t parts, std::int64_t seed);
-constexpr Writer writers[] = {converter_ladder, gene_network, spring_block, thermostat_rod};
-
 std::string size_names(const SizedModel& model) {
   std::string names;
   for (const auto& size : model.sizes) names += (names.empty() ? "" : ", ") + size.name;
@@ -167,10 +164,19 @@ Expected<std::int64_t> checked(const SizedModel& model, const std::string& name,
 
 const std::vector<SizedModel>& sized_models() {
   static const std::vector<SizedModel> models{
-      {"converter-ladder", "stages of inductor and capacitor, each fed by a relay", {{"stages", 10}, {"seed", 1}}},
-      {"gene-network", "genes, each switched by three others at random thresholds", {{"genes", 10}, {"seed", 1}}},
-      {"spring-block", "blocks in a row on springs, with dry friction on a belt", {{"blocks", 10}}},
-      {"thermostat-rod", "a rod heated at one end by a thermostat that feels its middle", {{"cells", 10}}}};
+      {"converter-ladder",
+       "stages of inductor and capacitor, each fed by a relay",
+       {{"stages", 10}, {"seed", 1}},
+       converter_ladder},
+      {"gene-network",
+       "genes, each switched by three others at random thresholds",
+       {{"genes", 10}, {"seed", 1}},
+       gene_network},
+      {"spring-block", "blocks in a row on springs, with dry friction on a belt", {{"blocks", 10}}, spring_block},
+      {"thermostat-rod",
+       "a rod heated at one end by a thermostat that feels its middle",
+       {{"cells", 10}},
+       thermostat_rod}};
   return models;
 }
 
@@ -197,7 +203,7 @@ Expected<std::string> write_sized_model(const SizedModel& model, const ModelSize
     if (!number) return tl::unexpected(number.error());
     numbers[place - model.sizes.begin()] = *number;
   }
-  return writers[&model - sized_models().data()](numbers[0], numbers[1]);
+  return model.write(numbers[0], numbers[1]);
 }
 
 std::string how_to_write(const SizedModel& model) {

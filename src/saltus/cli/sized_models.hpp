@@ -23,6 +23,7 @@ struct SizedModel {
   std::string name;
   std::string description;
   std::vector<ModelSize> sizes;  ///< the first one is the number of parts
+  std::string (*write)(std::int64_t parts, std::int64_t seed);
 };
 
 /// Returns all of them, by name.
