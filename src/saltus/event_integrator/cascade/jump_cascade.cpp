@@ -107,13 +107,12 @@ void JumpCascade::read_user_signs() {
     const int function = kernel_.switching_functions() + static_cast<int>(user);
     const double value = values_.value[at(function)];
     const bool located = contains(zeros_, function);
-    const double rounding =
-        is_unchanged(function) ? 8.0 * rounding_unit * values_.magnitude[at(function)] : resolution(function);
+    const bool unchanged = is_unchanged(function);
+    const double rounding = unchanged ? 8.0 * rounding_unit * values_.magnitude[at(function)] : resolution(function);
     vanish[user] = located || holding_.holds(function) || std::abs(value) <= rounding;
     if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
     const bool turns = signs[user] * value < 0.0;
-    const bool keeps_sign =
-        turns && is_unchanged(function) && search_.is_within_errors(function, value, here_.t, here_.x.data());
+    const bool keeps_sign = turns && unchanged && search_.is_within_errors(function, value, here_.t, here_.x.data());
     if (!vanish[user] && !keeps_sign) signs[user] = value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
   }
   search_.set_user_signs(signs, vanish);
@@ -135,9 +134,7 @@ Motion JumpCascade::motion_of(int function) {
 
 SwitchingPoint JumpCascade::at_this_time() const {
   SwitchingPoint switching_point;
-  switching_point.t = here_.t;
-  switching_point.x = here_.x.data();
-  switching_point.time_scale = here_.time_scale;
+  switching_point.begin(here_.t, here_.x.data(), here_.time_scale);
   return switching_point;
 }
 

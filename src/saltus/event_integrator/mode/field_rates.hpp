@@ -17,6 +17,25 @@ struct Rate {
   double slope = 0.0;      ///< sum of |d_i g|
 };
 
+/// Returns d_t g + grad g . field at (t, x); 0 times infinity is 0. `row` takes grad g.
+[[nodiscard]] inline Rate rate_along(const evaluation::ModelKernel& kernel, int function, double t,
+                                     const std::vector<double>& x, const std::vector<double>& alpha,
+                                     const std::vector<double>& field, std::vector<double>& row) {
+  row.resize(x.size());
+  Rate rate;
+  kernel.gradient(function, t, x.data(), alpha.data(), row.data(), &rate.value);
+  rate.terms = std::abs(rate.value);
+  rate.magnitude = rate.value == 0.0 ? 0.0 : std::abs(rate.value * t);
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const double term = row[i] == 0.0 ? 0.0 : row[i] * field[i];
+    rate.value += term;
+    rate.magnitude += row[i] == 0.0 ? 0.0 : std::abs(row[i] * x[i]);
+    rate.terms += std::abs(term);
+    rate.slope += std::abs(row[i]);
+  }
+  return rate;
+}
+
 /// FieldRates differentiates event functions along fields, with the selections of a position.
 class FieldRates {
  public:
@@ -30,19 +49,7 @@ class FieldRates {
   }
   /// Returns d_t g + grad g . field at (t, x); 0 times infinity is 0.
   [[nodiscard]] Rate at(int function, double t, const std::vector<double>& x, const std::vector<double>& field) {
-    row_.resize(x.size());
-    Rate rate;
-    kernel_.gradient(function, t, x.data(), here_.state.alpha.data(), row_.data(), &rate.value);
-    rate.terms = std::abs(rate.value);
-    rate.magnitude = rate.value == 0.0 ? 0.0 : std::abs(rate.value * t);
-    for (std::size_t i = 0; i < row_.size(); ++i) {
-      const double term = row_[i] == 0.0 ? 0.0 : row_[i] * field[i];
-      rate.value += term;
-      rate.magnitude += row_[i] == 0.0 ? 0.0 : std::abs(row_[i] * x[i]);
-      rate.terms += std::abs(term);
-      rate.slope += std::abs(row_[i]);
-    }
-    return rate;
+    return rate_along(kernel_, function, t, x, here_.state.alpha, field, row_);
   }
 
  private:

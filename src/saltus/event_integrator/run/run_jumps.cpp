@@ -94,7 +94,6 @@ void Run::stop_conditions_slid_on(const Located& located) {
   if (jumps_.none()) return;
   SwitchingPoint point;
   point.begin(here_.t, here_.x.data(), here_.time_scale);
-  point.at_zero = here_.state.sliding;
   std::vector<std::size_t> compared;
   for (const std::size_t place : located.functions) {
     const auto& function = search_.functions()[place];
@@ -102,6 +101,7 @@ void Run::stop_conditions_slid_on(const Located& located) {
     if (function.kind == FunctionKind::user && jumps_.is_compared(function.index)) compared.push_back(place);
   }
   if (compared.empty() || point.touched.empty()) return;
+  point.at_zero = here_.state.sliding;
   point.at_zero.insert(point.at_zero.end(), point.touched.begin(), point.touched.end());
   std::sort(point.at_zero.begin(), point.at_zero.end());
   const Transition next = decide_mode(switching_context_, here_.state, point);

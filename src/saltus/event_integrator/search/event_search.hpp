@@ -144,6 +144,7 @@ class EventSearch {
   SearchOutcome search_interval(const ode::DenseStep& step, double from, double to, int depth, Hit& hit);
   [[nodiscard]] Finding find_along(const ode::DenseStep& step, std::size_t i) const;
   Finding find(const ode::DenseStep& step, double from, double to, std::size_t i);
+  [[nodiscard]] bool may_be_an_error(const ode::DenseStep& step, const Hit& hit) const;
   [[nodiscard]] bool is_rounding(const ode::DenseStep& step, const Hit& hit);
   [[nodiscard]] bool is_confirmed(const ode::DenseStep& step, const Hit& hit);
   Finding find_clear(const ode::DenseStep& step, double from, double to, std::size_t i);

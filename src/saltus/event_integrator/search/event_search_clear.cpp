@@ -1,44 +1,45 @@
-// Sign changes of expressions and guards of [[events]]: only those count that are more than the errors of the steps.
+// Sign changes that may be errors of their step: which of them count. Those of [[events]] count where they are more.
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "saltus/event_integrator/mode/field_rates.hpp"
 #include "saltus/event_integrator/mode/kept_by_sliding.hpp"
 #include "saltus/event_integrator/search/event_search_internal.hpp"
 
 namespace saltus::event_integrator {
-namespace {
-
-constexpr double by_far = 1e6;  // a zero that passes so many accuracies in a step is none of its errors
-
-}  // namespace
 
 bool EventSearch::is_within_errors(int function, double value, double t, const double* x) {
   return kernel_.is_listed_only(function) &&
          std::abs(value) <= errors_.of(function, t, x, mode_.state.alpha.data(), {t, t, x, x});
 }
 
+/// Whether a function passes its zero by no more than errors of the step may.
+bool EventSearch::may_be_an_error(const ode::DenseStep& step, const Hit& hit) const {
+  constexpr double by_far = 1e3;
+  return std::abs(hit.slope) * step.h <= by_far * levels_.accuracy[hit.function];
+}
+
 /// Whether a zero of a surface or a guard is more than errors of the step by far, or the field leads through it. A step
-/// that is too long for what decays ends beyond zero, where the field would not have gone.
+/// that is too long for what decays ends beyond zero, where the field would not have gone. A surface that is left at
+/// the start of the step does not decay to it: cycles of one step each are not asked.
 bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
   const auto& function = mode_.functions[hit.function];
-  const bool is_read = function.kind == FunctionKind::surface || function.kind == FunctionKind::user;
-  const double passed = std::abs(hit.slope) * step.h;
-  if (!is_read || is_listed_only(hit.function) || !(passed <= by_far * levels_.accuracy[hit.function])) return true;
+  const bool is_surface = function.kind == FunctionKind::surface && function.zero_order == 0;
+  const bool is_guard = function.kind == FunctionKind::user && !is_listed_only(hit.function);
+  if (!(is_surface || is_guard) || !may_be_an_error(step, hit)) return true;
   const double t = step.t + hit.theta * step.h;
   step.evaluate(hit.theta, x_.data());
-  std::vector<double> slope(x_.size());
+  std::vector<double> slope(x_.size()), gradient;
   field_(t, x_.data(), slope.data());
-  const double rate = errors_.rate_along(function.index, t, x_.data(), mode_.state.alpha.data(), slope);
-  return hit.sign * rate < 1e-3 * hit.sign * hit.slope;
+  const Rate rate = rate_along(kernel_, function.index, t, x_, mode_.state.alpha, slope, gradient);
+  return hit.sign * rate.value < 1e-3 * hit.sign * hit.slope;
 }
 
 /// Whether a zero of a user function is one of its roundings, as the surfaces that are slid on keep it.
 bool EventSearch::is_rounding(const ode::DenseStep& step, const Hit& hit) {
   const auto& function = mode_.functions[hit.function];
-  if (function.kind != FunctionKind::user || mode_.state.sliding.empty()) return false;
-  const double passed = std::abs(hit.slope) * step.h;
-  if (!(passed <= by_far * levels_.accuracy[hit.function])) return false;
+  if (function.kind != FunctionKind::user || mode_.state.sliding.empty() || !may_be_an_error(step, hit)) return false;
   step.evaluate(hit.theta, x_.data());
   return is_kept_by_sliding(kernel_, mode_.state, function.index, step.t + hit.theta * step.h, x_.data());
 }

@@ -17,14 +17,4 @@ double StepErrors::of(int function, double t, const double* x, const double* alp
   return std::isfinite(error) ? error : 0.0;
 }
 
-double StepErrors::rate_along(int function, double t, const double* x, const double* alpha,
-                              const std::vector<double>& f) {
-  double rate = 0.0;
-  kernel_.gradient(function, t, x, alpha, gradient_.data(), &rate);
-  for (std::size_t i = 0; i < f.size(); ++i) {
-    if (gradient_[i] != 0.0) rate += gradient_[i] * f[i];
-  }
-  return rate;
-}
-
 }  // namespace saltus::event_integrator

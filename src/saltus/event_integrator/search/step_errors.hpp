@@ -22,9 +22,6 @@ class StepErrors {
   /// 0 where that is not finite, and for functions of time. Cost: a gradient.
   /// @param bounds  of the states over the step
   [[nodiscard]] double of(int function, double t, const double* x, const double* alpha, const StepBounds& bounds);
-  /// Returns d phi / dt of an event function at (t, x) along f (n_x). Cost: a gradient.
-  [[nodiscard]] double rate_along(int function, double t, const double* x, const double* alpha,
-                                  const std::vector<double>& f);
 
  private:
   const evaluation::ModelKernel& kernel_;
