@@ -5,9 +5,11 @@
 #include <limits>
 
 #include <Eigen/Dense>
+#include <Eigen/SparseCore>
 #include <casadi/core/function.hpp>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/components.hpp"
 #include "saltus/reformulation/expressions_internal.hpp"
 
 namespace saltus::reformulation {
@@ -20,9 +22,12 @@ constexpr double rank_tolerance = 1e-8;
 /// A surface is met by a solution that slides where its psi is 0 to the accuracy of the states.
 constexpr double zero_tolerance = 1e-6;
 
-Eigen::MatrixXd matrix(const DM& values) {
-  const DM dense = DM::densify(values);
-  return Eigen::Map<const Eigen::MatrixXd>(dense.ptr(), dense.size1(), dense.size2());
+using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, casadi_int>;
+
+/// Cost: grows with the entries that are not structurally 0.
+Sparse matrix(const DM& values) {
+  return Eigen::Map<const Sparse>(values.size1(), values.size2(), values.nnz(), values.colind(), values.row(),
+                                  values.ptr());
 }
 
 /// f with the lifted variables put in.
@@ -101,13 +106,13 @@ std::vector<double> WellPosedness::Parts::held_at(const SolutionPoint& point) co
 SurfaceStates WellPosedness::Parts::sides_at(const SolutionPoint& point, const std::vector<double>& held) const {
   const auto values = surfaces(std::vector<DM>{point.t, point.x, point.u, parameters, held});
   const auto psi = std::vector<double>(DM::densify(values[0]));
-  const Eigen::MatrixXd gradient = matrix(values[1]);
+  const Sparse transposed = matrix(values[1]).transpose();
   const double size =
       Eigen::Map<const Eigen::VectorXd>(point.x.data(), static_cast<Eigen::Index>(point.x.size())).norm();
   SurfaceStates sides;
   for (std::size_t j = 0; j < psi.size(); ++j) {
     const Surface& surface = dcs.surfaces[j];
-    const double steepness = gradient.row(static_cast<Eigen::Index>(j)).norm();
+    const double steepness = transposed.col(static_cast<Eigen::Index>(j)).norm();
     const bool is_zero = std::abs(psi[j]) <= zero_tolerance * steepness * (1.0 + size);
     const bool slides = surface.function >= 0 && point.mode[at(surface.function)] == 0 && is_zero;
     sides.alpha.push_back(slides ? point.alpha[at(surface.function)] : psi[j] > 0.0 ? 1.0 : 0.0);
@@ -125,33 +130,73 @@ struct Unknowns {
   int simplexes = 0;
 };
 
+/// 1 / length of each column, by the longest of its block; 1 where all of a block is 0.
+Eigen::VectorXd scales(const Sparse& columns, const std::vector<Eigen::Index>& block_of, Eigen::Index blocks) {
+  Eigen::VectorXd longest = Eigen::VectorXd::Zero(blocks), scale = Eigen::VectorXd::Ones(columns.cols());
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    longest(block_of[at(i)]) = std::max(longest(block_of[at(i)]), columns.col(i).norm());
+  }
+  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+    if (longest(block_of[at(i)]) > 0.0) scale(i) = 1.0 / longest(block_of[at(i)]);
+  }
+  return scale;
+}
+
 /// Gradients and fields divided by their lengths (those of a simplex by the longest), so that the entries are cosines;
 /// what is 0 stays 0.
-Eigen::MatrixXd system_of(const Unknowns& unknowns, const Eigen::MatrixXd& indicator_x,
-                          const Eigen::MatrixXd& f_selection) {
+Sparse system_of(const Unknowns& unknowns, const Sparse& indicator_x, const Sparse& f_selection) {
   const auto n = static_cast<Eigen::Index>(unknowns.selections.size());
-  Eigen::MatrixXd gradients(n, indicator_x.cols()), fields(f_selection.rows(), n);
-  Eigen::VectorXd longest_gradient = Eigen::VectorXd::Zero(n + unknowns.simplexes), longest_field = longest_gradient;
-  const auto block = [&](Eigen::Index i) {
+  const Eigen::Index size = n + unknowns.simplexes;
+  std::vector<Eigen::Index> block_of;
+  std::vector<Eigen::Triplet<double>> entries;
+  Sparse chosen(f_selection.cols(), n);
+  for (Eigen::Index i = 0; i < n; ++i) {
     const int simplex = unknowns.simplex_of[at(i)];
-    return simplex < 0 ? i : n + simplex;
-  };
-  for (Eigen::Index i = 0; i < n; ++i) {
-    gradients.row(i) = indicator_x.row(unknowns.selections[at(i)]);
-    fields.col(i) = f_selection.col(unknowns.selections[at(i)]);
-    longest_gradient(block(i)) = std::max(longest_gradient(block(i)), gradients.row(i).norm());
-    longest_field(block(i)) = std::max(longest_field(block(i)), fields.col(i).norm());
+    block_of.push_back(simplex < 0 ? i : n + simplex);
+    chosen.insert(unknowns.selections[at(i)], i) = 1.0;
+    if (simplex < 0) continue;
+    entries.emplace_back(i, n + simplex, 1.0);
+    entries.emplace_back(n + simplex, i, 1.0);
   }
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n + unknowns.simplexes, n + unknowns.simplexes);
-  result.topLeftCorner(n, n) = gradients * fields;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (longest_gradient(block(i)) > 0.0) result.row(i).head(n) /= longest_gradient(block(i));
-    if (longest_field(block(i)) > 0.0) result.col(i).head(n) /= longest_field(block(i));
-    if (block(i) == i) continue;
-    result(i, block(i)) = 1.0;
-    result(block(i), i) = 1.0;
+  const Sparse gradients = Sparse(indicator_x.transpose()) * chosen, fields = f_selection * chosen;
+  const Eigen::VectorXd rows = scales(gradients, block_of, size), columns = scales(fields, block_of, size);
+  const Sparse product = Sparse(gradients.transpose()) * fields;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Sparse::InnerIterator entry(product, j); entry; ++entry) {
+      entries.emplace_back(entry.row(), j, entry.value() * rows(entry.row()) * columns(j));
+    }
   }
+  Sparse result(size, size);
+  result.setFromTriplets(entries.begin(), entries.end());
   return result;
+}
+
+/// The singular values of a square matrix, by its blocks: a block has the unknowns that some equation joins.
+std::vector<double> singular_values(const Sparse& system) {
+  Components components(static_cast<std::size_t>(system.cols()));
+  for (Eigen::Index j = 0; j < system.cols(); ++j) {
+    for (Sparse::InnerIterator entry(system, j); entry; ++entry) {
+      if (entry.value() != 0.0) components.join(static_cast<std::size_t>(entry.row()), static_cast<std::size_t>(j));
+    }
+  }
+  const auto blocks = components.lists();
+  std::vector<Eigen::Index> place(static_cast<std::size_t>(system.cols()));
+  for (const auto& block : blocks) {
+    for (std::size_t k = 0; k < block.size(); ++k) place[block[k]] = static_cast<Eigen::Index>(k);
+  }
+  std::vector<double> found;
+  for (const auto& block : blocks) {
+    const auto n = static_cast<Eigen::Index>(block.size());
+    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
+    for (const std::size_t j : block) {
+      for (Sparse::InnerIterator entry(system, static_cast<Eigen::Index>(j)); entry; ++entry) {
+        if (entry.value() != 0.0) dense(place[at(entry.row())], place[j]) = entry.value();
+      }
+    }
+    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(dense).singularValues();
+    found.insert(found.end(), values.begin(), values.end());
+  }
+  return found;
 }
 
 }  // namespace
@@ -209,14 +254,15 @@ ActiveSetRank WellPosedness::rank_at(const SolutionPoint& point) const {
   result.smallest_singular_value = std::numeric_limits<double>::infinity();
   if (result.unknowns == 0) return result;
   const auto gradients = p.gradients(std::vector<DM>{point.t, point.x, point.u, p.parameters, held, selection});
-  const Eigen::MatrixXd system = system_of(unknowns, matrix(gradients[0]), matrix(gradients[1]));
-  if (!system.allFinite()) {
+  const Sparse system = system_of(unknowns, matrix(gradients[0]), matrix(gradients[1]));
+  if (!Eigen::Map<const Eigen::VectorXd>(system.valuePtr(), system.nonZeros()).allFinite()) {
     result.smallest_singular_value = std::numeric_limits<double>::quiet_NaN();
     return result;
   }
-  const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(system).singularValues();
-  result.smallest_singular_value = values(values.size() - 1);
-  result.rank = static_cast<int>((values.array() > rank_tolerance).count());
+  for (const double value : singular_values(system)) {
+    result.smallest_singular_value = std::min(result.smallest_singular_value, value);
+    result.rank += value > rank_tolerance ? 1 : 0;
+  }
   return result;
 }
 

@@ -40,7 +40,7 @@ class WellPosedness {
   WellPosedness(WellPosedness&&) noexcept;
   ~WellPosedness();
 
-  /// Cost: an evaluation of all gradients and a singular value decomposition.
+  /// Cost: an evaluation of all gradients, and a singular value decomposition of each block of unknowns.
   [[nodiscard]] ActiveSetRank rank_at(const SolutionPoint& point) const;
 
  private:

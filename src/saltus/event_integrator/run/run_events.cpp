@@ -258,7 +258,7 @@ Run::Step Run::handle(const Located& located) {
   event_.listed_only = std::all_of(located.functions.begin(), located.functions.end(),
                                    [&](std::size_t function) { return search_.is_listed_only(function); });
   flip_user_functions(located);
-  stop_conditions_slid_on(located);
+  turn_by_mode_behind(located);
   jumps_.update(jump_point());
   if (jumps_have_problem()) return depart(arrival);
   cascade_.begin(located);

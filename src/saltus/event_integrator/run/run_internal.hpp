@@ -164,7 +164,8 @@ class Run {
   Step jump_in_time();
   bool jump(const ModeState& before, const std::vector<double>& x_before);
   bool settle_jumps();
-  void stop_conditions_slid_on(const Located& located);
+  [[nodiscard]] std::vector<std::size_t> with_kinks_here(const std::vector<int>& touched) const;
+  void turn_by_mode_behind(const Located& located);
   bool execute_jump();
   [[nodiscard]] ContactMoment contact_moment() const;
   [[nodiscard]] bool only_slips_on() const;

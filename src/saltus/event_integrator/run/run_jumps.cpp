@@ -58,9 +58,10 @@ bool Run::execute_jump() {
   }
   if (!cells_.empty())
     event_.cell_change = std::max(event_.cell_change, cells_.locate(here_.t, here_.x.data(), here_.state.alpha));
-  cascade_.drop_zeros();
+  // What is left of a zero depends on the selections behind the jump.
   if (!here_.state.alpha.empty())
     here_.state.alpha = selections_at(switching_context_, here_.t, here_.x.data(), here_.state.alpha);
+  cascade_.drop_zeros();
   cascade_.read_user_signs();
   jumps_.update(jump_point());
   return !jumps_have_problem();
@@ -89,27 +90,52 @@ bool Run::decide_behind_jumps() {
   return enter(cascade_.transition());
 }
 
-/// Conditions that compare what is slid on from here are at equality: the function that was located passes nothing.
-void Run::stop_conditions_slid_on(const Located& located) {
-  if (jumps_.none()) return;
+/// User functions whose kinks are among the surfaces touched here.
+std::vector<std::size_t> Run::with_kinks_here(const std::vector<int>& touched) const {
+  std::vector<std::size_t> found;
+  const auto& functions = search_.functions();
+  for (std::size_t place = 0; place < functions.size(); ++place) {
+    if (functions[place].kind != FunctionKind::user) continue;
+    const auto& inner = kernel_.inner(functions[place].index);
+    const bool has_kink = std::any_of(touched.begin(), touched.end(), [&](int j) { return contains(inner, j); });
+    if (has_kink) found.push_back(place);
+  }
+  return found;
+}
+
+/// What was located passes nothing where the mode behind keeps it at zero, or leads it back: conditions that compare
+/// what is slid on from here are at equality, and a function with a kink at its zero takes the side of the mode behind.
+void Run::turn_by_mode_behind(const Located& located) {
+  const auto& functions = search_.functions();
   SwitchingPoint point;
   point.begin(here_.t, here_.x.data(), here_.time_scale);
   std::vector<std::size_t> compared;
   for (const std::size_t place : located.functions) {
-    const auto& function = search_.functions()[place];
+    const auto& function = functions[place];
     if (function.kind == FunctionKind::surface) point.touched.push_back(function.index);
-    if (function.kind == FunctionKind::user && jumps_.is_compared(function.index)) compared.push_back(place);
+    const bool user = function.kind == FunctionKind::user;
+    if (user && (jumps_.is_compared(function.index) || user_events_.is_compared(function.index)))
+      compared.push_back(place);
   }
-  if (compared.empty() || point.touched.empty()) return;
+  if (point.touched.empty() || search_.user_signs().empty()) return;
+  auto turning = with_kinks_here(point.touched);
+  std::erase_if(turning, [&](std::size_t place) {
+    const auto& at_zero = located.functions;
+    return functions[place].sign != 0 && std::find(at_zero.begin(), at_zero.end(), place) == at_zero.end();
+  });
+  if (compared.empty() && turning.empty()) return;
+  std::sort(point.touched.begin(), point.touched.end());
   point.at_zero = here_.state.sliding;
   point.at_zero.insert(point.at_zero.end(), point.touched.begin(), point.touched.end());
   std::sort(point.at_zero.begin(), point.at_zero.end());
   const Transition next = decide_mode(switching_context_, here_.state, point);
   if (next.termination != Termination::completed) return;
+  const auto turn = [&](std::size_t place, int sign) { search_.set_user_sign(place, sign, here_.t, here_.x.data()); };
+  for (const std::size_t place : turning) {
+    turn(place, side_ahead(switching_context_, next.state, point, here_.x, functions[place].index));
+  }
   for (const std::size_t place : compared) {
-    const int function = search_.functions()[place].index;
-    if (!is_kept_by_sliding(kernel_, next.state, function, here_.t, here_.x.data())) continue;
-    search_.set_user_sign(place, 0, here_.t, here_.x.data());
+    if (is_kept_by_sliding(kernel_, next.state, functions[place].index, here_.t, here_.x.data())) turn(place, 0);
   }
 }
 

@@ -21,6 +21,16 @@ std::vector<std::size_t> UserEvents::update(double t, const double* x, const std
   });
 }
 
+bool UserEvents::is_compared(int function) const {
+  int guards = 0;
+  int first = kernel_.switching_functions();
+  for (const auto& event : system_.events) {
+    guards += static_cast<int>(event.guards.numel());
+    first += model::rule_of(event).condition ? 0 : 1;
+  }
+  return function >= first && function < first + guards;
+}
+
 bool UserEvents::stops(std::size_t event) const { return system_.events[event].action == model::AtEvent::stop; }
 
 }  // namespace saltus::event_integrator

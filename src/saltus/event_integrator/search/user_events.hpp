@@ -19,6 +19,8 @@ class UserEvents {
   /// entries of [[events]] fire. The first call only sets up.
   [[nodiscard]] std::vector<std::size_t> update(double t, const double* x, const std::vector<double>& alpha,
                                                 const std::vector<int>& signs);
+  /// Returns whether an event function is compared in a condition.
+  [[nodiscard]] bool is_compared(int function) const;
   [[nodiscard]] bool stops(std::size_t event) const;
 
  private:
