@@ -169,6 +169,69 @@ TEST(JumpsAtZero, AJumpThatIsTakenBackAtOnceEndsTheRun) {
   }
 }
 
+/// An alarm that raises its threshold the first time only: later executions set what does not move to what it is.
+TEST(JumpsAtZero, AThresholdThatIsSetAgainToWhatItIsIsPassed) {
+  for (const auto method : methods_at_zero) {
+    Builder b("alarm");
+    const SX x = b.state("x", {0.0});
+    const SX phase = b.state("phase", {0.0});
+    const SX n = b.state("n", {0.0});
+    b.dynamics("x", cos(b.time()));
+    b.dynamics("phase", 0.0);
+    b.dynamics("n", 0.0);
+    b.jump(model::less(0.5 + 0.1 * phase, x), {{"phase", 1.0}, {"n", n + 1.0}});
+    EXPECT_EQ(counted(run_with(b, 20.0, method)), 5.0) << static_cast<int>(method);
+  }
+}
+
+/// Behind the jump the other argument is the larger one, and the condition stays true where they meet again.
+TEST(GuardsWithKinks, AConditionThatStaysTrueBehindItsJumpFiresOnce) {
+  for (const auto method : methods_at_zero) {
+    Builder builder("alarm");
+    const SX a = builder.state("a", {0.0});
+    const SX b = builder.state("b", {-5.0});
+    const SX n = builder.state("n", {0.0});
+    builder.dynamics("a", 1.0);
+    builder.dynamics("b", -1.0);
+    builder.dynamics("n", 0.0);
+    const auto hot = model::less(0.5, builder.max(a, b));
+    builder.event(hot);
+    builder.jump(hot, {{"b", 3.0}, {"n", n + 1.0}});
+    const auto run = run_with(builder, 7.0, method);
+    EXPECT_EQ(counted(run), 1.0) << static_cast<int>(method);
+    EXPECT_NEAR(run.final.x[1], -3.5, 1e-12);
+    EXPECT_EQ(run.events.size(), 2U) << static_cast<int>(method);
+  }
+}
+
+TEST(GuardsWithKinks, AZeroThatIsTouchedAtAKinkIsNotPassed) {
+  for (const auto method : methods_at_zero) {
+    Builder b("touch");
+    const SX x = b.state("x", {-1.0});
+    const SX n = b.state("n", {0.0});
+    b.dynamics("x", 1.0);
+    b.dynamics("n", 0.0);
+    b.jump(model::less(b.abs(x), 0.0), {{"n", n + 1.0}});
+    b.jump(b.abs(x), Direction::down, {{"n", n + 1.0}});
+    b.jump(b.max(x, 0.0), Direction::down, {{"n", n + 1.0}});
+    b.jump(b.max(x, 0.0), Direction::up, {{"n", n + 8.0}});
+    EXPECT_EQ(counted(run_with(b, 3.0, method)), 8.0) << static_cast<int>(method);
+  }
+}
+
+/// What is compared is slid on from the event: the condition `x > 0` does not become true.
+TEST(GuardsWithKinks, AnEventsConditionIsAtEqualityWhereItIsSlidOn) {
+  for (const auto method : methods_at_zero) {
+    Builder b("slide");
+    const SX x = b.state("x", {-1.0});
+    b.dynamics("x", -b.sign(x));
+    b.event(model::less(0.0, x));
+    const auto run = run_with(b, 3.0, method);
+    ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
+    EXPECT_EQ(run.events.size(), 1U) << static_cast<int>(method);
+  }
+}
+
 constexpr double decay_rates[] = {1.0, 5.0, 40.0};
 
 /// Until exp(-600): doubles end at exp(-745).

@@ -19,7 +19,8 @@ bool sets_the_same(const ExecutedJump& executed, std::size_t state, double left)
 
 }  // namespace
 
-/// Whether a guard at zero is left there by a jump that sets states in it, and the motion leads through at once.
+/// Whether a guard at zero is left there by a jump that sets states in it which move, and the motion leads through at
+/// once.
 bool JumpCascade::is_taken_back(const ExecutedJump& executed, int guard) {
   const int function = kernel_.jump_guard(executed.jump, guard);
   if (!contains(zeros_, function) || holding_.holds(function) || jumps_.is_discrete_guard(function)) return false;
@@ -31,8 +32,9 @@ bool JumpCascade::is_taken_back(const ExecutedJump& executed, int guard) {
   double in_time = 0.0;
   std::vector<double> gradient(here_.x.size());
   kernel_.gradient(function, here_.t, here_.x.data(), here_.state.alpha.data(), gradient.data(), &in_time);
-  const bool sets_it = std::any_of(entry.targets.begin(), entry.targets.end(),
-                                   [&](int state) { return gradient[at(state)] != 0.0 && kept(state); });
+  const bool sets_it = std::any_of(entry.targets.begin(), entry.targets.end(), [&](int state) {
+    return gradient[at(state)] != 0.0 && slope_[at(state)] != 0.0 && kept(state);
+  });
   if (!sets_it) return false;
   const Motion motion = motion_of(function);
   const int drift = static_cast<int>(motion.side.drift);

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "saltus/base/at.hpp"
-#include "saltus/base/rounding_unit.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/contact/impact.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
@@ -16,7 +15,7 @@ using Eigen::VectorXd;
 /// Of velocities behind an impact, from the size of those before it.
 void drop_roundings(double size, ContactPoint& point) {
   for (double& velocity : point.velocity) {
-    if (std::abs(velocity) <= 64.0 * rounding_unit * size) velocity = 0.0;
+    if (std::abs(velocity) <= impact_rounding * size) velocity = 0.0;
   }
 }
 
@@ -69,8 +68,11 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
     if (basis.takes(i)) still.push_back(i);
   }
   if (!still.empty()) {
+    // What is at rest, along the ground, too, stays so.
     for (const int i : touching) {
-      if (point.velocity(i) == 0.0 && basis.takes(i)) still.push_back(i);
+      for (int row = i; row < static_cast<int>(point.velocity.size()); row += point.contacts()) {
+        if (point.velocity(row) == 0.0 && basis.takes(row)) still.push_back(row);
+      }
     }
     change_velocities(still, -values_.velocity(still), x);
     point = point_at(moment.t, moment.alpha, x);
