@@ -70,6 +70,8 @@ class Contacts {
                                                   std::vector<double>& x);
   /// Says what is wrong where steps become ever smaller as a contact slips under a force that grows without bound.
   [[nodiscard]] std::optional<std::string> jam(const ContactMoment& moment, const std::vector<double>& x);
+  /// Returns whether a gap or a velocity is held at 0.
+  [[nodiscard]] bool hold(const std::vector<double>& x) const { return !none() && !held_rows(x).empty(); }
   enum class Slips { kept, free };
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
   /// @param slips  in a plane: kept as they are, or as free as all that is not held

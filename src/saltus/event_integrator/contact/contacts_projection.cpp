@@ -102,7 +102,7 @@ void Contacts::keep_slips(const std::vector<double>& x, std::vector<int>& rows) 
 
 bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<double>& x,
                        const std::vector<int>& touching, Slips slips) {
-  if (none() || held_rows(x).empty()) return false;
+  if (!hold(x)) return false;
   const auto before = x;
   VectorXd velocity;
   // The gap of a step is within its tolerances: two corrections leave rounding.

@@ -268,9 +268,9 @@ void note_given(Transition& transition) {
 }  // namespace
 
 Start decide_start(const SwitchingContext& s, double t, const double* x, double time_scale,
-                   const std::vector<std::pair<int, int>>& forced) {
+                   const std::vector<std::pair<int, int>>& forced, const RestingSurfaces& resting) {
   Start start;
-  const Point point = read_point(s, t, x, time_scale, {});
+  const Point point = read_point(s, t, x, time_scale, {}, resting);
   const auto& [switching_point, state] = point;
   start.at_zero = switching_point.at_zero;
   for (const int j : switching_point.tied) {

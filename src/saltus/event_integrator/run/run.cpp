@@ -148,8 +148,10 @@ bool Run::begin() {
     recorder_.row(here_.t, here_.x, here_.state, here_.state.alpha);
     return false;
   }
+  RestingSurfaces resting;
+  if (!contacts_.none()) static_cast<void>(find_resting(resting));  // no guard is held yet, which has problems
   const auto decided = [&] {
-    return decide_start(switching_context_, here_.t, here_.x.data(), here_.time_scale, options_.initial_mode);
+    return decide_start(switching_context_, here_.t, here_.x.data(), here_.time_scale, options_.initial_mode, resting);
   };
   auto start = decided();
   // At a break the field says into which cell the solution moves, and the cells say what the field is.

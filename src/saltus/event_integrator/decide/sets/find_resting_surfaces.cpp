@@ -15,51 +15,64 @@ namespace {
 /// Rates of guards, and with them the held fields, are good to ten digits; what is less than this of its terms is 0.
 constexpr double rate_accuracy = 1e-9;
 
+struct NearPoint {
+  double t = 0.0;
+  std::vector<double> x;
+};
+
+/// A point, and two near by on what is held, also as time goes.
+std::vector<NearPoint> points_near(const SwitchingContext& s, double t, const std::vector<double>& x,
+                                   const Projection& project) {
+  std::vector<NearPoint> points{{t, x}};
+  for (const unsigned pattern : {0U, 1U}) {
+    constexpr double step = 0x1p-10;
+    NearPoint point{t + step * (1.0 + std::abs(t)), x};
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (!s.system.discrete_states[i]) point.x[i] += displacement(i, x[i], step, pattern);
+    }
+    project(point.t, point.x);
+    points.push_back(std::move(point));
+  }
+  return points;
+}
+
+bool stays_at_zero(const SwitchingContext& s, const std::vector<NearPoint>& points, const std::vector<double>& alpha,
+                   int j) {
+  std::vector<double> values(at(s.kernel.event_functions())), magnitude(values.size()), slope(values.size());
+  return std::all_of(points.begin(), points.end(), [&](const NearPoint& point) {
+    s.kernel.functions(point.t, point.x.data(), alpha.data(), values.data());
+    s.kernel.scales(point.t, point.x.data(), alpha.data(), magnitude.data(), slope.data());
+    // The points are displaced by 1e-3, the first one is where the guards are to rounding.
+    return std::abs(values[at(j)]) <= rate_accuracy * (magnitude[at(j)] + slope[at(j)]);
+  });
+}
+
 class RestingSearch {
  public:
   RestingSearch(const SwitchingContext& s, Holding& holding, double t, const std::vector<double>& alpha,
                 const std::vector<double>& x)
-      : s_(s), holding_(holding), t_(t), alpha_(alpha) {
-    points_.push_back({t, x});
-    // Near by on the guards, also as time goes.
-    for (const unsigned pattern : {0U, 1U}) {
-      constexpr double step = 0x1p-10;
-      Point point{t + step * (1.0 + std::abs(t)), x};
-      for (std::size_t i = 0; i < x.size(); ++i) point.x[i] += displacement(i, x[i], step, pattern);
-      static_cast<void>(holding.project(point.t, alpha, point.x));
-      points_.push_back(std::move(point));
-    }
-  }
+      : s_(s),
+        holding_(holding),
+        t_(t),
+        alpha_(alpha),
+        points_(points_near(s, t, x, [&](double time, std::vector<double>& point) {
+          static_cast<void>(holding.project(time, alpha, point));
+        })) {}
 
   RestingSurfaces run() {
     const int n_psi = s_.kernel.switching_functions();
     for (int j = 0; j < n_psi && found_.problem.empty(); ++j) {
-      if (are_plain_surfaces(s_, {j}) && stays_at_zero(j) && moves_nothing(j)) take(j);
+      if (are_plain_surfaces(s_, {j}) && stays_at_zero(s_, points_, alpha_, j) && moves_nothing(j)) take(j);
     }
     if (found_.problem.empty() && found_.surfaces.size() > 1) check_sum();
     return std::move(found_);
   }
 
  private:
-  struct Point {
-    double t = 0.0;
-    std::vector<double> x;
-  };
-
-  [[nodiscard]] bool stays_at_zero(int j) const {
-    std::vector<double> values(at(s_.kernel.event_functions())), magnitude(values.size()), slope(values.size());
-    return std::all_of(points_.begin(), points_.end(), [&](const Point& point) {
-      s_.kernel.functions(point.t, point.x.data(), alpha_.data(), values.data());
-      s_.kernel.scales(point.t, point.x.data(), alpha_.data(), magnitude.data(), slope.data());
-      // The points are displaced by 1e-3, the first one is where the guards are to rounding.
-      return std::abs(values[at(j)]) <= rate_accuracy * (magnitude[at(j)] + slope[at(j)]);
-    });
-  }
-
   /// Whether f jumps across the surface, but not while the guards are held.
   [[nodiscard]] bool moves_nothing(int j) const {
     bool acts = false;
-    for (const Point& point : points_) {
+    for (const NearPoint& point : points_) {
       std::vector<double> alpha = alpha_, below(point.x.size()), above(below.size());
       alpha[at(j)] = 0.0;
       const auto free_below = holding_.free_field(point.t, alpha, point.x);
@@ -140,7 +153,7 @@ class RestingSearch {
   Holding& holding_;
   double t_;
   const std::vector<double>& alpha_;
-  std::vector<Point> points_;
+  std::vector<NearPoint> points_;
   RestingSurfaces found_;
 };
 
@@ -150,6 +163,22 @@ RestingSurfaces find_resting_surfaces(const SwitchingContext& switching_context,
                                       const std::vector<double>& alpha, const std::vector<double>& x) {
   if (holding.guards().empty() || switching_context.kernel.switching_functions() == 0) return {};
   return RestingSearch(switching_context, holding, t, alpha, x).run();
+}
+
+void add_kept_kinks(const SwitchingContext& s, const Projection& project, double t, const std::vector<double>& alpha,
+                    const std::vector<double>& x, RestingSurfaces& resting) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x.data(), alpha.data(), values.data());
+  std::vector<NearPoint> points;
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    constexpr double far = 1e-9;
+    if (!s.system.switching[at(j)].is_kink() || !s.kernel.inner(j).empty() || std::abs(values[at(j)]) > far) continue;
+    if (points.empty()) points = points_near(s, t, x, project);
+    if (!stays_at_zero(s, points, alpha, j)) continue;
+    const auto place = std::lower_bound(resting.surfaces.begin(), resting.surfaces.end(), j);
+    resting.alpha.insert(resting.alpha.begin() + (place - resting.surfaces.begin()), 1.0);
+    resting.surfaces.insert(place, j);
+  }
 }
 
 }  // namespace saltus::event_integrator

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/event_integrator/decide/transition.hpp"
 #include "saltus/event_integrator/jumps/holding.hpp"
 #include "saltus/event_integrator/jumps/resting_surfaces.hpp"
@@ -16,5 +17,14 @@ namespace saltus::event_integrator {
 [[nodiscard]] RestingSurfaces find_resting_surfaces(const SwitchingContext& switching_context, Holding& holding,
                                                     double t, const std::vector<double>& alpha,
                                                     const std::vector<double>& x);
+
+/// Puts a point on what is held.
+using Projection = FunctionRef<void(double t, std::vector<double>& x)>;
+
+/// Adds the kinks that are 0 here and wherever else `project` leads: abs(v) of a velocity that a contact holds. Nothing
+/// depends on their selections, and all that is left of their values is roundings. Cost: an evaluation of all
+/// functions, and two projections where one of them is a kink at 0.
+void add_kept_kinks(const SwitchingContext& switching_context, const Projection& project, double t,
+                    const std::vector<double>& alpha, const std::vector<double>& x, RestingSurfaces& resting);
 
 }  // namespace saltus::event_integrator
