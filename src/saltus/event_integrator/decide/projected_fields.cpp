@@ -101,12 +101,20 @@ std::optional<Motion> ProjectedFields::motion_by_velocity(double velocity, doubl
   return std::nullopt;
 }
 
+/// Whether a velocity has the other sign a few roundings of the time later: the event is not known better than that.
+bool ProjectedFields::turns_within_rounding(const std::vector<double>& alpha, int surface, double velocity) const {
+  const double time = 64.0 * rounding_unit * std::abs(switching_point_.t);
+  const double bend = kernel_.lie_derivative(surface, 2, switching_point_.t, switching_point_.x, alpha.data());
+  return velocity * bend < 0.0 && std::abs(velocity) <= std::abs(bend) * time;
+}
+
 Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const {
   const double tau = switching_point_.time_scale;
   // Where all fields are nearly tangent the scale says nothing: what a velocity moves psi by has to be more than
   // rounding.
   const bool moves = std::abs(velocity) * tau > noise_[at(surface)];
-  if (const auto motion = motion_by_velocity(velocity, scale); motion && moves) return *motion;
+  const auto motion = motion_by_velocity(velocity, scale);
+  if (motion && moves && !turns_within_rounding(alpha, surface, velocity)) return *motion;
   if (!kernel_.inner(surface).empty() &&
       moves_along(kernel_, alpha, surface, switching_point_.t, switching_point_.x, scale))
     return {};

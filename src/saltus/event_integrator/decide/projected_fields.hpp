@@ -67,6 +67,8 @@ class ProjectedFields {
   [[nodiscard]] double noise(int surface) const { return noise_[at(surface)]; }
 
  private:
+  [[nodiscard]] bool turns_within_rounding(const std::vector<double>& alpha, int surface, double velocity) const;
+
   const evaluation::ModelKernel& kernel_;
   const SwitchingPoint& switching_point_;
   std::vector<double> noise_;  ///< per event function
