@@ -291,5 +291,70 @@ TEST(ContactBounces, InSpaceASlideKeepsItsDirection) {
   }
 }
 
+/// A block of half the width a and half the height b, released at rest at a small angle: it rocks from corner to corner
+/// (Housner 1963). Corners that stick have a velocity of 0 behind an impact, not a slip of its rounding.
+model::Builder rocking_block(double a, double angle) {
+  constexpr double b = 0.5, block_weight = 9.81, inertia = 1.0 / 3.0;
+  model::Builder model("block");
+  static_cast<void>(model.state("x", {0.0}));
+  const SX z = model.state("z", {a * std::sin(angle) + b * std::cos(angle)});
+  const SX th = model.state("th", {angle});
+  for (const char* name : {"vx", "vz", "w"}) static_cast<void>(model.state(name, {0.0}));
+  model.mechanics({.positions = {"x", "z", "th"},
+                   .velocities = {"vx", "vz", "w"},
+                   .mass = SX::diag(SX::vertcat({1.0, 1.0, inertia * (a * a + b * b)})),
+                   .potential = block_weight * z});
+  const SX across = a * sin(th), along = b * cos(th);
+  model.contact("right", z + across - along, {.tangent = {{"x", 1.0}, {"th", along - across}}, .friction = 0.7});
+  model.contact("left", z - across - along, {.tangent = {{"x", 1.0}, {"th", across + along}}, .friction = 0.7});
+  return model;
+}
+
+TEST(ContactsThatTouch, ARockingBlockStopsRockingAndNeverSlips) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
+    for (const double a : {0.1, 0.25}) {
+      SCOPED_TRACE(::testing::Message() << static_cast<int>(method) << " " << a);
+      auto model = rocking_block(a, 0.15);
+      const auto run = run_by(model, method);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+      // Behind each impact the block turns with the share 1 - 3/2 sin^2(atan(a/b)) of its speed.
+      const double share = 1.0 - 1.5 * a * a / (a * a + 0.25);
+      double before = 0.0;
+      for (const auto& event : run.events) {
+        if (event.kind != EventKind::impact || std::abs(event.x[5]) < 1e-4) continue;
+        EXPECT_NEAR(event.x_after[5], share * event.x[5], 1e-9);
+        EXPECT_TRUE(before == 0.0 || std::abs(event.x[5]) < before + 1e-6);
+        before = std::abs(event.x_after[5]);
+      }
+      EXPECT_GT(before, 0.0);
+      for (const auto& event : run.events) {
+        EXPECT_NE(event.kind, EventKind::slip);
+        EXPECT_NE(event.kind, EventKind::stick);
+      }
+    }
+  }
+}
+
+/// The way travelled, |v| integrated: v is held at 0 while the body rests, and leaves it with no acceleration.
+TEST(ContactsThatTouch, AKinkAtAVelocityThatIsHeldMakesNoEvents) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
+    SCOPED_TRACE(static_cast<int>(method));
+    model::Builder model("body");
+    const SX z = model.state("z", {0.0});
+    const SX v = model.state("v", {0.0});
+    static_cast<void>(model.state("way", {0.0}));
+    model.dynamics("way", model.abs(v));
+    model.mechanics(
+        {.positions = {"z"}, .velocities = {"v"}, .force = {{"v", 12.0 * sin(6.0 * model.time()) - 9.81}}});
+    model.contact("ground", z);
+    const auto run = run_by(model, method);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    const std::vector kinds{EventKind::lift_off, EventKind::impact, EventKind::lift_off, EventKind::impact};
+    ASSERT_EQ(run.events.size(), kinds.size());
+    for (std::size_t k = 0; k < kinds.size(); ++k) EXPECT_EQ(run.events[k].kind, kinds[k]);
+    EXPECT_NEAR(run.final.x[2], 0.20767574538, 1e-8);
+  }
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator::testing

@@ -232,6 +232,20 @@ TEST(GuardsWithKinks, AnEventsConditionIsAtEqualityWhereItIsSlidOn) {
   }
 }
 
+/// A rate limiter at rest on a set point that depends on a phase: the jump of the phase moves the set point, not the
+/// state.
+TEST(JumpsAtZero, AJumpInsideOfWhatIsSlidOnDoesNotMoveTheState) {
+  for (const auto method : methods_at_zero) {
+    Builder b("limiter");
+    const SX d = b.state("d", {0.0});
+    const SX y = b.state("y", {0.7});
+    b.dynamics("d", 0.0);
+    b.dynamics("y", b.sign(b.if_(model::less(0.5, d), 2.0, 0.0) - y));
+    b.jump(b.time() - 1.0, Direction::up, {{"d", 1.0}});
+    EXPECT_NEAR(counted(run_with(b, 1.4, method)), 0.4, 1e-9) << static_cast<int>(method);
+  }
+}
+
 constexpr double decay_rates[] = {1.0, 5.0, 40.0};
 
 /// Until exp(-600): doubles end at exp(-745).

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/contact/impact.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
@@ -12,10 +13,11 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Of velocities behind an impact, from the size of those before it.
+/// Of velocities behind an impact, from the size of those before it: slips end as they do in the process.
 void drop_roundings(double size, ContactPoint& point) {
-  for (double& velocity : point.velocity) {
-    if (std::abs(velocity) <= impact_rounding * size) velocity = 0.0;
+  for (Eigen::Index row = 0; row < point.velocity.size(); ++row) {
+    const double rounding = row < point.contacts() ? 64.0 * rounding_unit : slip_rounding;
+    if (std::abs(point.velocity(row)) <= rounding * size) point.velocity(row) = 0.0;
   }
 }
 

@@ -22,6 +22,7 @@ struct Branch {
   bool begins = false;
 };
 
+constexpr double process_rounding = 1e-11;  ///< relative, of sums of products over many pieces
 constexpr double share_rounding = 1e-9;     ///< of rates of impulses, which are 1 where a contact closes
 constexpr double largest_impulse = 1e6;     ///< relative to that of one contact alone: bodies in a wedge jam
 
@@ -57,7 +58,7 @@ class Process {
       const double length = piece_length();
       if (!(length <= largest_impulse * size_ / strength_)) {
         // Friction that holds everything at rest keeps the work back that is left to give.
-        const bool holds = !closes() && change_.cwiseAbs().maxCoeff() <= impact_rounding * strength_;
+        const bool holds = !closes() && change_.cwiseAbs().maxCoeff() <= process_rounding * strength_;
         return holds ? std::optional(impulse_) : std::nullopt;
       }
       advance(length);
@@ -82,10 +83,10 @@ class Process {
   /// All impulses are of the size of normal velocities, however fast a slip is: so are their roundings.
   void round() {
     note_closing();
-    const double none = std::max(impact_rounding * closing_, 64.0 * rounding_unit * size_);
+    const double none = std::max(process_rounding * closing_, 64.0 * rounding_unit * size_);
     for (const int i : touching_) {
       if (std::abs(velocity_(i)) <= none) velocity_(i) = 0.0;
-      if (slip(i).norm() <= impact_rounding * size_) stop_slip(i);
+      if (slip(i).norm() <= slip_rounding * size_) stop_slip(i);
     }
   }
 
@@ -97,7 +98,7 @@ class Process {
   bool release() {
     bool any = false;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
-      releasing_[k] = stored_[k] > impact_rounding * closing_ * closing_ / strength_;
+      releasing_[k] = stored_[k] > process_rounding * closing_ * closing_ / strength_;
       any = any || releasing_[k];
     }
     return any;

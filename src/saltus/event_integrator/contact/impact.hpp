@@ -10,8 +10,8 @@
 
 namespace saltus::event_integrator {
 
-/// Of velocities behind an impact, relative to the fastest before it: what is below has been brought to rest.
-inline constexpr double impact_rounding = 1e-11;
+/// Of a slip in an impact, relative to the fastest velocity before it: what is below has been brought to rest.
+inline constexpr double slip_rounding = 1e-11;
 
 /// Returns the impulses of the contacts that touch, as the limit of stiff contacts (Darboux and Keller): in the place
 /// of time stands the normal impulse p,
