@@ -184,6 +184,22 @@ TEST(JumpsAtZero, AThresholdThatIsSetAgainToWhatItIsIsPassed) {
   }
 }
 
+/// A ball at rest on a table, behind bounces that have accumulated, falls freely from where the table drops.
+TEST(JumpsAtZero, ATableThatDropsLeavesTheBallInTheAir) {
+  for (const auto method : methods_at_zero) {
+    Builder b("table");
+    const SX h = b.state("h", {1.0});
+    const SX v = b.state("v", {0.0});
+    b.dynamics("h", v);
+    b.dynamics("v", -9.81);
+    b.jump(h + b.floor(0.5 * b.time()), Direction::down, {{"v", -0.3 * v}});
+    const auto run = run_with(b, 2.2, method);
+    ASSERT_EQ(run.status.termination, Termination::completed) << run.status.message;
+    EXPECT_NEAR(run.final.x[0], -0.1962, 1e-9) << static_cast<int>(method);
+    EXPECT_NEAR(run.final.x[1], -1.962, 1e-9) << static_cast<int>(method);
+  }
+}
+
 /// Behind the jump the other argument is the larger one, and the condition stays true where they meet again.
 TEST(GuardsWithKinks, AConditionThatStaysTrueBehindItsJumpFiresOnce) {
   for (const auto method : methods_at_zero) {

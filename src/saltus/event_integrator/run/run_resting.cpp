@@ -93,6 +93,27 @@ bool Run::change_resting_with_cells() {
   return resting.surfaces != here_.state.resting;
 }
 
+/// Whether a jump of values has moved the zero of a guard at rest away from the state: a table that drops. The guards
+/// are free then, and on the side where they are.
+bool Run::leaves_resting_with_cells() {
+  if (event_.cell_change != CellChange::jump || holding_.guards().empty()) return false;
+  std::vector<double> values(at(kernel_.event_functions())), magnitude(values.size()), slope(values.size());
+  kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), values.data());
+  kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), magnitude.data(), slope.data());
+  const auto resting = holding_.resting();
+  const bool stay = std::none_of(resting.begin(), resting.end(), [&](const HeldGuard& guard) {
+    const auto function = at(guard.hold.function);
+    return std::abs(values[function]) > 64.0 * rounding_unit * (magnitude[function] + slope[function]);
+  });
+  if (stay) return false;
+  holding_.release_all();
+  search_.set_held({}, {});
+  cascade_.drop_zeros();
+  cascade_.read_user_signs();
+  jumps_.update(jump_point());
+  return true;
+}
+
 /// Surfaces that a released guard has kept at zero. The motion leaves them where it would if it had slid on them. It
 /// goes to the side with whose selection nothing presses on the guard any more.
 const ModeState& Run::slid_on_freed(SwitchingPoint& switching_point) {
