@@ -356,5 +356,23 @@ TEST(ContactsThatTouch, AKinkAtAVelocityThatIsHeldMakesNoEvents) {
   }
 }
 
+/// A gap that jumps in time: the table drops, and the body on it falls freely; into a table that rises nothing follows.
+TEST(ContactsThatTouch, ATableThatDropsLeavesTheBodyInTheAir) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {
+    for (const double drop : {1.0, -1.0}) {
+      SCOPED_TRACE(::testing::Message() << static_cast<int>(method) << " " << drop);
+      model::Builder model("body");
+      const SX z = model.state("z", {0.0});
+      static_cast<void>(model.state("v", {0.0}));
+      model.mechanics({.positions = {"z"}, .velocities = {"v"}, .force = {{"v", -9.81}}});
+      model.contact("table", z + drop * model.floor(model.time() / 1.5));
+      const auto run = run_by(model, method);
+      const bool drops = drop > 0.0;
+      EXPECT_EQ(run.status.termination, drops ? result::Termination::completed : result::Termination::outside_class);
+      EXPECT_NEAR(run.final.x[0], drops ? -0.5 * 9.81 * 0.25 : 0.0, 1e-9);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator::testing

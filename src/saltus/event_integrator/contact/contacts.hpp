@@ -55,6 +55,8 @@ class Contacts {
 
   /// Returns whether positions or velocities differ.
   [[nodiscard]] bool are_moved(const std::vector<double>& x, const std::vector<double>& x_after) const;
+  /// Returns whether a gap has jumped: a closed one is not 0 any more, or an open one is negative.
+  [[nodiscard]] bool gaps_have_jumped(const ContactMoment& moment, const std::vector<double>& x);
   /// Opens all contacts, as before a start. Returns what is wrong if bodies overlap.
   [[nodiscard]] std::optional<std::string> begin_anew(const ContactMoment& moment, std::vector<double>& x);
   /// Sets the velocities behind the impacts at a point, if any, and the modes there. `ended` lists the contacts whose

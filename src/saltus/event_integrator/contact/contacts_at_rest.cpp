@@ -90,6 +90,18 @@ bool Contacts::are_moved(const std::vector<double>& x, const std::vector<double>
                      std::any_of(system_.velocities.begin(), system_.velocities.end(), differ));
 }
 
+bool Contacts::gaps_have_jumped(const ContactMoment& moment, const std::vector<double>& x) {
+  if (none()) return false;
+  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
+  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+    const auto& contact = contacts_[at(i)];
+    if (!contact.has_gap) continue;
+    const double gap = values_.gap(i), none = no_gap(i, x);
+    if (gap < -none || (x[at(contact.closed)] != 0.0 && gap > none)) return true;
+  }
+  return false;
+}
+
 std::optional<std::string> Contacts::begin_anew(const ContactMoment& moment, std::vector<double>& x) {
   for (const auto& contact : contacts_) {
     std::fill(x.begin() + contact.closed, x.begin() + contact.force_unit, 0.0);

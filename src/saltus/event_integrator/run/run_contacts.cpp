@@ -46,7 +46,7 @@ bool Run::begin_contacts_anew() {
   }
   const auto jumps = cascade_.executed().size();
   if (!begin_contacts()) return false;
-  if (cascade_.executed().size() == jumps) cascade_.executed().back().x_after = here_.x;
+  if (jumps > 0 && cascade_.executed().size() == jumps) cascade_.executed().back().x_after = here_.x;
   return true;
 }
 

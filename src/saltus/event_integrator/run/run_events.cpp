@@ -148,7 +148,7 @@ bool Run::keep_mode_in_cells() {
 bool Run::change_mode(const Located& located) {
   event_.cell_change = leave_cells(located);
   if (leaves_resting_with_cells()) {
-    static_cast<void>(jump(event_.before, event_.x_before));
+    if (outcome_.running) static_cast<void>(jump(event_.before, event_.x_before));
     return false;
   }
   if (event_.cell_change == CellChange::jump || change_resting_with_cells())
