@@ -19,7 +19,6 @@ class Components {
     while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
     return k;
   }
-  [[nodiscard]] bool connected(std::size_t a, std::size_t b) { return first(a) == first(b); }
   void join(std::size_t a, std::size_t b) {
     a = first(a);
     b = first(b);

@@ -113,9 +113,7 @@ class ElementBuilder {
     layout.size = next;
   }
 
-  [[nodiscard]] SX stage_time(int m) const {
-    return result_.depends_on_time ? left_t_ + tableau_.c[m] * h_ : SX(0.0);
-  }
+  [[nodiscard]] SX stage_time(int m) const { return result_.depends_on_time ? left_t_ + tableau_.c[m] * h_ : SX(0.0); }
   [[nodiscard]] SX column(const SX& matrix, int m) const { return matrix(casadi::Slice(), m); }
 
   void add_runge_kutta_equations() {
@@ -247,8 +245,6 @@ class ElementBuilder {
     const Boundary boundary{element_pairs(result_.pairs, variables_, left_lambda),
                             element_pairs(result_.pairs, next, at_boundary), variables_.h, next.h, own};
     result_.boundary_inputs = SX::vertcat({left_lambda, v, after, own});
-    result_.eta = switch_indicator(boundary);
-    result_.printed_eta = printed_switch_indicator(result_.pairs, boundary);
     if (!moves()) return;
     if (options_.cross_complementarity == CrossComplementarity::paper) {
       add_paper_cross_complementarity(boundary, result_.neighbours);

@@ -95,7 +95,6 @@ struct ElementExpressions {
   std::vector<ElementPoint> stages;
   ElementPoint left, end;  ///< the left end has no selections
   mpcc::Bounds boundary_own_bounds;
-  casadi::SX eta, printed_eta;  ///< of the boundary
   bool depends_on_time = false;
 };
 

@@ -174,8 +174,4 @@ std::string to_csv(const result::Result& result) {
   return collected([&](Sink sink) { return write_csv(result, sink); });
 }
 
-std::string events_to_csv(const result::Result& result) {
-  return collected([&](Sink sink) { return write_events_csv(result, sink); });
-}
-
 }  // namespace saltus::io

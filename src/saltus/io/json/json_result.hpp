@@ -51,7 +51,6 @@ class ResultParts {
 /// @param folder  for those files
 [[nodiscard]] std::unique_ptr<ResultParts> json_parts(const std::filesystem::path& folder, Sink sink);
 [[nodiscard]] std::unique_ptr<ResultParts> npz_parts(const std::filesystem::path& folder, Sink sink);
-[[nodiscard]] std::string events_to_csv(const result::Result& result);
 /// Writes the columns of both tables as a zip archive of .npy arrays, deflated: those of the trajectory by their names,
 /// those of the events with "events." before them. Numbers are float64, `side` and modes of rows int8, words unicode;
 /// what is not there is NaN, `unique` is 1, 0 or -1 (not decided).
