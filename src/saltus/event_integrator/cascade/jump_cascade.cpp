@@ -27,7 +27,7 @@ void JumpCascade::begin() {
   kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), zero_values_.data());
   largest_rates_.assign(n, {});
   motions_.assign(n, std::nullopt);
-  held_before_ = holding_.resting();
+  held_before_ = holding_.held().all();
   resting_.clear();
   if (kernel_.switching_functions() > 0) transition_ = {};
 }

@@ -101,7 +101,7 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
 
 void EventSearch::find_pressure(double t, const double* x) {
   if (held_.guards.empty()) return;
-  kernel_.hold_pressure(t, x, field_.alpha().data(), held_.pressure.data());
+  kernel_.hold_pressure(t, x, field_.alpha().data(), values_.pressure.data());
 }
 
 /// Rounding and tolerance levels of some functions for the step that starts at (t, x).
@@ -127,7 +127,7 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
     return;
   }
   if (function.kind == FunctionKind::release) {
-    const double size = std::abs(held_.pressure[at(function.row)]);
+    const double size = std::abs(values_.pressure[at(function.row)]);
     levels_.set(i, 32.0 * rounding_unit * size, 0.1 * errors_.of_run().rtol * size);
     return;
   }
@@ -175,7 +175,7 @@ double EventSearch::value(std::size_t i, const double* x) const {
     case FunctionKind::instability:
       return mode_.exits[at(function.row)].stability - function.offset;
     case FunctionKind::release:
-      return held_.pressure[at(function.row)] - function.offset;
+      return values_.pressure[at(function.row)] - function.offset;
     case FunctionKind::absent:
       return 1.0;  // away from zero
   }

@@ -20,6 +20,8 @@ namespace saltus::io {
 /// Reads a stored result; errors name the file, the position or the JSON path, and what was expected.
 [[nodiscard]] Expected<result::Result> read_result(const std::filesystem::path& file);
 [[nodiscard]] Expected<result::Result> parse_result(const std::string& text, const std::string& file);
+/// Returns a field of CSV by RFC 4180: one with a comma, a quote or a line break in quotes, its quotes doubled.
+[[nodiscard]] std::string csv_field(const std::string& text);
 /// Writes the header t,side,<states>,<controls>,<outputs>, then alpha(<name>) of all surfaces, then mode(<name>) of
 /// all. Fields are quoted by RFC 4180. `side` is result::side.
 [[nodiscard]] bool write_csv(const result::Result& result, Sink sink);
