@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/text.hpp"
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/expression/parser.hpp"
@@ -36,7 +37,7 @@ Expected<void> check_grids(const std::vector<std::string>& settings) {
   for (const auto& setting : settings) {
     const auto name = target_of(setting);
     for (const std::string_view grid : {"simulate.output.every", "simulate.output.points", "simulate.output.times"}) {
-      if (name == grid && std::find(grids.begin(), grids.end(), name) == grids.end()) grids.push_back(name);
+      if (name == grid && !contains(grids, name)) grids.push_back(name);
     }
   }
   if (grids.size() < 2) return {};

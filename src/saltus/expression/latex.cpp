@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/grammar_internal.hpp"
 #include "saltus/expression/parser.hpp"
 
@@ -20,13 +21,8 @@ constexpr std::array<std::string_view, 34> letters_of_latex = {
 constexpr std::array<std::string_view, 14> commands = {"sin", "cos", "tan", "sinh", "cosh", "tanh", "exp",
                                                        "log", "max", "min", "arg",  "det",  "gcd",  "lim"};
 
-template <std::size_t n>
-bool is_in_list(const std::array<std::string_view, n>& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 std::string letters_of(std::string_view word) {
-  if (is_in_list(letters_of_latex, word)) return fmt::format("\\{}", word);
+  if (contains(letters_of_latex, word)) return fmt::format("\\{}", word);
   return word.size() == 1 ? std::string(word) : fmt::format("\\mathrm{{{}}}", latex_escaped(word));
 }
 
@@ -117,7 +113,7 @@ std::string latex_of(const Call& call) {
   if (is("floor", 1)) return fmt::format("\\left\\lfloor {} \\right\\rfloor", to_latex(*arguments[0]));
   std::string list;
   for (const auto& argument : arguments) list += (list.empty() ? "" : ", ") + to_latex(*argument);
-  const auto name = is_in_list(commands, call.function)
+  const auto name = contains(commands, call.function)
                         ? "\\" + call.function
                         : fmt::format("\\operatorname{{{}}}", latex_escaped(call.function));
   return fmt::format("{}\\left({}\\right)", name, list);

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/text.hpp"
 #include "saltus/pipeline/compare.hpp"
 #include "saltus/pipeline/observers_internal.hpp"
@@ -124,7 +125,7 @@ Expected<std::vector<OrderScheme>> parse_schemes(std::string_view text) {
       return tl::unexpected(unreadable("NAME:STAGES", piece, "for example --schemes radau_iia:2,gauss_legendre:3"));
     }
     OrderScheme scheme{std::string(piece.substr(0, colon)), static_cast<int>(*stages)};
-    if (std::find(schemes.begin(), schemes.end(), scheme) != schemes.end()) {
+    if (contains(schemes, scheme)) {
       return tl::unexpected(unreadable("every scheme once", piece, "leave the second one out"));
     }
     schemes.push_back(std::move(scheme));

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/text.hpp"
 #include "saltus/pipeline/random_numbers.hpp"
 
@@ -162,7 +163,7 @@ class PlanReader {
   }
 
   Expected<void> add_name(std::string_view option, const std::string& name) {
-    if (std::find(plan_.names_.begin(), plan_.names_.end(), name) != plan_.names_.end()) {
+    if (contains(plan_.names_, name)) {
       return refused_plan(fmt::format("{}: '{}' is changed twice", option, name),
                           "give every name one range or distribution");
     }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/text.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/result/kept_columns.hpp"
@@ -55,10 +56,6 @@ class Table {
   std::vector<TableColumn> columns_;
   std::size_t next_ = 0;
 };
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
 
 /// What all tables begin with: the number of the run, its values, its status, whether its solution is unique.
 class Beginning {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/field/held_functions.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
@@ -128,7 +129,7 @@ std::optional<Located> NestedZeroApproach::at_zeros(double end, const std::vecto
   const std::vector<double> before = zeros_.functions(here_.t, here_.x.data());
   const auto& after = zeros_.functions(end, located.x.data());
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const bool is_it = std::find(located.functions.begin(), located.functions.end(), i) != located.functions.end();
+    const bool is_it = contains(located.functions, i);
     const auto kind = search_.functions()[i].kind;
     const bool has_value = kind == FunctionKind::surface || kind == FunctionKind::user || is_cell_end(kind);
     if (!is_it && has_value && before[i] * after[i] < 0.0) return std::nullopt;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
@@ -255,7 +256,7 @@ void Families::watch(const Point& point, Group& group, double t_begin,
       for (std::size_t k = 0; k < group.surfaces.size(); ++k) known->given[k].alpha = other.alpha[k];
       continue;
     }
-    if (std::find(group.refused.begin(), group.refused.end(), other.mode) != group.refused.end()) continue;
+    if (contains(group.refused, other.mode)) continue;
     const std::size_t count = recorded_.size();
     std::vector<GivenMode> given;
     for (std::size_t k = 0; k < group.surfaces.size(); ++k) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -85,7 +86,7 @@ bool Cells::jumps_at(const EventFunction& end, double t, const double* x, const 
   return upper ? rate > 0.0 : rate < 0.0;
 }
 
-bool Cells::any_undefined() const { return std::find(undefined_.begin(), undefined_.end(), true) != undefined_.end(); }
+bool Cells::any_undefined() const { return contains(undefined_, true); }
 
 CellChange Cells::locate_undefined(double t, const double* x, const std::vector<double>& alpha) {
   CellChange change = CellChange::none;

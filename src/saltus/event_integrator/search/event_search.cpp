@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/rounding_unit.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
 #include "saltus/event_integrator/search/event_search_internal.hpp"
@@ -87,7 +88,7 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
       errors_(kernel, tolerances),
       mode_(at(kernel.states())) {
   for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
-  any_nesting_ = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
+  any_nesting_ = contains(nesting_, true);
   const auto n_phi = at(kernel.event_functions());
   for (auto* vector : {&values_.phi, &values_.magnitude, &values_.slope}) vector->resize(n_phi);
   x_.resize(at(kernel.states()));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/mode_differences_internal.hpp"
@@ -472,7 +473,7 @@ void EventSearch::set_user_sign(std::size_t function, int sign, double t, const 
   user_.put_at_zero(user, sign);
   if (others_begin_anew) return sort_functions();
   mode_.forms.ignore(function);
-  if (std::find(special_.begin(), special_.end(), function) == special_.end()) special_.push_back(function);
+  if (!contains(special_, function)) special_.push_back(function);
 }
 
 }  // namespace saltus::event_integrator
