@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/components.hpp"
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/switching/selections/selection_root.hpp"
 
@@ -35,26 +36,10 @@ bool depends_on(const evaluation::ModelKernel& kernel, const std::vector<int>& n
 }
 
 std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point,
-                                        std::vector<int> open) {
+                                        const std::vector<int>& surfaces) {
   const std::vector<int> nested = nested_away_from_zero(kernel, switching_point);
-  std::vector<std::vector<int>> groups;
-  while (!open.empty()) {
-    std::vector<int> group{open.front()};
-    open.erase(open.begin());
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      for (std::size_t other = 0; other < open.size();) {
-        if (depends_on(kernel, nested, group[k], open[other]) || depends_on(kernel, nested, open[other], group[k])) {
-          group.push_back(open[other]);
-          open.erase(open.begin() + static_cast<std::ptrdiff_t>(other));
-        } else {
-          ++other;
-        }
-      }
-    }
-    std::sort(group.begin(), group.end());
-    groups.push_back(std::move(group));
-  }
-  return groups;
+  return components_of(
+      surfaces, [&](int a, int b) { return depends_on(kernel, nested, a, b) || depends_on(kernel, nested, b, a); });
 }
 
 SurfaceDecision Decider::ask_selection(const switching::CornerTable& table, int surface) {
