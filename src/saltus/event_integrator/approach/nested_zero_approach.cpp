@@ -5,6 +5,7 @@
 
 #include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/field/held_functions.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
 
@@ -81,7 +82,7 @@ std::optional<double> NestedZeroApproach::end_of(Approaching& approaching) {
   if (turns || !(power > bent)) return std::nullopt;
   const bool agrees =
       std::abs(here_.t + left - last.end) <= std::max(agree * tolerances_.mode().rtol * since, 0.25 * resolved);
-  const bool rounds = std::abs(g) <= 1e5 * 8.0 * rounding_unit * rate.magnitude;  // five digits of g are left
+  const bool rounds = std::abs(g) <= 1e5 * rounding_of(rate.magnitude);  // five digits of g are left
   if (left <= resolved || (halved && left <= little * since && (agrees || rounds))) return here_.t + left;
   return std::nullopt;
 }

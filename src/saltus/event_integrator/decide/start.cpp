@@ -10,6 +10,7 @@
 #include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -339,7 +340,7 @@ std::vector<double> selections_at(const SwitchingContext& s, double t, const dou
     const double psi = values[at(j)];
     const bool discrete = function.role == model::SwitchingRole::discrete;
     if (discrete && psi == 0.0) alpha[at(j)] = function.alpha_at_zero;
-    if (std::abs(psi) > (discrete ? 0.0 : 8.0 * rounding_unit * noise[at(j)])) alpha[at(j)] = psi > 0.0 ? 1.0 : 0.0;
+    if (std::abs(psi) > (discrete ? 0.0 : rounding_of(noise[at(j)]))) alpha[at(j)] = psi > 0.0 ? 1.0 : 0.0;
   }
   return alpha;
 }

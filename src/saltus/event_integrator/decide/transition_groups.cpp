@@ -7,6 +7,7 @@
 
 #include "saltus/base/components.hpp"
 #include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/switching/selections/selection_root.hpp"
 
 namespace saltus::event_integrator {
@@ -116,9 +117,8 @@ int Decider::lost_at_exit(const std::vector<int>& group) const {
     // unless that vanishes, too. Ten times less or more makes no difference: it is 1e-9 or of the order of one. Between
     // these it depends on what is left of the other field.
     constexpr double lost = 1e-6;
-    constexpr double doubtful = 1e-9;
     const double beyond = at_exit ? std::max(-before_.alpha[at(j)], before_.alpha[at(j)] - 1.0) : 0.0;
-    return !(beyond <= lost) || (beyond > doubtful && fields_.nearly_two_fold(before_.alpha, j));
+    return !(beyond <= lost) || (beyond > selection_rounding && fields_.nearly_two_fold(before_.alpha, j));
   });
   return found == group.end() ? -1 : *found;
 }
