@@ -44,5 +44,10 @@ TEST(Components, AreThoseOfTheTransitiveClosure) {
   }
 }
 
+TEST(Components, OfMembersAscendByTheirFirstOnes) {
+  const auto found = components_of({7, 2, 9, 4, 3}, [](int a, int b) { return a + b == 11 || a + b == 6; });
+  EXPECT_EQ(found, (std::vector<std::vector<int>>{{2, 4, 7, 9}, {3}}));
+}
+
 }  // namespace
 }  // namespace saltus
