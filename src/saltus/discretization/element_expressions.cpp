@@ -23,6 +23,21 @@ casadi::Function point_function(const Dcs& dcs, const SX& known, const SharedInp
   return casadi::Function("saltus_point", {dcs.t, dcs.x, dcs.selection, dcs.lifted, known}, out);
 }
 
+ElementVariables element_variables(const ElementLayout& layout, const SX& v) {
+  const auto matrix = [&v](const VariableBlock& block) {
+    return SX::reshape(v(casadi::Slice(block.first, block.end())), block.size, block.count);
+  };
+  return {v(layout.h),
+          matrix(layout.stage),
+          matrix(layout.selection),
+          matrix(layout.lifted),
+          matrix(layout.lambda),
+          matrix(layout.simplex),
+          matrix(layout.end_state),
+          matrix(layout.end_time),
+          matrix(layout.correction)};
+}
+
 struct PointValues {
   SX f, indicator, lifting;
 };
@@ -278,21 +293,6 @@ std::vector<SelectionPair> selection_pairs(const Dcs& dcs) {
     }
   }
   return pairs;
-}
-
-ElementVariables element_variables(const ElementLayout& layout, const SX& v) {
-  const auto matrix = [&v](const VariableBlock& block) {
-    return SX::reshape(v(casadi::Slice(block.first, block.end())), block.size, block.count);
-  };
-  return {v(layout.h),
-          matrix(layout.stage),
-          matrix(layout.selection),
-          matrix(layout.lifted),
-          matrix(layout.lambda),
-          matrix(layout.simplex),
-          matrix(layout.end_state),
-          matrix(layout.end_time),
-          matrix(layout.correction)};
 }
 
 Expected<ElementExpressions> element_expressions(const Dcs& dcs, const ButcherTableau& tableau,

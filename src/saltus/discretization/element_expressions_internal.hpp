@@ -30,7 +30,6 @@ struct ElementVariables {
   casadi::SX end_time;    ///< 1 by 1, or empty
   casadi::SX correction;  ///< n_selections by 2, or empty
 };
-[[nodiscard]] ElementVariables element_variables(const ElementLayout& layout, const casadi::SX& v);
 
 /// Holds the sides of the pairs at the points of an element, columns.
 struct ElementPairs {
