@@ -57,7 +57,7 @@ TEST(NormalRows, DependentAndEmptyOnesHaveNoSolution) {
 }
 
 /// The exit function of x0 depends on the selection of x1, linear in x1; that of x1 is linear in x0 alone.
-model::System two_surfaces() {
+model::System with_a_neighbour() {
   auto s = testing::blank(2, 2);
   testing::add_surface(s, "x0", s.x(0));
   testing::add_surface(s, "x1", s.x(1));
@@ -67,7 +67,7 @@ model::System two_surfaces() {
 }
 
 TEST(ExitRows, AreThoseOfTheSelectionsAskedFor) {
-  const auto kernel = evaluation::ModelKernel::compile(two_surfaces());
+  const auto kernel = evaluation::ModelKernel::compile(with_a_neighbour());
   ASSERT_TRUE(kernel.has_value());
   ExitRows rows(*kernel);
   // More selections beside the surface than are kept; each comes back.
@@ -87,7 +87,7 @@ TEST(ExitRows, AreThoseOfTheSelectionsAskedFor) {
 }
 
 TEST(ExitRows, AStateHeldFixedIsInTheOffset) {
-  const auto kernel = evaluation::ModelKernel::compile(two_surfaces());
+  const auto kernel = evaluation::ModelKernel::compile(with_a_neighbour());
   ASSERT_TRUE(kernel.has_value());
   ExitRows rows(*kernel);
   for (const double value : {2.0, -1.0, 2.0}) {
