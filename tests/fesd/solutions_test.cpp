@@ -108,36 +108,6 @@ TEST_P(EveryEquilibration, StepsChangeAtTheSwitchOnly) {
 INSTANTIATE_TEST_SUITE_P(All, EveryEquilibration, testing::ValuesIn(all_step_equilibrations),
                          [](const auto& test) { return std::string(name(test.param)); });
 
-TEST(FesdSolution, SwitchIndicatorsOfTheFourCases) {
-  // Table 2 of [nurkanovic2024] at the boundary between two elements: nu of lambda alone is zero in all cases but "no
-  // switch" - also in sliding, a case that it does not list; with the sides a = alpha, 1 - alpha only switches are
-  // zero.
-  struct Case {
-    const char* name;
-    model::System system;
-    double x, length;
-    bool is_switch, printed_is_zero;
-  };
-  const Case cases[] = {{"no switch", scalar_model(2.0, 1.0), -3.0, 0.5, false, false},
-                        {"crossing", scalar_model(2.0, 1.0), -1.0, 1.0, true, true},
-                        {"entering sliding", scalar_model(0.0, 1.0, 0.0, 0.2), -0.3, 0.5, true, true},
-                        {"sliding", scalar_model(0.0, 1.0, 0.0, 0.2), 0.0, 0.5, false, true},
-                        {"leaving sliding", scalar_model(0.0, 1.0, 1.0), 0.0, 1.6, true, true}};
-  for (const auto& [what, system, x, length, is_switch, printed_is_zero] : cases) {
-    for (const Form form : {Form::step, Form::stewart}) {
-      const auto solved = solve(system, form, {}, 2, {.t = 0.0, .length = length, .x = {x}, .held = {}});
-      EXPECT_EQ(solved.path.termination, Termination::completed) << what << ": " << solved.path.message;
-      const double eta = solved.problem->switch_indicators(solved.path.point.w)[0];
-      const double printed = solved.problem->printed_switch_indicators(solved.path.point.w)[0];
-      // Sums are of order 0.1 or more where they are not zero, and nu is a product of two.
-      EXPECT_EQ(eta < 1e-8, is_switch) << what << " " << eta;
-      if (form == Form::step) {
-        EXPECT_EQ(printed < 1e-8, printed_is_zero) << what << " " << printed;
-      }
-    }
-  }
-}
-
 TEST(FesdSolution, PrintedIndicatorLeavesSlidingUndetermined) {
   // x' = -sign x + 0.2 sin 5t from 0 slides all the way. Any lengths satisfy the printed equations (47); with the
   // indicator of both sides only equal ones do.

@@ -1,6 +1,7 @@
 // Connected components of a graph whose edges become known one by one.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -19,7 +20,6 @@ class Components {
     while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
     return k;
   }
-  [[nodiscard]] bool connected(std::size_t a, std::size_t b) { return first(a) == first(b); }
   void join(std::size_t a, std::size_t b) {
     a = first(a);
     b = first(b);
@@ -40,9 +40,33 @@ class Components {
     }
     return found;
   }
+  /// Returns all components as the members with these numbers: members[k] for k.
+  [[nodiscard]] std::vector<std::vector<int>> lists_of(const std::vector<int>& members) {
+    std::vector<std::vector<int>> found;
+    for (const auto& list : lists()) {
+      auto& component = found.emplace_back();
+      for (const std::size_t k : list) component.push_back(members[k]);
+    }
+    return found;
+  }
 
  private:
   std::vector<std::size_t> parent_;
 };
+
+/// Returns the components of members of which joins(a, b) says whether two are joined, by their first members; each
+/// ascends.
+template <class Joins>
+[[nodiscard]] std::vector<std::vector<int>> components_of(const std::vector<int>& members, Joins joins) {
+  Components components(members.size());
+  for (std::size_t b = 0; b < members.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      if (components.first(a) != components.first(b) && joins(members[a], members[b])) components.join(a, b);
+    }
+  }
+  auto found = components.lists_of(members);
+  for (auto& component : found) std::sort(component.begin(), component.end());
+  return found;
+}
 
 }  // namespace saltus

@@ -1,10 +1,10 @@
-#include <charconv>
 #include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/text/difference_text.hpp"
 #include "saltus/cli/text/terminal.hpp"
@@ -32,11 +32,8 @@ ExitCode run_diff(const DiffArguments& arguments) {
 
 /// Of a tolerance; CLI11's own check prints the greatest number there is with all its digits.
 std::string not_negative(const std::string& typed) {
-  double value = 0.0;
-  const auto* end = typed.data() + typed.size();
-  const auto read = std::from_chars(typed.data(), end, value);
-  const bool good = read.ec == std::errc() && read.ptr == end && value >= 0.0;
-  return good ? "" : fmt::format("'{}': expected a number that is not negative", typed);
+  const auto value = whole_text_as<double>(typed);
+  return value && *value >= 0.0 ? "" : fmt::format("'{}': expected a number that is not negative", typed);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -12,8 +11,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
+#include "saltus/base/text.hpp"
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/io/check/model_overview.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
 
@@ -36,7 +38,7 @@ Expected<void> check_grids(const std::vector<std::string>& settings) {
   for (const auto& setting : settings) {
     const auto name = target_of(setting);
     for (const std::string_view grid : {"simulate.output.every", "simulate.output.points", "simulate.output.times"}) {
-      if (name == grid && std::find(grids.begin(), grids.end(), name) == grids.end()) grids.push_back(name);
+      if (name == grid && !contains(grids, name)) grids.push_back(name);
     }
   }
   if (grids.size() < 2) return {};
@@ -167,10 +169,7 @@ namespace {
 std::string date() {
   std::time_t now = std::time(nullptr);
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    const std::string_view text(epoch);
-    long long given = 0;
-    const auto read = std::from_chars(text.data(), text.data() + text.size(), given);
-    if (read.ec == std::errc() && read.ptr == text.data() + text.size()) now = static_cast<std::time_t>(given);
+    if (const auto given = whole_text_as<long long>(epoch)) now = static_cast<std::time_t>(*given);
   }
   std::tm utc{};
   if (gmtime_r(&now, &utc) == nullptr) return {};

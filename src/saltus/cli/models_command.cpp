@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/sized_models.hpp"
@@ -44,11 +44,7 @@ Expected<ModelSizes::value_type> read_size(const std::string& setting) {
   const auto equals = setting.find('=');
   const std::string name = setting.substr(0, equals);
   const std::string number = equals == std::string::npos ? std::string() : setting.substr(equals + 1);
-  std::int64_t value = 0;
-  const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), value);
-  if (!number.empty() && problem == std::errc() && end == number.data() + number.size()) {
-    return ModelSizes::value_type{name, value};
-  }
+  if (const auto value = whole_text_as<std::int64_t>(number)) return ModelSizes::value_type{name, *value};
   return tl::unexpected(Error{ErrorCode::invalid_option,
                               fmt::format("--set {}: expected NAME=N with a whole number", setting),
                               "as in: --set blocks=1000",

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/text/terminal.hpp"
@@ -43,7 +44,7 @@ constexpr std::string_view standard_output = "-";
 Expected<void> check_suffix(const Output& output) {
   const auto suffix = fs::path(output.file).extension().string();
   auto known = output.suffixes;
-  if (std::find(known.begin(), known.end(), suffix) != known.end()) return {};
+  if (contains(known, suffix)) return {};
   if (const auto csv = std::find(known.begin(), known.end(), ".csv"); csv != known.end())
     known.insert(csv + 1, ".events.csv");
   return tl::unexpected(refused(output.option, output.file,
@@ -73,8 +74,8 @@ Expected<void> check_standard_output(const OutputNames& names) {
   }
   std::vector<std::string> known;
   for (const auto& suffix : names.suffixes) known.push_back(suffix.substr(1));
-  if (std::find(known.begin(), known.end(), "csv") != known.end()) known.emplace_back("events.csv");
-  if (std::find(known.begin(), known.end(), names.format) != known.end()) return {};
+  if (contains(known, "csv")) known.emplace_back("events.csv");
+  if (contains(known, names.format)) return {};
   return tl::unexpected(refused("--format", names.format, fmt::format("expected {}", fmt::join(known, " or ")),
                                 suggest(names.format, known)));
 }
@@ -173,9 +174,7 @@ bool Outputs::show_surfaces() const {
   });
 }
 
-bool Outputs::fill_standard_output() const {
-  return std::find(names_.files.begin(), names_.files.end(), standard_output) != names_.files.end();
-}
+bool Outputs::fill_standard_output() const { return contains(names_.files, standard_output); }
 
 std::optional<GrowingOutputs> Outputs::growing(std::size_t events) const {
   constexpr std::size_t most_events = 10000;

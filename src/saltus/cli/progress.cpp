@@ -15,14 +15,15 @@ constexpr auto interval = std::chrono::milliseconds(100);
 /// A run that ends before this shows no line at all: it would only flicker.
 constexpr auto patience = std::chrono::milliseconds(300);
 
-}  // namespace
-
+/// "t = 12.5   31 %   1234 steps   6 events"; with several trajectories "3 of 7" stands in front of it.
 std::string progress_text(const pipeline::StepRecord& step) {
   const double share = (step.t - step.from) / (step.until - step.from);
   const auto which = step.trajectories > 1 ? fmt::format("{} of {}   ", step.trajectory, step.trajectories) : "";
   return which + fmt::format("t = {:.6g}   {:.0f} %   {} steps   {} events", step.t,
                              100.0 * std::clamp(share, 0.0, 1.0), step.steps, step.events);
 }
+
+}  // namespace
 
 pipeline::Observers watched(ProgressLine& progress) {
   catch_interrupt();

@@ -38,7 +38,4 @@ class ProgressLine {
 /// @param progress  must outlive what is returned
 [[nodiscard]] pipeline::Observers watched(ProgressLine& progress);
 
-/// Returns "t = 12.5   31 %   1234 steps   6 events"; with several trajectories "3 of 7" stands in front of it.
-[[nodiscard]] std::string progress_text(const pipeline::StepRecord& step);
-
 }  // namespace saltus::cli

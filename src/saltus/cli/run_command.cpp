@@ -1,7 +1,6 @@
 #include "saltus/cli/run_command.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <set>
 #include <sys/stat.h>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/progress.hpp"
@@ -108,11 +108,7 @@ class Stops {
 Expected<std::size_t> shown_events(const std::string& typed) {
   if (typed.empty()) return report::events_at_each_end;
   if (typed == "all") return std::numeric_limits<std::size_t>::max();
-  std::size_t count = 0;
-  const auto* end = typed.data() + typed.size();
-  if (const auto read = std::from_chars(typed.data(), end, count); read.ec == std::errc() && read.ptr == end) {
-    return count;
-  }
+  if (const auto count = whole_text_as<std::size_t>(typed)) return *count;
   return tl::unexpected(Error{ErrorCode::invalid_option,
                               fmt::format("--events {}: expected a whole number or all", typed),
                               "--events 3 shows the first and the last 3",

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/pipeline/random_numbers.hpp"
 
 namespace saltus::cli {
@@ -94,10 +95,7 @@ std::vector<std::size_t> draw_inputs(std::size_t gene, const Inputs& inputs, Dra
   std::vector<std::size_t> drawn;
   for (std::size_t k = 0; k < attempts && drawn.size() < wanted; ++k) {
     const std::size_t other = draws.below(inputs.size());
-    const auto among = [](const auto& list, std::size_t entry) {
-      return std::find(list.begin(), list.end(), entry) != list.end();
-    };
-    if (other != gene && !among(drawn, other) && !among(inputs[other], gene)) drawn.push_back(other);
+    if (other != gene && !contains(drawn, other) && !contains(inputs[other], gene)) drawn.push_back(other);
   }
   return drawn;
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/run_command.hpp"
@@ -177,7 +178,7 @@ Expected<SweepRequest> request_of(const SweepArguments& arguments) {
 Expected<void> check_settings(const std::vector<std::string>& settings, const SweepPlan& plan) {
   for (const auto& setting : settings) {
     const auto name = setting.substr(0, setting.find('='));
-    if (std::find(plan.names().begin(), plan.names().end(), name) == plan.names().end()) continue;
+    if (!contains(plan.names(), name)) continue;
     return tl::unexpected(
         misuse(fmt::format("--set {}: '{}' is changed twice", setting, name), "give its values once"));
   }

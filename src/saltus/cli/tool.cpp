@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/version.hpp"
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
@@ -34,7 +35,7 @@ std::string about_option(const std::string& name, const CLI::App& app, const CLI
   if (!nearest_names(name, known).empty()) return suggest(name, known);
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     const auto names = option_names(*command);
-    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
+    if (!contains(names, name)) continue;
     auto remedy = fmt::format("{} is an option of `saltus {}`", name, command->get_name());
     const bool writes_results = reader.get_option_no_throw("--format") != nullptr;
     const bool draws = reader.get_option_no_throw("--report") != nullptr;

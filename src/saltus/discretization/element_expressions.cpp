@@ -23,6 +23,21 @@ casadi::Function point_function(const Dcs& dcs, const SX& known, const SharedInp
   return casadi::Function("saltus_point", {dcs.t, dcs.x, dcs.selection, dcs.lifted, known}, out);
 }
 
+ElementVariables element_variables(const ElementLayout& layout, const SX& v) {
+  const auto matrix = [&v](const VariableBlock& block) {
+    return SX::reshape(v(casadi::Slice(block.first, block.end())), block.size, block.count);
+  };
+  return {v(layout.h),
+          matrix(layout.stage),
+          matrix(layout.selection),
+          matrix(layout.lifted),
+          matrix(layout.lambda),
+          matrix(layout.simplex),
+          matrix(layout.end_state),
+          matrix(layout.end_time),
+          matrix(layout.correction)};
+}
+
 struct PointValues {
   SX f, indicator, lifting;
 };
@@ -113,9 +128,7 @@ class ElementBuilder {
     layout.size = next;
   }
 
-  [[nodiscard]] SX stage_time(int m) const {
-    return result_.depends_on_time ? left_t_ + tableau_.c[m] * h_ : SX(0.0);
-  }
+  [[nodiscard]] SX stage_time(int m) const { return result_.depends_on_time ? left_t_ + tableau_.c[m] * h_ : SX(0.0); }
   [[nodiscard]] SX column(const SX& matrix, int m) const { return matrix(casadi::Slice(), m); }
 
   void add_runge_kutta_equations() {
@@ -247,8 +260,6 @@ class ElementBuilder {
     const Boundary boundary{element_pairs(result_.pairs, variables_, left_lambda),
                             element_pairs(result_.pairs, next, at_boundary), variables_.h, next.h, own};
     result_.boundary_inputs = SX::vertcat({left_lambda, v, after, own});
-    result_.eta = switch_indicator(boundary);
-    result_.printed_eta = printed_switch_indicator(result_.pairs, boundary);
     if (!moves()) return;
     if (options_.cross_complementarity == CrossComplementarity::paper) {
       add_paper_cross_complementarity(boundary, result_.neighbours);
@@ -282,21 +293,6 @@ std::vector<SelectionPair> selection_pairs(const Dcs& dcs) {
     }
   }
   return pairs;
-}
-
-ElementVariables element_variables(const ElementLayout& layout, const SX& v) {
-  const auto matrix = [&v](const VariableBlock& block) {
-    return SX::reshape(v(casadi::Slice(block.first, block.end())), block.size, block.count);
-  };
-  return {v(layout.h),
-          matrix(layout.stage),
-          matrix(layout.selection),
-          matrix(layout.lifted),
-          matrix(layout.lambda),
-          matrix(layout.simplex),
-          matrix(layout.end_state),
-          matrix(layout.end_time),
-          matrix(layout.correction)};
 }
 
 Expected<ElementExpressions> element_expressions(const Dcs& dcs, const ButcherTableau& tableau,

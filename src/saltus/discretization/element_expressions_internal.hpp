@@ -30,7 +30,6 @@ struct ElementVariables {
   casadi::SX end_time;    ///< 1 by 1, or empty
   casadi::SX correction;  ///< n_selections by 2, or empty
 };
-[[nodiscard]] ElementVariables element_variables(const ElementLayout& layout, const casadi::SX& v);
 
 /// Holds the sides of the pairs at the points of an element, columns.
 struct ElementPairs {
@@ -95,7 +94,6 @@ struct ElementExpressions {
   std::vector<ElementPoint> stages;
   ElementPoint left, end;  ///< the left end has no selections
   mpcc::Bounds boundary_own_bounds;
-  casadi::SX eta, printed_eta;  ///< of the boundary
   bool depends_on_time = false;
 };
 

@@ -68,9 +68,7 @@ Expected<std::shared_ptr<FesdKernel>> FesdKernel::compile(const reformulation::D
     if (dcs.u.numel() > 0) indicator = SX::substitute(indicator, dcs.u, SX::densify(dcs.input));
     kernel->indicators =
         model::ModelFunction("saltus_indicators", {dcs.t, dcs.x, SX::vertcat({dcs.p, dcs.held})}, {indicator});
-    kernel->switches =
-        model::ModelFunction("saltus_switches", {built->boundary_inputs}, {built->eta, built->printed_eta});
-    std::vector<model::ModelFunction*> functions{&kernel->indicators, &kernel->switches};
+    std::vector<model::ModelFunction*> functions{&kernel->indicators};
     kernel->element.join(kernel->native, functions);
     kernel->boundary.join(kernel->native, functions);
     auto started = kernel->native.start(native, std::move(functions));

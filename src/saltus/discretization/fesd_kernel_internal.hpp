@@ -23,7 +23,6 @@ struct FesdKernel::Implementation {
   LocalFunction boundary;
   mpcc::Bounds boundary_bounds;
   model::ModelFunction indicators;  ///< (t, x, parameters) -> indicators
-  model::ModelFunction switches;    ///< (inputs of the boundary) -> eta, printed eta
   evaluation::NativeFunctions native;
 
   [[nodiscard]] int left_size() const { return states + (depends_on_time ? 1 : 0) + static_cast<int>(pairs.size()); }

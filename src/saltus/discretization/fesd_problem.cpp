@@ -164,19 +164,6 @@ struct FesdProblem::Implementation {
     return Eigen::Map<const Eigen::MatrixXd>(w.data() + layout.first_of_element(n) + block.first, block.size,
                                              block.count);
   }
-
-  [[nodiscard]] Eigen::VectorXd etas(ConstVectorView w, bool printed) {
-    Eigen::VectorXd etas(std::max(layout.elements - 1, 0));
-    for (int n = 1; n < layout.elements; ++n) {
-      const auto& z = boundaries.gather(n - 1, w, constants);
-      double eta = 0.0;
-      double printed_eta = 0.0;
-      kernel.native.call(kernel.switches, std::array<const double*, 1>{z.data()},
-                         std::array<double*, 2>{&eta, &printed_eta});
-      etas[n - 1] = printed ? printed_eta : eta;
-    }
-    return etas;
-  }
 };
 
 FesdProblem::FesdProblem(std::shared_ptr<FesdKernel> kernel, int elements)
@@ -260,10 +247,6 @@ std::vector<SolvedElement> FesdProblem::read(ConstVectorView w) const {
 }
 
 const VariableLayout& FesdProblem::layout() const { return implementation_->layout; }
-Eigen::VectorXd FesdProblem::switch_indicators(ConstVectorView w) const { return implementation_->etas(w, false); }
-Eigen::VectorXd FesdProblem::printed_switch_indicators(ConstVectorView w) const {
-  return implementation_->etas(w, true);
-}
 int FesdProblem::variables() const { return implementation_->layout.size(); }
 int FesdProblem::constraints() const { return implementation_->n_g; }
 int FesdProblem::pairs() const { return implementation_->n_pairs; }

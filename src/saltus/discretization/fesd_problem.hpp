@@ -93,11 +93,6 @@ class FesdProblem final : public mpcc::Problem {
   [[nodiscard]] Eigen::VectorXd first_guess() const;
   [[nodiscard]] std::vector<SolvedElement> read(mpcc::ConstVectorView w) const;
   [[nodiscard]] const VariableLayout& layout() const;
-  /// Returns eta of each inner boundary, from the sums over every pair (StepEquilibration), whatever the mode: n - 1
-  /// values.
-  [[nodiscard]] Eigen::VectorXd switch_indicators(mpcc::ConstVectorView w) const;
-  /// Returns the same with the printed nu of section 4.4.
-  [[nodiscard]] Eigen::VectorXd printed_switch_indicators(mpcc::ConstVectorView w) const;
 
   [[nodiscard]] int variables() const override;
   [[nodiscard]] int constraints() const override;

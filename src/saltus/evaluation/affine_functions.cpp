@@ -10,6 +10,7 @@
 #include <casadi/core/calculus.hpp>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/evaluation/affine_functions_internal.hpp"
 
 namespace saltus::evaluation {
@@ -144,7 +145,7 @@ void AffineRowFunction::fill(FixedState fixed, const double* p, const double* al
 
 LinearFieldFunction::LinearFieldFunction(const SX& f, const ModelSymbols& symbols) : start_{0} {
   const auto affine = affine_entries(f, symbols);
-  if (std::find(affine.begin(), affine.end(), false) != affine.end()) return;
+  if (contains(affine, false)) return;
   const SX jacobian = SX::jacobian(f, symbols.x).T();  // its columns are the rows of A
   const auto& sparsity = jacobian.sparsity();
   for (casadi_int row = 0; row < sparsity.size2(); ++row) {

@@ -139,22 +139,17 @@ void CompiledModel::compile_functions(const model::System& system) {
 void CompiledModel::find_structure(const model::System& system) {
   const int n_phi = static_cast<int>(phi.numel());
   affine = affine_entries(phi, symbols());
-  time_only.assign(at(n_phi), true);
   inner = dependencies_of_rows(phi, alpha);
   const auto on_states = dependencies_of_rows(phi, x);
   const auto is_discrete = [&](int state) { return static_cast<bool>(discrete[at(state)]); };
-  for (int j = 0; j < n_phi; ++j) {
-    const auto& states = on_states[at(j)];
-    time_only[at(j)] = std::all_of(states.begin(), states.end(), is_discrete);
-  }
   if (start.cells.size() > 0) on_cells = start.cells.dependencies(dependencies_of_rows(phi, p));
   discrete_guards.assign(at(n_phi), false);
   const auto on_time = jump_guards.empty() ? std::vector<std::vector<int>>() : dependencies_of_rows(phi, t);
   for (std::size_t k = 0; k < jump_guards.size(); ++k) {
     const auto j = at(first_jump_guard) + k;
     const bool in_cell = !on_cells.empty() && std::any_of(on_cells[j].begin(), on_cells[j].end(), std::identity{});
-    discrete_guards[j] = time_only[j] && on_time[j].empty() && !in_cell &&
-                         std::all_of(inner[j].begin(), inner[j].end(), [&](int selection) {
+    discrete_guards[j] = std::all_of(on_states[j].begin(), on_states[j].end(), is_discrete) && on_time[j].empty() &&
+                         !in_cell && std::all_of(inner[j].begin(), inner[j].end(), [&](int selection) {
                            return system.switching[at(selection)].role == model::SwitchingRole::discrete;
                          });
   }

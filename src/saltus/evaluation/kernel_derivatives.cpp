@@ -243,7 +243,6 @@ bool ModelKernel::is_discrete_guard(int function) const {
   return implementation_->compiled->discrete_guards[at(function)];
 }
 
-bool ModelKernel::is_time_only(int function) const { return implementation_->compiled->time_only[at(function)]; }
 const std::vector<int>& ModelKernel::inner(int function) const {
   return implementation_->compiled->inner[at(function)];
 }

@@ -80,7 +80,7 @@ struct KernelSymbols {
 /// Holds what the expressions say without values; found once.
 struct KernelStructure {
   std::vector<std::vector<bool>> on_cells;  ///< by event function
-  std::vector<bool> affine, time_only;
+  std::vector<bool> affine;
   std::vector<bool> discrete_guards;          ///< by event function: guards of jumps that jumps alone change
   std::vector<bool> rooted, continued_roots;  ///< n_psi
   std::vector<std::vector<int>> inner;

@@ -222,9 +222,6 @@ class ModelKernel {
   /// Returns L phi_j along f(., alpha) as a row, if it is affine in t and the states that are not fixed; false if it is
   /// not.
   [[nodiscard]] bool lie_row(int function, FixedState fixed, const double* alpha, AffineRow& row) const;
-  /// Returns whether phi_j depends on t and discrete states only (for fixed alpha): between jumps it is a function of
-  /// time, which no selection changes, so that nothing slides on it.
-  [[nodiscard]] bool is_time_only(int function) const;
   /// Returns whether it is a guard of a jump that depends on discrete states and constants only.
   [[nodiscard]] bool is_discrete_guard(int function) const;
   /// Returns switching functions whose alpha occurs in phi_j (after inputs are put in), ascending.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/evaluation/guard_words.hpp"
 #include "saltus/model/graph/model_function.hpp"
 
@@ -100,7 +101,7 @@ class Composer {
 
   /// Behind the cells in it. A control may have a table, and its input be another one of a larger index.
   void compose_argument(int cell) {
-    if (std::find(order_.begin(), order_.end(), cell) != order_.end()) return;
+    if (contains(order_, cell)) return;
     const SX& argument = system_.cells[at(cell)].argument;
     for (const int symbol : dependencies(with_inputs(argument), symbols_)) compose_argument(owners_[at(symbol)]);
     arguments_[at(cell)] = compose(argument);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/complaints_internal.hpp"
 #include "saltus/expression/grammar_internal.hpp"
 #include "saltus/expression/limits_internal.hpp"
@@ -23,7 +24,7 @@ bool begins_operand(const Token& token) {
 
 bool is_word_of_other_conditionals(const Token& token) {
   constexpr std::array<std::string_view, 4> words{"if", "then", "else", "elseif"};
-  return token.kind == TokenKind::name && std::find(words.begin(), words.end(), token.text) != words.end();
+  return token.kind == TokenKind::name && contains(words, token.text);
 }
 
 /// How a call of the function is written.

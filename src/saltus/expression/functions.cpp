@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/parser.hpp"
 
 namespace saltus::expression {
@@ -23,7 +24,7 @@ const std::vector<FunctionSignature>& functions() {
 
 bool is_reserved(std::string_view name) {
   const auto& table = functions();
-  return std::find(reserved_words.begin(), reserved_words.end(), name) != reserved_words.end() ||
+  return contains(reserved_words, name) ||
          std::any_of(table.begin(), table.end(), [&](const auto& function) { return function.name == name; });
 }
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/grammar_internal.hpp"
 #include "saltus/expression/parser.hpp"
 
@@ -20,21 +21,9 @@ constexpr std::array<std::string_view, 34> letters_of_latex = {
 constexpr std::array<std::string_view, 14> commands = {"sin", "cos", "tan", "sinh", "cosh", "tanh", "exp",
                                                        "log", "max", "min", "arg",  "det",  "gcd",  "lim"};
 
-template <std::size_t n>
-bool is_in_list(const std::array<std::string_view, n>& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-/// Underscores are commands of LaTeX.
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) result += c == '_' ? std::string("\\_") : std::string(1, c);
-  return result;
-}
-
 std::string letters_of(std::string_view word) {
-  if (is_in_list(letters_of_latex, word)) return fmt::format("\\{}", word);
-  return word.size() == 1 ? std::string(word) : fmt::format("\\mathrm{{{}}}", escaped(word));
+  if (contains(letters_of_latex, word)) return fmt::format("\\{}", word);
+  return word.size() == 1 ? std::string(word) : fmt::format("\\mathrm{{{}}}", latex_escaped(word));
 }
 
 /// How tightly a node holds together once it is written: fractions and powers of LaTeX need fewer parentheses.
@@ -124,12 +113,19 @@ std::string latex_of(const Call& call) {
   if (is("floor", 1)) return fmt::format("\\left\\lfloor {} \\right\\rfloor", to_latex(*arguments[0]));
   std::string list;
   for (const auto& argument : arguments) list += (list.empty() ? "" : ", ") + to_latex(*argument);
-  const auto name = is_in_list(commands, call.function) ? "\\" + call.function
-                                                        : fmt::format("\\operatorname{{{}}}", escaped(call.function));
+  const auto name = contains(commands, call.function)
+                        ? "\\" + call.function
+                        : fmt::format("\\operatorname{{{}}}", latex_escaped(call.function));
   return fmt::format("{}\\left({}\\right)", name, list);
 }
 
 }  // namespace
+
+std::string latex_escaped(std::string_view text) {
+  std::string result;
+  for (const char c : text) result += c == '_' ? std::string("\\_") : std::string(1, c);
+  return result;
+}
 
 std::string latex_name(const std::string& name) {
   const auto underscore = name.find('_', 1);
@@ -144,8 +140,9 @@ std::string latex_name(const std::string& name) {
   }
   if (index.empty()) return letters_of(letters);
   const bool is_word = std::any_of(index.begin(), index.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
-  return fmt::format("{}_{{{}}}", letters_of(letters),
-                     is_word && index.size() > 1 ? fmt::format("\\mathrm{{{}}}", escaped(index)) : escaped(index));
+  return fmt::format(
+      "{}_{{{}}}", letters_of(letters),
+      is_word && index.size() > 1 ? fmt::format("\\mathrm{{{}}}", latex_escaped(index)) : latex_escaped(index));
 }
 
 std::string to_latex(const Node& node) {

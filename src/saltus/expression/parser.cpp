@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/complaints_internal.hpp"
 #include "saltus/expression/grammar_internal.hpp"
 #include "saltus/expression/lexer_internal.hpp"
@@ -148,7 +149,7 @@ class Parser {
     for (const auto& known : functions()) {
       if (known.name == function) return known.arguments;
     }
-    const bool extra = std::find(extra_functions_.begin(), extra_functions_.end(), function) != extra_functions_.end();
+    const bool extra = contains(extra_functions_, function);
     return extra ? std::optional(1) : std::nullopt;
   }
 

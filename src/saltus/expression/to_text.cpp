@@ -1,9 +1,9 @@
-#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/grammar_internal.hpp"
 #include "saltus/expression/parser.hpp"
 
@@ -111,7 +111,7 @@ void collect_names(const Node& node, std::vector<std::string>& names) {
   std::visit(overloaded{
                  [](const Number&) {},
                  [&](const Name& name) {
-                   if (std::find(names.begin(), names.end(), name.name) == names.end()) names.push_back(name.name);
+                   if (!contains(names, name.name)) names.push_back(name.name);
                  },
                  [&](const Unary& unary) { collect_names(*unary.operand, names); },
                  [&](const Binary& binary) {

@@ -1,26 +1,16 @@
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/foreign/nl_lines_internal.hpp"
 
 namespace saltus::foreign {
 namespace {
 
 constexpr std::string_view blanks = " \t\r\f\v";
-
-/// nullopt if the whole text is none.
-template <class Number>
-std::optional<Number> whole_text_as(std::string_view text) {
-  if (text.starts_with('+')) text.remove_prefix(1);
-  Number number{};
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
 
 std::string shown(std::string_view text) {
   if (text.empty()) return "nothing";
@@ -68,7 +58,7 @@ void NlLines::fail(std::string message, std::string remedy, ErrorCode code) {
 
 long NlLines::whole_in(std::string_view text, std::string_view what, long low, long high) {
   if (failed()) return low;
-  const auto number = whole_text_as<long>(text);
+  const auto number = whole_text_as<long>(without_plus(text));
   if (number && *number >= low && *number <= high) return *number;
   if (number && low <= high) {
     fail(fmt::format("expected {} from {} to {}, found {}", what, low, high, *number));
@@ -82,7 +72,7 @@ long NlLines::whole_in(std::string_view text, std::string_view what, long low, l
 
 double NlLines::number_in(std::string_view text, std::string_view what) {
   if (failed()) return 0.0;
-  const auto number = whole_text_as<double>(text);
+  const auto number = whole_text_as<double>(without_plus(text));
   if (number && !std::isnan(*number)) return *number;
   fail(fmt::format("expected {}, a number, found {}", what, shown(text)));
   return 0.0;

@@ -12,14 +12,6 @@
 namespace saltus::io {
 namespace {
 
-/// RFC 4180: fields with a comma, a quote or a line break stand in quotes, quotes are doubled.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 template <class Row>
 void append(std::string& text, const Row& row) {
   for (const auto value : row) fmt::format_to(std::back_inserter(text), ",{}", value);
@@ -27,11 +19,11 @@ void append(std::string& text, const Row& row) {
 
 /// One field for each name: "alpha(name)".
 void append_heads(std::string& text, const char* quantity, const std::vector<std::string>& names) {
-  for (const auto& name : names) text += "," + field(fmt::format("{}({})", quantity, name));
+  for (const auto& name : names) text += "," + csv_field(fmt::format("{}({})", quantity, name));
 }
 
 void append_names(std::string& text, const std::vector<std::string>& names) {
-  for (const auto& name : names) text += "," + field(name);
+  for (const auto& name : names) text += "," + csv_field(name);
 }
 
 /// One line for every row, each with `end` behind it.
@@ -48,7 +40,8 @@ void append_rows_behind(double before, TextStream& stream, const result::Result&
     append(text, trajectory.alpha[i]);
     append(text, trajectory.mode[i]);
     if (!trajectory.regions.empty()) {
-      for (const auto& active : trajectory.regions[i]) text += "," + field(fmt::format("{}", fmt::join(active, "+")));
+      for (const auto& active : trajectory.regions[i])
+        text += "," + csv_field(fmt::format("{}", fmt::join(active, "+")));
       append(text, trajectory.theta[i]);
     }
     text += end + "\n";
@@ -71,8 +64,8 @@ void append_events(TextStream& stream, const result::Result& result, const std::
   std::string& text = stream.text();
   for (const auto& event : result.events) {
     if (!stream.pass()) return;
-    fmt::format_to(std::back_inserter(text), "{},{},{},{}", event.t, name(event.kind), field(event.name.value_or("")),
-                   field(fmt::format("{}", fmt::join(event.surfaces, ";"))));
+    fmt::format_to(std::back_inserter(text), "{},{},{},{}", event.t, name(event.kind),
+                   csv_field(event.name.value_or("")), csv_field(fmt::format("{}", fmt::join(event.surfaces, ";"))));
     append(text, event.x);
     append(text, event.x_after);
     append_or_empty(text, event.mode_before, columns);
@@ -80,7 +73,7 @@ void append_events(TextStream& stream, const result::Result& result, const std::
     append_or_empty(text, event.alpha_before, columns);
     append_or_empty(text, event.alpha_after, columns);
     text += !event.unique ? "," : *event.unique ? ",true" : ",false";
-    text += "," + field(event.reason) + end + "\n";
+    text += "," + csv_field(event.reason) + end + "\n";
   }
 }
 
@@ -105,7 +98,7 @@ std::string head_of_rows(const result::Result& result) {
   append_heads(text, "alpha", functions_in_rows(result));
   append_heads(text, "mode", functions_in_rows(result));
   for (const auto& group : result.region_groups) {
-    text += "," + field(group.name.empty() ? "regions" : "regions(" + group.name + ")");
+    text += "," + csv_field(group.name.empty() ? "regions" : "regions(" + group.name + ")");
   }
   append_heads(text, "theta", result::region_labels(result.region_groups));
   return text;
@@ -156,6 +149,13 @@ class CsvParts : public ResultParts {
 
 }  // namespace
 
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 bool write_csv(const result::Result& result, Sink sink) {
   return write_lines(head_of_rows(result), result, append_rows, sink);
 }
@@ -172,10 +172,6 @@ std::unique_ptr<ResultParts> events_csv_parts(Sink sink) {
 
 std::string to_csv(const result::Result& result) {
   return collected([&](Sink sink) { return write_csv(result, sink); });
-}
-
-std::string events_to_csv(const result::Result& result) {
-  return collected([&](Sink sink) { return write_events_csv(result, sink); });
 }
 
 }  // namespace saltus::io

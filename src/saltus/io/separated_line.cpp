@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <charconv>
 
+#include "saltus/base/text.hpp"
 #include "saltus/io/separated_line_internal.hpp"
 
 namespace saltus::io {
@@ -11,12 +11,9 @@ std::vector<std::string_view> separated_fields(std::string_view line) {
     if (line.find(candidate) != std::string_view::npos) separator = candidate;
   }
   std::vector<std::string_view> fields;
-  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
   for (std::size_t from = 0; from <= line.size();) {
     const auto to = std::min(line.find(separator, from), line.size());
-    auto field = line.substr(from, to - from);
-    while (!field.empty() && is_blank(field.front())) field.remove_prefix(1);
-    while (!field.empty() && is_blank(field.back())) field.remove_suffix(1);
+    auto field = trimmed(line.substr(from, to - from), " \t");
     if (field.size() > 1 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
     if (separator != ' ' || !field.empty()) fields.push_back(field);
     from = to + 1;
@@ -24,12 +21,6 @@ std::vector<std::string_view> separated_fields(std::string_view line) {
   return fields;
 }
 
-std::optional<double> separated_number(std::string_view field) {
-  if (field.size() > 1 && field.front() == '+') field.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (failure != std::errc{} || end != field.data() + field.size()) return std::nullopt;
-  return value;
-}
+std::optional<double> separated_number(std::string_view field) { return whole_text_as<double>(without_plus(field)); }
 
 }  // namespace saltus::io

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/setting_values_internal.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
@@ -46,8 +47,8 @@ void withdraw_input(model::Description& description, std::string_view name) {
 }
 
 bool is_table_text(std::string_view value) {
-  const auto first = value.find_first_not_of(' '), last = value.find_last_not_of(' ');
-  return first != std::string_view::npos && value[first] == '{' && value[last] == '}';
+  const auto text = trimmed(value);
+  return text.starts_with('{') && text.ends_with('}');
 }
 
 Expected<void> set_table(ModelFile& model, std::string_view key, std::string_view value) {

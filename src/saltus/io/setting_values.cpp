@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -7,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/constant_value_internal.hpp"
 #include "saltus/io/option_text.hpp"
@@ -14,20 +14,6 @@
 
 namespace saltus::io {
 namespace {
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
-template <class Number>
-std::optional<Number> whole_text_as(std::string_view text) {
-  Number number{};
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (failure != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
 
 std::optional<double> constant_in(std::string_view text) {
   if (const auto number = whole_text_as<double>(text)) return number;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/option_text.hpp"
@@ -58,7 +59,7 @@ Expected<void> set_expression(model::Description& description, std::string_view 
   if (place == nullptr) {
     const auto known = names_of(list);
     const auto name = std::string(path.substr(0, path.find('.')));
-    if (name.size() < path.size() && std::find(known.begin(), known.end(), name) != known.end()) {
+    if (name.size() < path.size() && contains(known, name)) {
       return refused_setting(key, ErrorCode::unknown_name,
                              fmt::format("'{}' is no part of '{}'", path.substr(name.size() + 1), name),
                              "states and controls have the parts initial, lower and upper; other names have none");
@@ -151,13 +152,13 @@ constexpr std::array settable{
 constexpr std::array fixed{"modes", "events", "jumps", "tables", "mechanics", "contacts", "sensitivity", "hysteresis"};
 
 tl::unexpected<Error> not_settable(std::string_view key, std::string_view table) {
-  if (std::find(fixed.begin(), fixed.end(), table) != fixed.end()) {
+  if (contains(fixed, table)) {
     return refused_setting(key, ErrorCode::invalid_option,
                            fmt::format("nothing in '{}' can be set on the command line", table),
                            "write a parameter there, and set that: --set NAME=VALUE");
   }
   const auto options = pipeline::simulate_keys();
-  if (std::find(options.begin(), options.end(), key) != options.end()) {
+  if (contains(options, key)) {
     return refused_setting(key, ErrorCode::unknown_name, fmt::format("'{}' is a table of [simulate]", table),
                            fmt::format("write simulate.{}", key));
   }

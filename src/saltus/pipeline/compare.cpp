@@ -109,6 +109,15 @@ std::optional<double> largest_difference(const std::vector<double>& a, const std
   return std::isfinite(most) ? std::optional(most) : std::nullopt;
 }
 
+/// Times of the changes of mode and of the jumps; without starts and user events, which are no switches.
+std::vector<double> switch_times(const result::Result& result) {
+  std::vector<double> times;
+  for (const auto& event : result.events) {
+    if (is_switch(event)) times.push_back(event.t);
+  }
+  return times;
+}
+
 /// A run as a row without its states. The events of a smoothed system are borders of layers, not switches.
 ComparedRun row(const PlannedRun& planned, const result::Result& found, const result::Result& reference) {
   ComparedRun run{planned.method, planned.variant, "", found.status, {}, {}, {}, {}, {}, found.statistics};
@@ -197,14 +206,6 @@ SimulateOptions reference_options(SimulateOptions options) {
 std::string reference_name(const SimulateOptions& reference) {
   return fmt::format("{}, rtol {:g}, atol {:g}", is_stiff(reference) ? "radau5" : "dop853", reference.rtol,
                      reference.atol);
-}
-
-std::vector<double> switch_times(const result::Result& result) {
-  std::vector<double> times;
-  for (const auto& event : result.events) {
-    if (is_switch(event)) times.push_back(event.t);
-  }
-  return times;
 }
 
 Agreement agreement(const result::Result& found, const result::Result& reference) {

@@ -26,9 +26,6 @@ struct Agreement {
 };
 [[nodiscard]] Agreement agreement(const result::Result& found, const result::Result& reference);
 
-/// Returns times of the changes of mode and of the jumps; without starts and user events, which are no switches.
-[[nodiscard]] std::vector<double> switch_times(const result::Result& result);
-
 /// Simulates the system with every method, first with the most accurate one.
 /// @param options  those of the model; method, integrator and branches are replaced
 /// @return the result of the reference run, with a `comparison` of all runs: one that cannot be made is a row with its

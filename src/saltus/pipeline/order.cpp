@@ -1,7 +1,6 @@
 #include "saltus/pipeline/order.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -9,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
+#include "saltus/base/text.hpp"
 #include "saltus/pipeline/compare.hpp"
 #include "saltus/pipeline/observers_internal.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -16,23 +17,6 @@
 
 namespace saltus::pipeline {
 namespace {
-
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> pieces;
-  for (;;) {
-    const auto comma = text.find(',');
-    pieces.push_back(text.substr(0, comma));
-    if (comma == std::string_view::npos) return pieces;
-    text.remove_prefix(comma + 1);
-  }
-}
-
-std::optional<long> whole_number(std::string_view text) {
-  long value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 Error unreadable(std::string_view expected, std::string_view found, std::string remedy) {
   return {
@@ -134,14 +118,14 @@ std::vector<result::OrderSeries> planned(const SimulateOptions& options, const O
 
 Expected<std::vector<OrderScheme>> parse_schemes(std::string_view text) {
   std::vector<OrderScheme> schemes;
-  for (const auto piece : split(text)) {
+  for (const auto piece : split(text, ',')) {
     const auto colon = piece.find(':');
-    const auto stages = colon == std::string_view::npos ? std::nullopt : whole_number(piece.substr(colon + 1));
+    const auto stages = colon == std::string_view::npos ? std::nullopt : whole_text_as<long>(piece.substr(colon + 1));
     if (colon == 0 || !stages || *stages < 1 || *stages > 99) {
       return tl::unexpected(unreadable("NAME:STAGES", piece, "for example --schemes radau_iia:2,gauss_legendre:3"));
     }
     OrderScheme scheme{std::string(piece.substr(0, colon)), static_cast<int>(*stages)};
-    if (std::find(schemes.begin(), schemes.end(), scheme) != schemes.end()) {
+    if (contains(schemes, scheme)) {
       return tl::unexpected(unreadable("every scheme once", piece, "leave the second one out"));
     }
     schemes.push_back(std::move(scheme));
@@ -151,8 +135,8 @@ Expected<std::vector<OrderScheme>> parse_schemes(std::string_view text) {
 
 Expected<std::vector<long>> parse_steps(std::string_view text) {
   std::vector<long> steps;
-  for (const auto piece : split(text)) {
-    const auto number = whole_number(piece);
+  for (const auto piece : split(text, ',')) {
+    const auto number = whole_text_as<long>(piece);
     if (!number || *number < 1 || (!steps.empty() && *number <= steps.back())) {
       return tl::unexpected(unreadable("ascending whole numbers >= 1", piece, "for example --steps 25,50,100,200"));
     }

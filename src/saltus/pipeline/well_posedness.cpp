@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/pipeline/simulate.hpp"
 
 namespace saltus::pipeline {
@@ -30,7 +31,7 @@ SolutionPoint point_of(const result::Trajectory& rows, std::size_t row, const mo
     const auto& active = rows.regions[row][group_number++];
     for (std::size_t i = 0; i < group.mode_names.size(); ++i) {
       const std::size_t j = static_cast<std::size_t>(group.first) + i;
-      const bool is_active = std::find(active.begin(), active.end(), group.mode_names[i]) != active.end();
+      const bool is_active = contains(active, group.mode_names[i]);
       point.mode[j] = is_active ? 0 : -1;
       point.alpha[j] = rows.theta[row][next++];
     }

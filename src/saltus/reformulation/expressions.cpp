@@ -100,6 +100,9 @@ std::vector<SXElem> symbols_in(const SX& expression) {
   return found;
 }
 
+namespace {
+
+/// The parts of an expression, by address, in which one of the symbols occurs.
 std::unordered_set<const void*> nodes_with(const SXElem& expression, const std::unordered_set<const void*>& symbols) {
   std::unordered_set<const void*> seen, found;
   visit_from_below(
@@ -112,8 +115,6 @@ std::unordered_set<const void*> nodes_with(const SXElem& expression, const std::
       });
   return found;
 }
-
-namespace {
 
 class Terms {
  public:

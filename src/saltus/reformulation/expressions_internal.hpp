@@ -34,10 +34,6 @@ class Replacement {
 /// Returns the symbols an expression is made of.
 [[nodiscard]] std::vector<SXElem> symbols_in(const SX& expression);
 
-/// Returns the parts of an expression (by address, as SXElem::get) in which one of the symbols occurs.
-[[nodiscard]] std::unordered_set<const void*> nodes_with(const SXElem& expression,
-                                                         const std::unordered_set<const void*>& symbols);
-
 /// Returns terms whose sum is the expression, as fine as its structure allows: products are multiplied out where only
 /// one factor has some of the symbols. What has none of them is not taken apart.
 [[nodiscard]] std::vector<SXElem> additive_terms(const SXElem& expression,

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/report/comparison_table_internal.hpp"
 #include "saltus/report/text_columns_internal.hpp"
 #include "saltus/result/cause.hpp"
@@ -147,7 +148,7 @@ std::string order_table(const result::Result& result, const result::OrderStudy& 
   std::vector<double> steps;
   for (const auto& series : order.series) {
     for (const auto& point : series.points) {
-      if (std::find(steps.begin(), steps.end(), point.mean_step) == steps.end()) steps.push_back(point.mean_step);
+      if (!contains(steps, point.mean_step)) steps.push_back(point.mean_step);
     }
   }
   Row head{"scheme", "", "", "step"};

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/report/end_state_internal.hpp"
 #include "saltus/report/table.hpp"
 #include "saltus/report/text_columns_internal.hpp"
@@ -143,7 +144,7 @@ std::string regions_text(const result::Result& result) {
     const auto& active = result.final.regions[g];
     for (const auto& mode : result.region_groups[g].modes) {
       const std::size_t k = label++;
-      if (std::find(active.begin(), active.end(), mode) == active.end() || k >= result.final.theta.size()) continue;
+      if (!contains(active, mode) || k >= result.final.theta.size()) continue;
       const bool alone = active.size() == 1;
       pieces.push_back(shortened(labels[k], 40) + (alone ? "" : fmt::format(" (theta {:.6g})", result.final.theta[k])));
     }
@@ -232,7 +233,7 @@ Expected<void> check_names(const std::vector<std::string>& names, const std::vec
   std::vector<std::string> all = states;
   for (const auto* more : {&outputs, &switching_functions}) {
     for (const auto& name : *more) {
-      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+      if (!contains(all, name)) all.push_back(name);
     }
   }
   const auto found = result::numbers_of(names, all);

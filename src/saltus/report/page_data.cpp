@@ -2,6 +2,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/version.hpp"
 #include "saltus/report/packed_rows_internal.hpp"
 #include "saltus/report/page_columns_internal.hpp"
@@ -87,7 +88,7 @@ json::array_t region_bands(const result::Result& result) {
       if (bands.size() == columns_in_page) return bands;
       bands.push_back(mode_intervals(result.trajectory, [&](std::size_t i) -> json {
         const auto& active = rows[i][g];
-        if (std::find(active.begin(), active.end(), mode) == active.end()) return nullptr;
+        if (!contains(active, mode)) return nullptr;
         return active.size() == 1 ? 1 : 0;
       }));
     }
@@ -360,9 +361,8 @@ json surfaces_data(const result::Result& result) {
   const auto states = head(result.states, columns_in_page);
   json surfaces = json::array();
   for (const auto& surface : result.surfaces) {
-    const bool drawn = std::all_of(surface.states.begin(), surface.states.end(), [&](const std::string& name) {
-      return std::find(states.begin(), states.end(), name) != states.end();
-    });
+    const bool drawn = std::all_of(surface.states.begin(), surface.states.end(),
+                                   [&](const std::string& name) { return contains(states, name); });
     if (drawn) surfaces.push_back(surface_data(surface, states));
   }
   return surfaces;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "saltus/base/contains.hpp"
+
 namespace saltus::result {
 namespace {
 
@@ -112,9 +114,8 @@ Result as_in_rows(const Result& result) {
   for (const auto& event : result.events) events.push_back(as_in_rows(event, kept));
   view.events = std::move(events);
   std::erase_if(view.surfaces, [&](const Surface& surface) {
-    return std::any_of(surface.states.begin(), surface.states.end(), [&](const std::string& name) {
-      return std::find(view.states.begin(), view.states.end(), name) == view.states.end();
-    });
+    return std::any_of(surface.states.begin(), surface.states.end(),
+                       [&](const std::string& name) { return !contains(view.states, name); });
   });
   for (auto& family : view.families) {
     choose(family.to.mode, kept.switching_functions), choose(family.to.alpha, kept.switching_functions);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 
 namespace saltus::smoothed {
 namespace {
@@ -117,7 +118,7 @@ void describe_regions(Event& event, const Regularisation& regularisation, Mode& 
   for (std::size_t g = 0; g < regularisation.regions.size(); ++g) {
     for (const auto& name : regularisation.regions[g].names) {
       const auto mode = [&](const std::vector<std::string>& active) {
-        const bool is_active = std::find(active.begin(), active.end(), name) != active.end();
+        const bool is_active = contains(active, name);
         return !is_active ? -1 : active.size() > 1 ? 0 : 1;
       };
       const int from = mode((*event.regions_before)[g]), to = mode((*event.regions_after)[g]);

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/solver/certificate/linearise.hpp"
 #include "saltus/solver/crossover/sides.hpp"
 #include "saltus/solver/run_internal.hpp"
@@ -77,7 +78,7 @@ class Descent {
     of.biactive = static_cast<int>(std::count(states_.biactive.begin(), states_.biactive.end(), true));
     of.stationarity_type = certificate::stationarity_type(multipliers, states_.biactive, tolerance());
     // Without a choice there is no other branch at this point.
-    const bool has_choice = std::find(states_.is_open.begin(), states_.is_open.end(), true) != states_.is_open.end();
+    const bool has_choice = contains(states_.is_open, true);
     const bool is_decided = of.stationarity_type == StationarityType::S || !has_choice;
     if (is_decided && of.stationarity <= tolerance()) of.b_stationary = true;
   }

@@ -16,8 +16,6 @@ TEST(Components, AreListedByTheirSmallestMember) {
   components.join(4, 2);
   components.join(2, 5);
   EXPECT_EQ(components.lists(), (Lists{{0}, {1, 2, 4, 5}, {3}}));
-  EXPECT_TRUE(components.connected(4, 1));
-  EXPECT_FALSE(components.connected(4, 3));
   EXPECT_EQ(components.first(5), 1u);
 }
 
@@ -41,9 +39,14 @@ TEST(Components, AreThoseOfTheTransitiveClosure) {
       }
     }
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j < n; ++j) EXPECT_EQ(components.connected(i, j), reaches[i][j]) << round;
+      for (std::size_t j = 0; j < n; ++j) EXPECT_EQ(components.first(i) == components.first(j), reaches[i][j]) << round;
     }
   }
+}
+
+TEST(Components, OfMembersAscendByTheirFirstOnes) {
+  const auto found = components_of({7, 2, 9, 4, 3}, [](int a, int b) { return a + b == 11 || a + b == 6; });
+  EXPECT_EQ(found, (std::vector<std::vector<int>>{{2, 4, 7, 9}, {3}}));
 }
 
 }  // namespace

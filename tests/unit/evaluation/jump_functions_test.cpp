@@ -80,19 +80,5 @@ TEST(JumpFunctions, AreNumberedBehindTheGuardsOfEventsAndEvaluated) {
   EXPECT_EQ(values[0], 4.0);
 }
 
-TEST(JumpFunctions, OfTimeAndDiscreteStatesOnlyIsAFunctionOfTimeBetweenJumps) {
-  model::System s = jumping_example();
-  s.discrete_states = {true, false};
-  s.events[0].guards = SX::vertcat({s.t - s.x(0), s.t - s.x(1), s.u - s.t * s.x(0)});
-  s.events[0].guard_alpha = SX::sym("g", 3);
-  s.events[0].value = s.events[0].guard_alpha(0);
-  const auto kernel = ModelKernel::compile(s);
-  ASSERT_TRUE(kernel.has_value());
-  EXPECT_TRUE(kernel->is_time_only(0));  // psi is x0
-  EXPECT_TRUE(kernel->is_time_only(1));
-  EXPECT_FALSE(kernel->is_time_only(2));
-  EXPECT_TRUE(kernel->is_time_only(3));
-}
-
 }  // namespace
 }  // namespace saltus::evaluation

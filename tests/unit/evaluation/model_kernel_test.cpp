@@ -143,8 +143,6 @@ TEST(ModelKernel, KnowsTheStructure) {
   ASSERT_TRUE(kernel.has_value());
   EXPECT_FALSE(kernel->is_affine(0));
   EXPECT_TRUE(kernel->is_affine(1));
-  EXPECT_TRUE(kernel->is_time_only(2));
-  EXPECT_FALSE(kernel->is_time_only(0));
   EXPECT_EQ(kernel->inner(1), (std::vector<int>{0}));
   EXPECT_TRUE(kernel->depends(0, 0));
   EXPECT_TRUE(kernel->depends(0, 2));

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "saltus/io/json/json_document_internal.hpp"
+#include "saltus/io/text_stream_internal.hpp"
 
 namespace saltus::io {
 namespace {
@@ -334,7 +335,7 @@ TEST(CsvTrajectory, NumbersTheSidesOfRowsAtOneTime) {
 }
 
 TEST(CsvEvents, HasALinePerEventAndEmptyFieldsForWhatIsNotThere) {
-  const auto text = events_to_csv(sample());
+  const auto text = collected([](Sink sink) { return write_events_csv(sample(), sink); });
   EXPECT_EQ(text.substr(0, text.find('\n')),
             "t,kind,name,surfaces,q,v,after(q),after(v),mode_before(slip),\"mode_before(q-max(v,0.2))\","
             "mode_after(slip),\"mode_after(q-max(v,0.2))\",alpha_before(slip),\"alpha_before(q-max(v,0.2))\","

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/sha256.hpp"
 
@@ -92,7 +93,7 @@ Expected<void> check_runs(const ShareTable& table, std::size_t first, std::size_
   };
   for (std::size_t i = 1; i < table.lines.size(); ++i) {
     const auto& word = table.lines[i][0];
-    const double run = number_of_field(word).value_or(-1.0);
+    const double run = whole_text_as<double>(word).value_or(-1.0);
     const bool next = run == expected + 1.0, same = !only_ends && i > 1 && run == expected;
     if (!next && !same) return damaged(i + 1, fmt::format("run {}, expected run {}", word, expected + 1.0));
     expected = run;
@@ -170,7 +171,7 @@ TableColumn column_of(std::string name, const std::vector<ShareTable>& shares, s
   for (const auto& share : shares) {
     for (std::size_t i = 1; i < share.lines.size(); ++i) {
       words.push_back(share.lines[i][k]);
-      const auto number = is_number ? number_of_field(words.back()) : std::nullopt;
+      const auto number = is_number ? whole_text_as<double>(words.back()) : std::nullopt;
       is_number = is_number && number;
       if (number) numbers.push_back(*number);
     }

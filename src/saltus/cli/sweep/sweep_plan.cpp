@@ -1,13 +1,14 @@
 #include "saltus/cli/sweep/sweep_plan.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
+#include "saltus/base/text.hpp"
 #include "saltus/pipeline/random_numbers.hpp"
 
 namespace saltus::cli {
@@ -17,29 +18,9 @@ tl::unexpected<Error> refused_plan(std::string message, std::string remedy) {
   return tl::unexpected(Error{ErrorCode::parse_failure, std::move(message), std::move(remedy), {}, {}});
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
-  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
-  return text;
-}
-
 std::optional<double> number_in(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const auto end = text.find(separator);
-    parts.push_back(trimmed(text.substr(0, end)));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
+  const auto number = whole_text_as<double>(without_plus(trimmed(text)));
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 constexpr std::string_view over_remedy =
@@ -72,7 +53,8 @@ Expected<std::vector<std::string>> range_values(const std::string& typed, std::s
 
 Expected<std::vector<std::string>> listed_values(const std::string& typed, std::string_view text) {
   std::vector<std::string> values;
-  for (const auto part : split(text, ',')) {
+  for (const auto piece : split(text, ',')) {
+    const auto part = trimmed(piece);
     if (part.empty()) return refused_plan(fmt::format("--over {}: an empty value", typed), std::string(over_remedy));
     values.emplace_back(part);
   }
@@ -181,7 +163,7 @@ class PlanReader {
   }
 
   Expected<void> add_name(std::string_view option, const std::string& name) {
-    if (std::find(plan_.names_.begin(), plan_.names_.end(), name) != plan_.names_.end()) {
+    if (contains(plan_.names_, name)) {
       return refused_plan(fmt::format("{}: '{}' is changed twice", option, name),
                           "give every name one range or distribution");
     }

@@ -1,7 +1,6 @@
 #include "saltus/cli/sweep/sweep_table.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -9,6 +8,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
+#include "saltus/base/text.hpp"
+#include "saltus/io/json/json_result.hpp"
 #include "saltus/result/kept_columns.hpp"
 
 namespace saltus::cli {
@@ -55,10 +57,6 @@ class Table {
   std::size_t next_ = 0;
 };
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// What all tables begin with: the number of the run, its values, its status, whether its solution is unique.
 class Beginning {
  public:
@@ -67,7 +65,7 @@ class Beginning {
     for (std::size_t i = 0; i < plan.runs(); ++i) {
       values_.push_back(plan.values(i));
       for (std::size_t k = 0; k < is_number_.size(); ++k) {
-        const auto value = number_of_field(values_[i][k]);
+        const auto value = whole_text_as<double>(values_[i][k]);
         is_number_[k] = is_number_[k] && value;
         numbers_.push_back(value.value_or(nothing));
       }
@@ -173,13 +171,6 @@ Table trajectory_table(const Beginning& beginning, const Result& first, const st
   return table;
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char letter : text) result += letter == '"' ? std::string("\"\"") : std::string(1, letter);
-  return result + "\"";
-}
-
 /// A state may be called like a column of the table.
 std::vector<TableColumn> with_distinct_names(std::vector<TableColumn> columns) {
   std::vector<std::string> names;
@@ -209,16 +200,9 @@ std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<Sw
   __builtin_unreachable();
 }
 
-std::optional<double> number_of_field(const std::string& text) {
-  double value = 0.0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 std::string to_csv(const std::vector<TableColumn>& table) {
   std::string text;
-  for (const auto& column : table) text += (text.empty() ? "" : ",") + quoted(column.name);
+  for (const auto& column : table) text += (text.empty() ? "" : ",") + io::csv_field(column.name);
   text += "\n";
   const std::size_t rows = table.empty() ? 0 : rows_of(table.front());
   auto out = std::back_inserter(text);
@@ -228,7 +212,7 @@ std::string to_csv(const std::vector<TableColumn>& table) {
       if (const auto* numbers = std::get_if<std::vector<double>>(&table[k].values)) {
         out = fmt::format_to(out, "{}", (*numbers)[i]);
       } else {
-        text += quoted(std::get<std::vector<std::string>>(table[k].values)[i]);
+        text += io::csv_field(std::get<std::vector<std::string>>(table[k].values)[i]);
       }
     }
     text += '\n';

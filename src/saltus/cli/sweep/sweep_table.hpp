@@ -33,9 +33,6 @@ struct TableColumn {
   return std::visit([](const auto& values) { return values.size(); }, column.values);
 }
 
-/// Returns the number that a field is; nullopt if it is anything else.
-[[nodiscard]] std::optional<double> number_of_field(const std::string& text);
-
 /// Writes RFC 4180, numbers as the shortest text that reads back the same.
 [[nodiscard]] std::string to_csv(const std::vector<TableColumn>& table);
 /// Writes NumPy's archive of arrays, one per column, of any size; false if the sink did not take everything.

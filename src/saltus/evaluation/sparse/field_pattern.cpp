@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/components.hpp"
 #include "saltus/base/without_repeats.hpp"
 #include "saltus/evaluation/sparse/field_pattern_internal.hpp"
 
@@ -11,26 +12,6 @@ namespace {
 /// Below this size, and with more entries than a share of all, dense matrices are faster. Measured with rods.
 constexpr std::size_t fewest_states = 32;
 constexpr std::size_t least_saving = 6;
-
-/// Switching functions that influence each other, directly or through others.
-std::vector<std::vector<int>> components_of(const std::vector<std::vector<int>>& neighbours) {
-  std::vector<std::vector<int>> components;
-  std::vector<bool> placed(neighbours.size(), false);
-  for (std::size_t first = 0; first < neighbours.size(); ++first) {
-    if (placed[first]) continue;
-    placed[first] = true;
-    std::vector<int> component{static_cast<int>(first)};
-    for (std::size_t k = 0; k < component.size(); ++k) {
-      for (const int other : neighbours[at(component[k])]) {
-        if (placed[at(other)]) continue;
-        placed[at(other)] = true;
-        component.push_back(other);
-      }
-    }
-    components.push_back(std::move(component));
-  }
-  return components;
-}
 
 }  // namespace
 
@@ -45,11 +26,16 @@ std::optional<ode::JacobianPattern> field_pattern(const FieldDependencies& depen
     for (const int j : dependencies.field_on_alpha[i]) moved_by[at(j)].push_back(static_cast<int>(i));
     if (entries.size() > most) return std::nullopt;
   }
-  for (const auto& component : components_of(dependencies.neighbours)) {
+  // Switching functions that influence each other, directly or through others.
+  Components components(dependencies.neighbours.size());
+  for (std::size_t j = 0; j < dependencies.neighbours.size(); ++j) {
+    for (const int other : dependencies.neighbours[j]) components.join(j, at(other));
+  }
+  for (const auto& component : components.lists()) {
     std::vector<int> rows, columns;
-    for (const int j : component) {
-      const auto& states = dependencies.functions_on_states[at(j)];
-      rows.insert(rows.end(), moved_by[at(j)].begin(), moved_by[at(j)].end());
+    for (const std::size_t j : component) {
+      const auto& states = dependencies.functions_on_states[j];
+      rows.insert(rows.end(), moved_by[j].begin(), moved_by[j].end());
       rows.insert(rows.end(), states.begin(), states.end());
       columns.insert(columns.end(), states.begin(), states.end());
       for (const int state : states) {

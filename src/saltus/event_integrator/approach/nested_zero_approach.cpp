@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/field/held_functions.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
 
@@ -80,7 +82,7 @@ std::optional<double> NestedZeroApproach::end_of(Approaching& approaching) {
   if (turns || !(power > bent)) return std::nullopt;
   const bool agrees =
       std::abs(here_.t + left - last.end) <= std::max(agree * tolerances_.mode().rtol * since, 0.25 * resolved);
-  const bool rounds = std::abs(g) <= 1e5 * 8.0 * rounding_unit * rate.magnitude;  // five digits of g are left
+  const bool rounds = std::abs(g) <= 1e5 * rounding_of(rate.magnitude);  // five digits of g are left
   if (left <= resolved || (halved && left <= little * since && (agrees || rounds))) return here_.t + left;
   return std::nullopt;
 }
@@ -128,7 +130,7 @@ std::optional<Located> NestedZeroApproach::at_zeros(double end, const std::vecto
   const std::vector<double> before = zeros_.functions(here_.t, here_.x.data());
   const auto& after = zeros_.functions(end, located.x.data());
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const bool is_it = std::find(located.functions.begin(), located.functions.end(), i) != located.functions.end();
+    const bool is_it = contains(located.functions, i);
     const auto kind = search_.functions()[i].kind;
     const bool has_value = kind == FunctionKind::surface || kind == FunctionKind::user || is_cell_end(kind);
     if (!is_it && has_value && before[i] * after[i] < 0.0) return std::nullopt;

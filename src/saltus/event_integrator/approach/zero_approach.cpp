@@ -5,6 +5,7 @@
 
 #include "saltus/event_integrator/field/rooted_exit.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -85,7 +86,7 @@ ode::Tolerances ZeroApproach::bearable(double h, std::optional<double> cycle, co
   // unevenly, so that some had no limit. Steps change a state by far less than its own size there: no more is lost than
   // its rounding.
   constexpr double cycle_part = 0.1, part_of_cycle = 1e-5;
-  const double rounding = 8.0 * rounding_unit / mode.rtol;
+  const double rounding = rounding_of(1.0) / mode.rtol;
   for (const int j : ending_) {
     if (!cycle || here_.state.mode[at(j)] == 0) continue;
     const Rate rate = rates_.here(j);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/base/components.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
@@ -62,18 +64,8 @@ bool Families::is_alone(int surface) const {
 /// Connected groups of two and more.
 void Families::find_groups() {
   groups_.clear();
-  std::vector<int> open = state_.sliding;
-  while (!open.empty()) {
-    std::vector<int> surfaces{open.front()};
-    open.erase(open.begin());
-    for (std::size_t k = 0; k < surfaces.size(); ++k) {
-      std::erase_if(open, [&](int other) {
-        const bool joins = s_.kernel.depends(surfaces[k], other) || s_.kernel.depends(other, surfaces[k]);
-        if (joins) surfaces.push_back(other);
-        return joins;
-      });
-    }
-    std::sort(surfaces.begin(), surfaces.end());
+  const auto joins = [&](int a, int b) { return s_.kernel.depends(a, b) || s_.kernel.depends(b, a); };
+  for (auto& surfaces : components_of(state_.sliding, joins)) {
     const bool is_small = surfaces.size() > 1 && surfaces.size() <= most_watched;
     if (!is_small || !std::all_of(surfaces.begin(), surfaces.end(), [&](int j) { return is_watched(j); })) continue;
     std::vector<double> alpha;
@@ -255,7 +247,7 @@ void Families::watch(const Point& point, Group& group, double t_begin,
       for (std::size_t k = 0; k < group.surfaces.size(); ++k) known->given[k].alpha = other.alpha[k];
       continue;
     }
-    if (std::find(group.refused.begin(), group.refused.end(), other.mode) != group.refused.end()) continue;
+    if (contains(group.refused, other.mode)) continue;
     const std::size_t count = recorded_.size();
     std::vector<GivenMode> given;
     for (std::size_t k = 0; k < group.surfaces.size(); ++k) {

@@ -7,6 +7,7 @@
 #include "saltus/event_integrator/decide/sets/find_resting_surfaces.hpp"
 #include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/mode/kept_by_sliding.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 
 namespace saltus::event_integrator {
 
@@ -27,7 +28,7 @@ void JumpCascade::begin() {
   kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), zero_values_.data());
   largest_rates_.assign(n, {});
   motions_.assign(n, std::nullopt);
-  held_before_ = holding_.resting();
+  held_before_ = holding_.held().all();
   resting_.clear();
   if (kernel_.switching_functions() > 0) transition_ = {};
 }
@@ -78,7 +79,7 @@ double JumpCascade::time_resolution() const {
 /// Rounding of a function here, and what that of the time leaves of it where it was located.
 double JumpCascade::resolution(int function) const {
   const auto f = at(function);
-  return 8.0 * rounding_unit * values_.magnitude[f] + time_resolution() * largest_rates_[f].value;
+  return rounding_of(values_.magnitude[f]) + time_resolution() * largest_rates_[f].value;
 }
 
 /// Whether jumps have left the value of a function as it was.
@@ -108,7 +109,7 @@ void JumpCascade::read_user_signs() {
     const double value = values_.value[at(function)];
     const bool located = contains(zeros_, function);
     const bool unchanged = is_unchanged(function);
-    const double rounding = unchanged ? 8.0 * rounding_unit * values_.magnitude[at(function)] : resolution(function);
+    const double rounding = unchanged ? rounding_of(values_.magnitude[at(function)]) : resolution(function);
     vanish[user] = located || holding_.holds(function) || std::abs(value) <= rounding;
     if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
     const bool turns = signs[user] * value < 0.0;

@@ -9,6 +9,7 @@
 
 #include <Eigen/QR>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -231,8 +232,7 @@ std::vector<ContactForces> admissible_forces(const ContactPoint& point, const st
   for (const int i : resting) {
     auto some = mode_options(point, i);
     const auto& without = excluded[static_cast<std::size_t>(i)];
-    std::erase_if(some,
-                  [&](ContactMode mode) { return std::find(without.begin(), without.end(), mode) != without.end(); });
+    std::erase_if(some, [&](ContactMode mode) { return contains(without, mode); });
     if (some.empty()) return {};
     all.push_back(std::move(some));
   }

@@ -6,6 +6,7 @@
 
 #include "saltus/event_integrator/field/held_functions.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/switching/table/independent_rows.hpp"
 
@@ -27,7 +28,7 @@ ProjectedFields::ProjectedFields(const evaluation::ModelKernel& kernel, const Sw
   const std::vector<double> alpha(at(kernel.switching_functions()), 0.5);
   kernel.scales(switching_point.t, switching_point.x, alpha.data(), noise_.data(), slope_.data());
   // A handful of roundings of terms as large as the magnitude.
-  for (double& value : noise_) value = std::isfinite(value) ? 8.0 * rounding_unit * value : 0.0;
+  for (double& value : noise_) value = std::isfinite(value) ? rounding_of(value) : 0.0;
 }
 
 std::vector<double> ProjectedFields::corner_alpha(const std::vector<double>& base, const std::vector<int>& group,

@@ -5,10 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -62,7 +64,6 @@ void read_regions(const SwitchingContext& s, double t, const double* x, const Pr
                   std::size_t group, const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
   const auto& range = s.kernel.region_groups()[group];
   std::vector<double> values(at(s.kernel.event_functions()));
-  const auto is_held = [&](int j) { return std::find(held.begin(), held.end(), j) != held.end(); };
   bool holds = false;
   for (const int j : held) holds = holds || range.holds(j);
   if (!holds) {
@@ -77,7 +78,7 @@ void read_regions(const SwitchingContext& s, double t, const double* x, const Pr
   std::vector<ActiveRegion> active{{reference, 1.0}};
   for (int j = range.first; j < range.first + range.count; ++j) {
     if (j == reference) continue;
-    if (std::abs(values[at(j)]) <= fields.noise(j) || is_held(j)) active.push_back({j, 0.0});
+    if (std::abs(values[at(j)]) <= fields.noise(j) || contains(held, j)) active.push_back({j, 0.0});
   }
   for (auto& region : active) region.weight = 1.0 / static_cast<double>(active.size());
   set_active(state, range, active);
@@ -103,7 +104,7 @@ void read_signs(const SwitchingContext& s, double t, const double* x, const Proj
       set_surface(state, j, alpha > 0.5 ? 1 : -1, alpha);
       continue;
     }
-    if (std::abs(psi) <= fields.noise(j) || std::find(held.begin(), held.end(), j) != held.end()) {
+    if (std::abs(psi) <= fields.noise(j) || contains(held, j)) {
       at_zero.push_back(j);
       set_surface(state, j, 0, 0.5);
     } else {
@@ -217,7 +218,7 @@ std::optional<std::string> contradiction(const SwitchingContext& s, const ModeSt
                                          const std::vector<int>& at_zero, const GivenModes& forced) {
   for (const auto& [surface, mode] : forced) {
     if (is_of_region(s, surface)) continue;
-    const bool is_zero = std::find(at_zero.begin(), at_zero.end(), surface) != at_zero.end();
+    const bool is_zero = contains(at_zero, surface);
     if (is_zero || mode == state.mode[at(surface)]) continue;
     return fmt::format("initial_mode {} = {} contradicts the sign of the switching function at the start",
                        s.system.switching[at(surface)].name, mode);
@@ -274,7 +275,7 @@ Start decide_start(const SwitchingContext& s, double t, const double* x, double 
   const auto& [switching_point, state] = point;
   start.at_zero = switching_point.at_zero;
   for (const int j : switching_point.tied) {
-    if (std::find(start.at_zero.begin(), start.at_zero.end(), j) == start.at_zero.end()) start.at_zero.push_back(j);
+    if (!contains(start.at_zero, j)) start.at_zero.push_back(j);
   }
   if (!finite_at_start(s, t, x, state, start.transition)) return start;
   start.transition = decide_mode(s, state, switching_point);
@@ -339,7 +340,7 @@ std::vector<double> selections_at(const SwitchingContext& s, double t, const dou
     const double psi = values[at(j)];
     const bool discrete = function.role == model::SwitchingRole::discrete;
     if (discrete && psi == 0.0) alpha[at(j)] = function.alpha_at_zero;
-    if (std::abs(psi) > (discrete ? 0.0 : 8.0 * rounding_unit * noise[at(j)])) alpha[at(j)] = psi > 0.0 ? 1.0 : 0.0;
+    if (std::abs(psi) > (discrete ? 0.0 : rounding_of(noise[at(j)]))) alpha[at(j)] = psi > 0.0 ? 1.0 : 0.0;
   }
   return alpha;
 }

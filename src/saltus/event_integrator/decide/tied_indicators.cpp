@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
@@ -86,8 +87,7 @@ void complete_ties(const ModelKernel& kernel, const ModeState& before, Switching
     for (bool more = true; more && reach <= farthest; reach *= cycle) {
       more = false;
       for (int j = group.first; j < group.first + group.count; ++j) {
-        if (before.mode[at(j)] == 0 || std::find(switching_point.at_zero.begin(), switching_point.at_zero.end(), j) !=
-                                           switching_point.at_zero.end()) {
+        if (before.mode[at(j)] == 0 || contains(switching_point.at_zero, j)) {
           continue;
         }
         const double unit = rounding_unit * std::abs(switching_point.t) * fastest(fields, group, before, j);

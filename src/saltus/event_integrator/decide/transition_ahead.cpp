@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/ode/explicit/classical_step.hpp"
 
 namespace saltus::event_integrator {
@@ -19,7 +20,7 @@ bool follow_fast(const SwitchingContext& s, const ModeState& state, const Switch
   std::vector<double> x = start, psi(at(s.kernel.event_functions()));
   ode::ClassicalStep classical(start.size());
   constexpr int steps = 4;
-  const double h = 1e-2 * switching_point.time_scale / steps;
+  const double h = look_ahead(switching_point.time_scale) / steps;
   double t = switching_point.t;
   const auto along = [&](double time, const double* point, double* slope) { field(time, point, slope); };
   for (int step = 0; step < steps; ++step) {

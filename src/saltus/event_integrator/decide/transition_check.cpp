@@ -7,6 +7,7 @@
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/event_integrator/field/rooted_exit.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 
 namespace saltus::event_integrator {
 
@@ -97,8 +98,7 @@ bool Decider::take_selections(const ModeField& field) {
   auto& state = transition_.state;
   for (const int j : state.sliding) {
     const double selection = field.alpha()[at(j)];
-    // 1e-9: an exit located to rounding leaves the selection at its bound only to the conditioning of the quotient.
-    if (!(selection >= -1e-9 && selection <= 1.0 + 1e-9)) {
+    if (!is_within_bounds(selection)) {
       const auto& name = s_.system.switching[at(j)].name;
       // Behind an exit located on one field the selection is at its bound, unless the other field vanishes with it.
       const bool at_exit = contains(switching_point_.exit_below, j) || contains(switching_point_.exit_above, j);
@@ -207,7 +207,7 @@ bool Decider::leaves_by_root(int j) {
   const std::vector<double> x(switching_point_.x, switching_point_.x + s_.kernel.states());
   RootedExit exit(s_.kernel, s_.affine_in_alpha, transition_.state, j);
   if (!exit.has_root(switching_point_.t, x) ||
-      !exit.leads_away(switching_point_.t, x, 1e-2 * switching_point_.time_scale))
+      !exit.leads_away(switching_point_.t, x, look_ahead(switching_point_.time_scale)))
     return false;
   transition_.rooted = j;
   return true;
@@ -268,7 +268,7 @@ bool Decider::keeps_selections() const {
 
 /// Normal component of the mode's own field on a surface, a little later along it.
 double Decider::velocity_ahead(ModeField& field, const std::vector<double>& xdot, int surface) {
-  const double time = 1e-2 * switching_point_.time_scale;
+  const double time = look_ahead(switching_point_.time_scale);
   std::vector<double> x(switching_point_.x, switching_point_.x + xdot.size());
   std::vector<double> later(xdot.size()), row(xdot.size());
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * xdot[i];

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/components.hpp"
 #include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/switching/selections/selection_root.hpp"
 
 namespace saltus::event_integrator {
@@ -35,26 +37,10 @@ bool depends_on(const evaluation::ModelKernel& kernel, const std::vector<int>& n
 }
 
 std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point,
-                                        std::vector<int> open) {
+                                        const std::vector<int>& surfaces) {
   const std::vector<int> nested = nested_away_from_zero(kernel, switching_point);
-  std::vector<std::vector<int>> groups;
-  while (!open.empty()) {
-    std::vector<int> group{open.front()};
-    open.erase(open.begin());
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      for (std::size_t other = 0; other < open.size();) {
-        if (depends_on(kernel, nested, group[k], open[other]) || depends_on(kernel, nested, open[other], group[k])) {
-          group.push_back(open[other]);
-          open.erase(open.begin() + static_cast<std::ptrdiff_t>(other));
-        } else {
-          ++other;
-        }
-      }
-    }
-    std::sort(group.begin(), group.end());
-    groups.push_back(std::move(group));
-  }
-  return groups;
+  return components_of(
+      surfaces, [&](int a, int b) { return depends_on(kernel, nested, a, b) || depends_on(kernel, nested, b, a); });
 }
 
 SurfaceDecision Decider::ask_selection(const switching::CornerTable& table, int surface) {
@@ -131,9 +117,8 @@ int Decider::lost_at_exit(const std::vector<int>& group) const {
     // unless that vanishes, too. Ten times less or more makes no difference: it is 1e-9 or of the order of one. Between
     // these it depends on what is left of the other field.
     constexpr double lost = 1e-6;
-    constexpr double doubtful = 1e-9;
     const double beyond = at_exit ? std::max(-before_.alpha[at(j)], before_.alpha[at(j)] - 1.0) : 0.0;
-    return !(beyond <= lost) || (beyond > doubtful && fields_.nearly_two_fold(before_.alpha, j));
+    return !(beyond <= lost) || (beyond > selection_rounding && fields_.nearly_two_fold(before_.alpha, j));
   });
   return found == group.end() ? -1 : *found;
 }

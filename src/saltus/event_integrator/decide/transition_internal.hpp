@@ -133,9 +133,9 @@ std::vector<int> nested_away_from_zero(const evaluation::ModelKernel& kernel, co
 /// the functions nested around j. Cost: O(nested), usually none.
 bool depends_on(const evaluation::ModelKernel& kernel, const std::vector<int>& nested, int i, int j);
 
-/// Returns the connected groups of those `open` surfaces that influence each other, each ascending.
+/// Returns the connected groups of those surfaces that influence each other, each ascending.
 std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, const SwitchingPoint& switching_point,
-                                        std::vector<int> open);
+                                        const std::vector<int>& surfaces);
 
 /// Makes one pass over all groups with the selections of `state` for everything else.
 class Decider {

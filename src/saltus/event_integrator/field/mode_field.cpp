@@ -19,7 +19,7 @@ ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha
       affine_in_alpha_(affine_in_alpha),
       rows_(at(kernel.switching_functions())),
       groups_(at(kernel.switching_functions())),
-      exit_forms_(kernel) {
+      exit_rows_(kernel) {
   const auto n_psi = at(kernel.switching_functions());
   for (auto& f : f_) f.resize(at(kernel.states()));
   for (auto& corner : corner_) corner.resize(n_psi);
@@ -91,16 +91,10 @@ const ode::LinearField* ModeField::linear_field() {
 const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region, const double* x) {
   if (solve_ != SlidingSolve::decoupled || !rows_.is_constant[row]) return nullptr;
   const double side = region == Region::below ? 0.0 : 1.0;
-  const bool several = sliding_.size() > 1;
-  if (several && !keeps_rows()) {
-    trial_ = corner_[0];
-    trial_[at(sliding_[row])] = side;
-  }
-  const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : trial_;
-  const auto fixed = kept_state(row, x);
-  if (several && keeps_rows()) return exit_forms_.several.of(sliding_[row], side, fixed, start_alpha_);
-  const bool is_kept = !several && keeps_rows();
-  return exit_forms_.of(sliding_[row], fixed, alpha, is_kept ? constants_[0].use->motion : nullptr);
+  // Where several are slid on, none of the others influences this one.
+  const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : start_alpha_;
+  return exit_rows_.of(sliding_[row], side, kept_state(row, x), alpha,
+                       keeps_rows() ? ExitRows::Rows::lasting : ExitRows::Rows::changing);
 }
 
 double ModeField::normal_terms(std::size_t row) const {

@@ -12,7 +12,7 @@
 #include "saltus/event_integrator/field/sliding_groups.hpp"
 #include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
-#include "saltus/event_integrator/sliding/exit_forms.hpp"
+#include "saltus/event_integrator/sliding/exit_rows.hpp"
 #include "saltus/event_integrator/sliding/surface_rows.hpp"
 #include "saltus/ode/stepper.hpp"
 #include "saltus/switching/table/projected_field.hpp"
@@ -185,7 +185,7 @@ class ModeField {
   SurfaceRows rows_;                         ///< J
   SlidingGroups groups_;
   SlidingTies ties_;
-  ExitForms exit_forms_;
+  ExitRows exit_rows_;
   int single_ = -1;                                 ///< the surface that rows and groups are of, if it is one
   std::vector<std::size_t> rooted_rows_;            ///< of functions around a root of one whose sign they hold
   std::vector<double> jump_;                        ///< n_x

@@ -6,6 +6,7 @@
 
 #include <Eigen/LU>
 
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -43,7 +44,7 @@ void RootedExit::find_replaced(double t, const std::vector<double>& x) {
   replaced_ = static_cast<std::size_t>(largest - row_.begin());
   noise_ = std::abs(rate * t);
   for (std::size_t i = 0; i < row_.size(); ++i) noise_ += std::abs(row_[i] * x[i]);
-  noise_ *= 8.0 * rounding_unit;
+  noise_ = rounding_of(noise_);
   if (degree_ == 0.0) find_degree(t, x);
 }
 

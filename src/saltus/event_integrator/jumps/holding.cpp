@@ -13,26 +13,25 @@
 
 namespace saltus::event_integrator {
 
+bool HeldGuards::holds(int function) const {
+  const auto is_it = [function](const HeldGuard& guard) { return guard.hold.function == function; };
+  return std::any_of(guards.begin(), guards.end(), is_it) || std::any_of(followers.begin(), followers.end(), is_it);
+}
+
+std::vector<HeldGuard> HeldGuards::all() const {
+  std::vector<HeldGuard> both = guards;
+  both.insert(both.end(), followers.begin(), followers.end());
+  return both;
+}
+
 Holding::Holding(evaluation::ModelKernel& kernel, const model::System& system)
     : kernel_(kernel), system_(system), values_(at(kernel.event_functions())), row_(at(kernel.states())) {}
 
 Holding::~Holding() { release_all(); }
 
-std::vector<HeldGuard> Holding::resting() const {
-  std::vector<HeldGuard> all = guards_;
-  all.insert(all.end(), followers_.begin(), followers_.end());
-  return all;
-}
-
-bool Holding::holds(int function) const {
-  const auto is_it = [function](const HeldGuard& guard) { return guard.hold.function == function; };
-  return std::any_of(guards_.begin(), guards_.end(), is_it) || std::any_of(followers_.begin(), followers_.end(), is_it);
-}
-
 void Holding::release_all() {
-  if (guards_.empty() && followers_.empty()) return;
-  guards_.clear();
-  followers_.clear();
+  if (held_.empty()) return;
+  held_ = {};
   static_cast<void>(kernel_.hold({}));
 }
 
@@ -58,7 +57,7 @@ std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vec
   std::stable_partition(guards.begin(), guards.end(),
                         [&](const HeldGuard& guard) { return can_rest(guard, t, alpha, x); });
   for (const auto& guard : guards) {
-    auto& list = is_independent(guard, t, alpha, x) ? guards_ : loose;
+    auto& list = is_independent(guard, t, alpha, x) ? held_.guards : loose;
     list.push_back(guard);
   }
   if (auto problem = set(t, alpha, x)) return problem;
@@ -68,17 +67,17 @@ std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vec
     const bool pressed = !still && second * loose[k].inward > 0.0;
     const std::size_t dimension = basis_.size();
     const bool independent = (still || pressed) && is_independent(loose[k], t, alpha, x);
-    if (still && !independent) followers_.push_back(loose[k]);
+    if (still && !independent) held_.followers.push_back(loose[k]);
     if (pressed && !independent) return "their guards press on each other and cannot be held at rest together";
     if (!pressed || !can_rest(loose[k], t, alpha, x)) {
       basis_.resize(dimension);
       ++k;
       continue;
     }
-    guards_.push_back(loose[k]);
+    held_.guards.push_back(loose[k]);
     loose.erase(loose.begin() + static_cast<std::ptrdiff_t>(k));
-    loose.insert(loose.end(), followers_.begin(), followers_.end());
-    followers_.clear();
+    loose.insert(loose.end(), held_.followers.begin(), held_.followers.end());
+    held_.followers.clear();
     if (auto problem = set(t, alpha, x)) return problem;
     k = 0;
   }
@@ -108,7 +107,7 @@ bool Holding::is_independent(const HeldGuard& guard, double t, const std::vector
 
 std::vector<evaluation::Hold> Holding::holds() const {
   std::vector<evaluation::Hold> holds;
-  for (const auto& guard : guards_) holds.push_back(guard.hold);
+  for (const auto& guard : held_.guards) holds.push_back(guard.hold);
   return holds;
 }
 
@@ -123,7 +122,7 @@ std::vector<double> Holding::free_field(double t, const std::vector<double>& alp
 }
 
 void Holding::resize_rows() {
-  const auto m = static_cast<Eigen::Index>(guards_.size());
+  const auto m = static_cast<Eigen::Index>(held_.guards.size());
   rows_.resize(m, kernel_.states());
   residual_.resize(m);
   normal_.resize(m, m);
@@ -132,12 +131,12 @@ void Holding::resize_rows() {
 bool Holding::put(const std::vector<HeldGuard>& guards) {
   release_all();
   if (guards.empty()) return true;
-  guards_ = guards;
+  held_.guards = guards;
   resize_rows();
   return kernel_.hold(holds()).has_value();
 }
 
-/// The kernel holds guards_, and x is there.
+/// The kernel holds guards(), and x is there.
 std::optional<std::string> Holding::set(double t, const std::vector<double>& alpha, std::vector<double>& x) {
   resize_rows();
   if (auto problem = moves_what_is_compared(t, alpha, x)) return problem;
@@ -150,7 +149,7 @@ std::optional<std::string> Holding::set(double t, const std::vector<double>& alp
 /// A state of rate 0 is discrete: comparisons of it are read at jumps only. While it holds a guard it moves.
 std::optional<std::string> Holding::moves_what_is_compared(double t, const std::vector<double>& alpha,
                                                            std::vector<double>& x) {
-  for (const auto& guard : guards_) {
+  for (const auto& guard : held_.guards) {
     static_cast<void>(find_rate_row(guard.hold, system_.jumps[at(guard.hold.jump)].targets, t, alpha, x));
     for (std::size_t i = 0; i < row_.size(); ++i) {
       if (row_[i] == 0.0 || !system_.discrete_states[i]) continue;
@@ -213,15 +212,15 @@ bool Holding::lets_go_on(const HeldGuard& guard, double square, double t, const 
 bool Holding::find_positions(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
   kernel_.functions(t, x.data(), alpha.data(), values_.data());
   bool away = false;
-  for (std::size_t k = 0; k < guards_.size(); ++k) {
+  for (std::size_t k = 0; k < held_.guards.size(); ++k) {
     const auto r = static_cast<Eigen::Index>(k);
-    residual_[r] = values_[at(guards_[k].hold.function)];
+    residual_[r] = values_[at(held_.guards[k].hold.function)];
     away = away || residual_[r] != 0.0;
   }
   if (!away) return false;
-  for (std::size_t k = 0; k < guards_.size(); ++k) {
+  for (std::size_t k = 0; k < held_.guards.size(); ++k) {
     double rate = 0.0;
-    kernel_.gradient(guards_[k].hold.function, t, x.data(), alpha.data(), row_.data(), &rate);
+    kernel_.gradient(held_.guards[k].hold.function, t, x.data(), alpha.data(), row_.data(), &rate);
     for (std::size_t i = 0; i < row_.size(); ++i) {
       rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = system_.discrete_states[i] ? 0.0 : row_[i];
     }
@@ -232,15 +231,15 @@ bool Holding::find_positions(double t, const std::vector<double>& alpha, const s
 /// The same for their rates, in the states that the jumps set.
 bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x) {
   bool away = false;
-  for (std::size_t k = 0; k < guards_.size(); ++k) {
+  for (std::size_t k = 0; k < held_.guards.size(); ++k) {
     const auto r = static_cast<Eigen::Index>(k);
-    residual_[r] = kernel_.lie_derivative(guards_[k].hold.function, 1, t, x.data(), alpha.data());
+    residual_[r] = kernel_.lie_derivative(held_.guards[k].hold.function, 1, t, x.data(), alpha.data());
     away = away || residual_[r] != 0.0;
   }
   if (!away) return false;
-  for (std::size_t k = 0; k < guards_.size(); ++k) {
-    const auto& targets = system_.jumps[at(guards_[k].hold.jump)].targets;
-    static_cast<void>(find_rate_row(guards_[k].hold, targets, t, alpha, x));
+  for (std::size_t k = 0; k < held_.guards.size(); ++k) {
+    const auto& targets = system_.jumps[at(held_.guards[k].hold.jump)].targets;
+    static_cast<void>(find_rate_row(held_.guards[k].hold, targets, t, alpha, x));
     for (std::size_t i = 0; i < row_.size(); ++i) {
       rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = row_[i];
     }
@@ -250,7 +249,7 @@ bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector
 
 /// x less the shortest vector that makes the residuals 0; returns whether x changed.
 bool Holding::correct(std::vector<double>& x) {
-  if (guards_.size() == 1) {
+  if (held_.guards.size() == 1) {
     residual_ /= rows_.squaredNorm();  // one division: a guard that is a coordinate becomes exactly 0
   } else {
     normal_.noalias() = rows_ * rows_.transpose();
@@ -274,7 +273,7 @@ bool Holding::correct(std::vector<double>& x) {
 
 bool Holding::project(double t, const std::vector<double>& alpha, std::vector<double>& x) {
   bool changed = contacts_ != nullptr && contacts_->project(t, alpha, x);
-  if (guards_.empty()) return changed;
+  if (held_.guards.empty()) return changed;
   // Newton with a slope good to ten digits: the second step is at rounding, the others settle its last bits.
   for (int iteration = 0; iteration < 4; ++iteration) {
     const bool placed = find_positions(t, alpha, x) && correct(x);
@@ -291,7 +290,7 @@ double Holding::largest_rate(double t, const std::vector<double>& alpha, const s
     const double rate = kernel_.lie_derivative(function, 1, t, point.data(), alpha.data());
     largest = std::isfinite(rate) ? std::max(largest, std::abs(rate)) : rate;
   };
-  for (const auto& guard : resting()) {
+  for (const auto& guard : held_.all()) {
     note(guard.hold.function, x);
     const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
     std::vector<double> behind = x, values(targets.size());

@@ -20,6 +20,16 @@ struct HeldGuard {
   int inward = -1;
 };
 
+/// Holds guards at rest.
+struct HeldGuards {
+  std::vector<HeldGuard> guards;  ///< held by the kernel
+  std::vector<HeldGuard> followers;
+
+  [[nodiscard]] bool empty() const { return guards.empty() && followers.empty(); }
+  [[nodiscard]] bool holds(int function) const;
+  [[nodiscard]] std::vector<HeldGuard> all() const;
+};
+
 /// Keeps g = 0 and dg/dt = 0 for guards at rest. The kernel's fields keep d^2 g/dt^2 = 0; what steps and roundings
 /// leave is removed by Newton steps: the position along grad g, its rate in the states that the jump sets.
 ///
@@ -32,10 +42,9 @@ class Holding {
   Holding& operator=(const Holding&) = delete;
   ~Holding();  ///< the kernel is as it was
 
-  [[nodiscard]] const std::vector<HeldGuard>& guards() const { return guards_; }  ///< held by the kernel
-  [[nodiscard]] const std::vector<HeldGuard>& followers() const { return followers_; }
-  [[nodiscard]] std::vector<HeldGuard> resting() const;  ///< both
-  [[nodiscard]] bool holds(int function) const;
+  [[nodiscard]] const HeldGuards& held() const { return held_; }
+  [[nodiscard]] const std::vector<HeldGuard>& guards() const { return held_.guards; }
+  [[nodiscard]] bool holds(int function) const { return held_.holds(function); }
   /// Holds these guards from now on, and those of `loose` that they press on or take along; puts x there. Guards of
   /// `loose` that are left out leave by themselves. Returns what is wrong if they cannot be held.
   [[nodiscard]] std::optional<std::string> hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose, double t,
@@ -78,10 +87,10 @@ class Holding {
   evaluation::ModelKernel& kernel_;
   const model::System& system_;
   Contacts* contacts_ = nullptr;
-  std::vector<HeldGuard> guards_, followers_;
+  HeldGuards held_;
   double pressing_ = 0.0;       ///< the largest |d^2 g/dt^2| without a hold that was met: what counts as none
   std::vector<int> absorbing_;  ///< states that the jumps in question set
-  std::vector<std::vector<double>> basis_;  ///< of the rows of rates of guards_, orthonormal
+  std::vector<std::vector<double>> basis_;  ///< of the rows of rates of guards(), orthonormal
   std::vector<double> values_, row_;
   Eigen::MatrixXd rows_, normal_;  ///< of all held guards
   Eigen::VectorXd residual_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/ode/explicit/classical_step.hpp"
 
@@ -95,7 +96,7 @@ bool moves_along(const evaluation::ModelKernel& kernel, const std::vector<double
     if (left > 0.0) time = std::min(time, left);
   }
   if (!std::isfinite(time)) return false;
-  const double h = 1e-2 * time;
+  const double h = look_ahead(time);
   const auto along = [&](double at_time, const double* here, double* slope) {
     kernel.field(at_time, here, alpha.data(), slope);
   };
@@ -114,8 +115,7 @@ bool continuous_across(const evaluation::ModelKernel& kernel, const std::vector<
     highest = std::max(highest, values[at(nested)]);
   }
   // Four digits above rounding: the point is on the surface to rounding, a jump is not of that size.
-  return highest - lowest <=
-         1e5 * rounding_unit * size_of(kernel, nested, t, x.data(), corners.back().data(), time_scale);
+  return highest - lowest <= smallest_jump(size_of(kernel, nested, t, x.data(), corners.back().data(), time_scale));
 }
 
 }  // namespace saltus::event_integrator

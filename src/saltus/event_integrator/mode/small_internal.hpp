@@ -1,7 +1,6 @@
 // What every source of this module needs of small things.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/rounding_unit.hpp"
 
 namespace saltus::event_integrator {
@@ -20,10 +20,6 @@ inline bool is_finite(const std::vector<double>& values) {
   double none = 0.0;  // NaN if a value is not finite: without a way out of the loop
   for (const double value : values) none += 0.0 * value;
   return none == 0.0;
-}
-
-inline bool contains(const std::vector<int>& values, int value) {
-  return std::find(values.begin(), values.end(), value) != values.end();
 }
 
 /// Returns what state k is moved by to look near by, `step` of its size or so: neighbours by different weights, of

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/field/higher_order.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -222,7 +223,7 @@ void Recorder::note_held_kinks(const ModeState& before, const ModeState& after) 
           !contains(kernel_.inner(static_cast<int>(j)), static_cast<int>(i)))
         continue;
       for (const std::size_t column : listed_columns_[j]) {
-        if (std::find(columns_.begin(), columns_.end(), column) == columns_.end()) columns_.push_back(column);
+        if (!contains(columns_, column)) columns_.push_back(column);
       }
     }
   }
@@ -309,7 +310,7 @@ bool Recorder::started(double t, const std::vector<double>& x, const Transition&
   columns_.clear();
   for (std::size_t c = 0; c < system_.columns.size(); ++c) {
     const int function = system_.columns[c].function;
-    const bool at_zero = std::find(surfaces.begin(), surfaces.end(), function) != surfaces.end();
+    const bool at_zero = contains(surfaces, function);
     if (at_zero && system_.switching[at(function)].role == model::SwitchingRole::listed) columns_.push_back(c);
   }
   for (const int j : surfaces) {
@@ -392,7 +393,7 @@ bool Recorder::switched_lately(int function, long events) const {
   for (auto event = list.rbegin(); event != list.rend() && events > 0; ++event, --events) {
     if (event->of_jumps) continue;
     for (std::size_t k = event->surfaces.begin; k < event->surfaces.end; ++k) {
-      if (std::find(columns.begin(), columns.end(), recording_.surfaces[k]) != columns.end()) return true;
+      if (contains(columns, recording_.surfaces[k])) return true;
     }
   }
   for (auto past = past_.surfaces.rbegin(); past != past_.surfaces.rend() && events > 0; ++past, --events) {
@@ -406,7 +407,7 @@ void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passa
   auto& entry = begin(t, result::EventKind::accumulation);
   for (std::size_t c = 0; c < system_.columns.size(); ++c) {
     const int function = system_.columns[c].function;
-    const bool takes_part = std::find(surfaces.begin(), surfaces.end(), function) != surfaces.end();
+    const bool takes_part = contains(surfaces, function);
     if (takes_part && passage.before.mode[at(function)] != transition.state.mode[at(function)]) add_surface(entry, c);
   }
   columns_.clear();

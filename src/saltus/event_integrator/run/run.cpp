@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/mode/undefined.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
@@ -120,7 +121,7 @@ void Run::record_start(const Start& start) {
   row(here_.t, here_.x);
   auto listed = start.at_zero;
   for (const auto& [surface, mode] : options_.initial_mode) {
-    if (std::find(listed.begin(), listed.end(), surface) == listed.end()) listed.push_back(surface);
+    if (!contains(listed, surface)) listed.push_back(surface);
   }
   auto transition = start.transition;
   transition.state = here_.state;

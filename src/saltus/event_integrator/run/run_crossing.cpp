@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -89,7 +90,7 @@ bool Run::leave(const Located& located, const EventFunction& exit, ModeChange& c
                                    here_.time_scale};
   field_(place.t, place.x, here_.slope.data());
   const double alpha = field_.alpha()[at(exit.index)];
-  if (!is_finite(here_.slope) || !SingleSurface::is_within_bounds(alpha)) return false;
+  if (!is_finite(here_.slope) || !is_within_bounds(alpha)) return false;
   field_.of_side(side, place.t, place.x, fast_.slope_beyond.data());
   const auto bend = search_.exit_rate(located.functions.front(), fast_.slope_beyond);
   const auto decision =

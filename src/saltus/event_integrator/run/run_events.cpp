@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
@@ -25,7 +26,7 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
                                                const std::vector<std::size_t>& before_jumps) {
   auto fired = user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs());
   std::erase_if(fired, [&](std::size_t event) {
-    const bool again = std::find(before_jumps.begin(), before_jumps.end(), event) != before_jumps.end();
+    const bool again = contains(before_jumps, event);
     return again && !model::rule_of(switching_context_.system.events[event]).condition;
   });
   for (const std::size_t event : fired) {

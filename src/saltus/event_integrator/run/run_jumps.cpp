@@ -174,7 +174,7 @@ bool Run::jump(const ModeState& before, const std::vector<double>& x_before) {
   cascade_.note_guards();
   if (!cascade_.held_before().empty()) {
     holding_.release_all();
-    search_.set_held({}, {});
+    search_.set_held({});
   }
   const bool settled = settle_jumps();
   const bool slips_on = only_slips_on();

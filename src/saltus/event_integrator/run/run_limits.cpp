@@ -28,8 +28,8 @@ bool Run::release(const Located& located) {
     std::erase_if(guards, [&](const HeldGuard& guard) { return guard.hold.function == entry.index; });
   }
   if (guards.size() == holding_.guards().size()) return false;
-  const auto before = holding_.resting();
-  const auto problem = holding_.hold(std::move(guards), holding_.followers(), here_.t, here_.state.alpha, here_.x);
+  const auto before = holding_.held().all();
+  const auto problem = holding_.hold(std::move(guards), holding_.held().followers, here_.t, here_.state.alpha, here_.x);
   if (problem) fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", here_.t, *problem));
   for (const auto& guard : before) {
     if (holding_.holds(guard.hold.function)) continue;
@@ -39,7 +39,7 @@ bool Run::release(const Located& located) {
     vanish[user] = true;
     orders[user] = 2;  // at least: nothing presses on it
   }
-  search_.set_held(holding_.guards(), holding_.followers());
+  search_.set_held(holding_.held());
   search_.set_user_signs(signs, vanish, orders);
   RestingSurfaces resting;
   if (!here_.state.resting.empty() && find_resting(resting)) {
@@ -102,7 +102,7 @@ void Run::follow_limit(const SeriesLimit& limit) {
   if (std::any_of(limit.events.begin(), limit.events.end(), [&](int jump) { return contacts_.owns(jump); })) {
     return settle_contacts(limit, x_last, before);
   }
-  std::vector<HeldGuard> guards = holding_.resting();
+  std::vector<HeldGuard> guards = holding_.held().all();
   std::vector<int> jumps;
   double rate = 0.0;
   for (const int jump : limit.events) {

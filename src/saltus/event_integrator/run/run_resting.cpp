@@ -64,7 +64,7 @@ bool Run::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose) {
     fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", here_.t, *problem));
     return false;
   }
-  search_.set_held(holding_.guards(), holding_.followers());
+  search_.set_held(holding_.held());
   cascade_.read_user_signs();
   return true;
 }
@@ -72,7 +72,7 @@ bool Run::hold(std::vector<HeldGuard> guards, std::vector<HeldGuard> loose) {
 /// Guards at a limit whose jumps let a motion go on: the state is at rest on them, and what slides, if anything, keeps
 /// it there. false if the others cannot be held, with the status set.
 bool Run::free_passing() {
-  auto guards = holding_.resting();
+  auto guards = holding_.held().all();
   const auto passed = std::erase_if(
       guards, [&](const HeldGuard& guard) { return !holding_.can_rest(guard, here_.t, here_.state.alpha, here_.x); });
   if (passed == 0) return true;

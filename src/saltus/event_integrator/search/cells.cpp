@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saltus/base/contains.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -35,7 +37,7 @@ CellChange Cells::place(int cell, double t, const double* x, const std::vector<d
   const auto& table = kernel_.cell_table(cell);
   const int function = kernel_.cell_function(cell);
   kernel_.scales(t, x, alpha.data(), magnitude_.data(), slope_.data());
-  const double noise = 8.0 * rounding_unit * magnitude_[at(function)];
+  const double noise = rounding_of(magnitude_[at(function)]);
   long target = table.cell(argument);
   const bool below = std::abs(table.upper(target) - argument) <= noise;
   const bool above = std::abs(argument - table.lower(target)) <= noise;
@@ -80,12 +82,12 @@ bool Cells::jumps_at(const EventFunction& end, double t, const double* x, const 
   const double bound = upper ? table.upper(index_[at(end.row)]) : table.lower(index_[at(end.row)]);
   const int function = kernel_.cell_function(end.row);
   kernel_.scales(t, x, alpha.data(), magnitude_.data(), slope_.data());
-  if (!(std::abs(bound - argument) <= 8.0 * rounding_unit * magnitude_[at(function)])) return false;
+  if (!(std::abs(bound - argument) <= rounding_of(magnitude_[at(function)]))) return false;
   const double rate = kernel_.lie_derivative(function, 1, t, x, alpha.data());
   return upper ? rate > 0.0 : rate < 0.0;
 }
 
-bool Cells::any_undefined() const { return std::find(undefined_.begin(), undefined_.end(), true) != undefined_.end(); }
+bool Cells::any_undefined() const { return contains(undefined_, true); }
 
 CellChange Cells::locate_undefined(double t, const double* x, const std::vector<double>& alpha) {
   CellChange change = CellChange::none;
@@ -118,7 +120,7 @@ std::vector<int> zeros_at(const evaluation::ModelKernel& kernel, const ModeState
   kernel.scales(t, x, state.alpha.data(), magnitude.data(), slope.data());
   std::vector<int> zeros(state.mode.size(), 0);
   for (std::size_t j = 0; j < zeros.size(); ++j) {
-    if (state.mode[j] != 0 && std::abs(values[j]) <= 8.0 * rounding_unit * magnitude[j]) zeros[j] = 1;
+    if (state.mode[j] != 0 && std::abs(values[j]) <= rounding_of(magnitude[j])) zeros[j] = 1;
   }
   return zeros;
 }

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/rounding_unit.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
 #include "saltus/event_integrator/search/event_search_internal.hpp"
 
@@ -87,7 +89,7 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
       errors_(kernel, tolerances),
       mode_(at(kernel.states())) {
   for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
-  any_nesting_ = std::find(nesting_.begin(), nesting_.end(), true) != nesting_.end();
+  any_nesting_ = contains(nesting_, true);
   const auto n_phi = at(kernel.event_functions());
   for (auto* vector : {&values_.phi, &values_.magnitude, &values_.slope}) vector->resize(n_phi);
   x_.resize(at(kernel.states()));
@@ -101,7 +103,7 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
 
 void EventSearch::find_pressure(double t, const double* x) {
   if (held_.guards.empty()) return;
-  kernel_.hold_pressure(t, x, field_.alpha().data(), held_.pressure.data());
+  kernel_.hold_pressure(t, x, field_.alpha().data(), values_.pressure.data());
 }
 
 /// Rounding and tolerance levels of some functions for the step that starts at (t, x).
@@ -122,12 +124,11 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
     const double magnitude = by_form ? std::abs(mode_.forms.factor(i) * x[mode_.forms.state(i)]) : values_.magnitude[j];
     const double slope = by_form ? std::abs(mode_.forms.factor(i)) : values_.slope[j];
     // A handful of roundings of terms as large as the magnitude.
-    levels_.set(i, 8.0 * rounding_unit * magnitude,
-                0.1 * (errors_.of_run().atol * slope + errors_.of_run().rtol * magnitude));
+    levels_.set(i, rounding_of(magnitude), 0.1 * (errors_.of_run().atol * slope + errors_.of_run().rtol * magnitude));
     return;
   }
   if (function.kind == FunctionKind::release) {
-    const double size = std::abs(held_.pressure[at(function.row)]);
+    const double size = std::abs(values_.pressure[at(function.row)]);
     levels_.set(i, 32.0 * rounding_unit * size, 0.1 * errors_.of_run().rtol * size);
     return;
   }
@@ -140,7 +141,7 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
   // Near a two-fold point both fields vanish, but not the terms they are the sum of.
   const bool by_sides = coupled || field_.solve() == SlidingSolve::higher_order;
   if (field_.solve() == SlidingSolve::decoupled || (by_sides && is_side)) {
-    noise = std::max(noise, 8.0 * rounding_unit * field_.normal_terms(at(function.row)));
+    noise = std::max(noise, rounding_of(field_.normal_terms(at(function.row))));
   }
   levels_.set(i, noise, 0.1 * errors_.of_run().rtol * size);
 }
@@ -175,7 +176,7 @@ double EventSearch::value(std::size_t i, const double* x) const {
     case FunctionKind::instability:
       return mode_.exits[at(function.row)].stability - function.offset;
     case FunctionKind::release:
-      return held_.pressure[at(function.row)] - function.offset;
+      return values_.pressure[at(function.row)] - function.offset;
     case FunctionKind::absent:
       return 1.0;  // away from zero
   }
@@ -328,7 +329,7 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
 EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::size_t i) const {
   const auto& function = mode_.functions[i];
   // The form has other roundings than the function, whose own terms may be smaller.
-  const double rounding = std::max(levels_.noise[i], 8.0 * rounding_unit * mode_.forms.terms(i, range_.bounds));
+  const double rounding = std::max(levels_.noise[i], rounding_of(mode_.forms.terms(i, range_.bounds)));
   if (function.sign != 0) {
     auto along = mode_.forms.nested_along(i, step);
     along.c[0] -= function.offset;
@@ -348,7 +349,7 @@ EventSearch::Finding EventSearch::find_along(const ode::DenseStep& step, std::si
     size = std::max(size, std::abs(b));
   }
   if (std::isnan(none)) return not_finite(function, coefficients.front());
-  const double noise = std::max(rounding, 8.0 * rounding_unit * size);
+  const double noise = std::max(rounding, rounding_of(size));
   const int sign = function.sign == 0 ? sign_behind_zero(coefficients, noise) : function.sign;
   if (sign == 0) return {};
   const auto change = ode::first_sign_change(coefficients, sign, function.zero_order, noise);
@@ -392,8 +393,8 @@ EventSearch::Finding EventSearch::find(const ode::DenseStep& step, double from, 
   double size = 0.0;
   for (const double b : coefficients) size = std::max(size, std::abs(b));
   if (!mode_.forms.has(i) && !is_resolved(step, from, to, i, {values, coefficients, sign, size})) return {false, {}};
-  double noise = std::max(levels_.noise[i], 8.0 * rounding_unit * size);
-  if (mode_.forms.has(i)) noise = std::max(noise, 8.0 * rounding_unit * mode_.forms.terms(i, range_.bounds));
+  double noise = std::max(levels_.noise[i], rounding_of(size));
+  if (mode_.forms.has(i)) noise = std::max(noise, rounding_of(mode_.forms.terms(i, range_.bounds)));
   const auto change = ode::first_sign_change(coefficients, sign, from == 0.0 ? function.zero_order : 0, noise);
   if (!change) return {};
   const double local = 0.5 * (change->lower + change->upper);

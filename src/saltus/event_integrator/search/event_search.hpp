@@ -96,10 +96,7 @@ class EventSearch {
   /// Forgets user zeros: time has passed since the user functions were at zero, or they have jumped.
   void forget_user_zeros() { user_.forget_zeros(); }
   /// Holds guards of jumps: they are not searched, their releases are. Takes effect with the next enter().
-  void set_held(std::vector<HeldGuard> held, std::vector<HeldGuard> followers) {
-    held_.guards = std::move(held);
-    held_.followers = std::move(followers);
-  }
+  void set_held(HeldGuards held) { held_ = std::move(held); }
   /// Tells that the next enter() is at the end of a cell that was just entered there.
   void entered_cell(const EventFunction& reached);
   /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.

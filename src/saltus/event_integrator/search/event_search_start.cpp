@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/mode_differences_internal.hpp"
@@ -55,7 +56,7 @@ void EventSearch::turn(std::size_t surface, const ModeState& state, int zero_ord
 /// Whether each surface, and each exit, has its place among the functions of a mode whose field was entered.
 bool EventSearch::is_plain(const ModeState& state) const {
   const bool selections_are_plain = state.sliding.empty() || field_.solve() == SlidingSolve::decoupled;
-  return !any_nesting_ && selections_are_plain && !state.higher && held_.nothing() && kernel_.cells() == 0 &&
+  return !any_nesting_ && selections_are_plain && !state.higher && held_.empty() && kernel_.cells() == 0 &&
          kernel_.region_groups().empty();
 }
 
@@ -257,7 +258,7 @@ void EventSearch::enter_users() {
     if (!held_.holds(u)) mode_.functions.push_back({FunctionKind::user, u, 0, 0});
   }
   mode_.users_end = mode_.functions.size();
-  held_.pressure.resize(held_.guards.size());
+  values_.pressure.resize(held_.guards.size());
   for (std::size_t row = 0; row < held_.guards.size(); ++row) {
     mode_.functions.push_back(
         {FunctionKind::release, held_.guards[row].hold.function, static_cast<int>(row), held_.guards[row].inward});
@@ -299,13 +300,13 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   }
   read_start(t, x);
   sort_functions();
-  only_signs_change_ = state.sliding.empty() && !state.higher && held_.nothing() && kernel_.cells() == 0 &&
+  only_signs_change_ = state.sliding.empty() && !state.higher && held_.empty() && kernel_.cells() == 0 &&
                        kernel_.region_groups().empty();
 }
 
 /// Whether a mode is the one that was entered last, with functions that do not depend on the point it begins at.
 bool EventSearch::has_same_functions(const ModeState& state) const {
-  return only_signs_change_ && held_.nothing() && !state.higher && state.sliding.empty() &&
+  return only_signs_change_ && held_.empty() && !state.higher && state.sliding.empty() &&
          state.mode == mode_.state.mode && state.alpha == mode_.state.alpha;
 }
 
@@ -472,7 +473,7 @@ void EventSearch::set_user_sign(std::size_t function, int sign, double t, const 
   user_.put_at_zero(user, sign);
   if (others_begin_anew) return sort_functions();
   mode_.forms.ignore(function);
-  if (std::find(special_.begin(), special_.end(), function) == special_.end()) special_.push_back(function);
+  if (!contains(special_, function)) special_.push_back(function);
 }
 
 }  // namespace saltus::event_integrator

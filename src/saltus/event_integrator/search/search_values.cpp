@@ -23,11 +23,6 @@ int UserSigns::read(std::size_t user, double value, double noise) {
   return vanishes[user] && !order.empty() ? order[user] : 1;
 }
 
-bool HeldGuards::holds(int function) const {
-  const auto is_it = [function](const HeldGuard& guard) { return guard.hold.function == function; };
-  return std::any_of(guards.begin(), guards.end(), is_it) || std::any_of(followers.begin(), followers.end(), is_it);
-}
-
 void FunctionLevels::reset(std::size_t functions) {
   noise.assign(functions, 0.0);
   accuracy.assign(functions, 0.0);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/event_integrator/jumps/holding.hpp"
 #include "saltus/event_integrator/search/affine_forms.hpp"
 #include "saltus/ode/stepper.hpp"
 
@@ -25,15 +24,6 @@ struct UserSigns {
   int read(std::size_t user, double value, double noise);
 };
 
-/// Holds guards of jumps that are held, and what presses them.
-struct HeldGuards {
-  std::vector<HeldGuard> guards, followers;
-  std::vector<double> pressure;
-
-  [[nodiscard]] bool nothing() const { return guards.empty() && followers.empty(); }
-  [[nodiscard]] bool holds(int function) const;
-};
-
 /// Holds one of the regions that meet at the sliding surfaces inside nested functions.
 struct NestedCorner {
   std::vector<double> alpha;  ///< its selections
@@ -44,6 +34,7 @@ struct NestedCorner {
 /// Holds values and scales of all functions of the kernel, and their values in the regions of nested ones.
 struct KernelValues {
   std::vector<double> phi, magnitude, slope;
+  std::vector<double> pressure;       ///< on each guard that is held
   std::vector<NestedCorner> corners;  ///< of the mode
 };
 

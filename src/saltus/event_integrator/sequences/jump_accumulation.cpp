@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saltus/event_integrator/mode/resolution.hpp"
+
 namespace saltus::event_integrator {
 namespace {
 
 /// Between two zeros a time T apart a guard gets about as far as its rate times T/4: here 200 roundings.
-constexpr double unresolved = 800.0 * 8.0 * rounding_unit;
+constexpr double unresolved = 800.0 * rounding_of(1.0);
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "saltus/event_integrator/mode/mode_differences_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -63,7 +64,7 @@ void SwitchAccumulation::note_rates(const std::vector<double>& alpha_before) {
     // lost in rtol times the terms of psi, as every switch puts psi back to 0. Cycles are far shorter than the steps
     // that rtol allows, and over them the error of a step is far smaller than that.
     const double unresolved =
-        std::max(200.0 * 8.0 * rounding_unit * leaving.magnitude, 10.0 * tolerances_.step().atol * leaving.slope);
+        std::max(200.0 * rounding_of(leaving.magnitude), 10.0 * tolerances_.step().atol * leaving.slope);
     double& shortest = shortest_[at(label)];
     shortest = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
     // Where sliding ends psi leaves tangentially: its rate is rounding, and what bends it is what resolves the cycle.

@@ -3,21 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
+
+#include "saltus/base/components.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
 constexpr std::size_t no_row = std::numeric_limits<std::size_t>::max();
-
-std::size_t root_of(std::vector<std::size_t>& parent, std::size_t row) {
-  while (parent[row] != row) {
-    parent[row] = parent[parent[row]];
-    row = parent[row];
-  }
-  return row;
-}
 
 }  // namespace
 
@@ -69,34 +62,22 @@ void NormalRows::set(std::size_t row, const std::vector<double>& dense) {
 }
 
 void NormalRows::find_components() {
-  parent_.resize(rows_.size());
-  std::iota(parent_.begin(), parent_.end(), std::size_t{0});
+  Components components(rows_.size());
   first_of_column_.assign(columns_, no_row);
   for (std::size_t row = 0; row < rows_.size(); ++row) {
     for (const std::size_t column : rows_[row]->column) {
       auto& first = first_of_column_[column];
-      if (first == no_row) {
-        first = row;
-        continue;
-      }
-      const std::size_t a = root_of(parent_, first), b = root_of(parent_, row);
-      parent_[std::max(a, b)] = std::min(a, b);
+      if (first == no_row) first = row;
+      components.join(first, row);
     }
   }
-  // The root of a component is its first row.
-  std::vector<std::vector<std::size_t>> others(rows_.size());
   alone_.clear();
   together_.clear();
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    if (const std::size_t root = root_of(parent_, row); root != row) others[root].push_back(row);
-  }
-  for (std::size_t row = 0; row < rows_.size(); ++row) {
-    if (parent_[row] != row) continue;
-    if (others[row].empty()) {
-      alone_.push_back(row);
+  for (auto& rows : components.lists()) {
+    if (rows.size() == 1) {
+      alone_.push_back(rows.front());
     } else {
-      others[row].insert(others[row].begin(), row);
-      together_.push_back(std::move(others[row]));
+      together_.push_back(std::move(rows));
     }
   }
   components_known_ = true;

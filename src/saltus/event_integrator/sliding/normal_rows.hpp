@@ -50,7 +50,7 @@ class NormalRows {
   bool components_known_ = false;
   std::vector<std::size_t> alone_;                  ///< rows that share no column
   std::vector<std::vector<std::size_t>> together_;  ///< the other components
-  std::vector<std::size_t> parent_, first_of_column_;
+  std::vector<std::size_t> first_of_column_;
   std::vector<double> sum_;  ///< columns, 0 between two calls
   Eigen::MatrixXd matrix_;
   Eigen::VectorXd part_;

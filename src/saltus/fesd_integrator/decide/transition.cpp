@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/components.hpp"
+#include "saltus/base/contains.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
@@ -157,7 +158,7 @@ Transition::Trial Transition::try_element(const Decision& decision, const Group&
   constexpr double clear = 16.0;  // of roundings
   bool stays = false, moves = false;
   for (const Condition& condition : candidate.set.conditions()) {
-    if (std::find(members.begin(), members.end(), condition.selection) == members.end()) continue;
+    if (!contains(members, condition.selection)) continue;
     const double value = watch_.end_value(candidate.set, condition), rounding = clear * watch_.noise(condition);
     if (value < -rounding) return Trial::fails;
     stays = stays || !(value > rounding);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/fesd_integrator/decide/transition.hpp"
 #include "saltus/switching/selections/selection_complementarity.hpp"
 #include "saltus/switching/table/additive_map.hpp"
@@ -111,7 +112,7 @@ std::optional<std::vector<double>> Transition::solve_dependent(const Decision& d
     pattern.push_back(goes ? (velocity > 0.0 ? 1 : -1) : side_before(decision, j) < 0 ? -1 : 1);
   }
   if (group.patterns.empty()) group.decided = solution.unique_velocity;
-  if (std::find(group.patterns.begin(), group.patterns.end(), pattern) == group.patterns.end()) {
+  if (!contains(group.patterns, pattern)) {
     group.patterns.push_back(std::move(pattern));
   }
   return std::vector<double>(moves.data(), moves.data() + moves.size());

@@ -92,12 +92,7 @@ std::vector<std::vector<int>> Transition::find_influences(const Decision& decisi
     for (std::size_t j = 0; j < n; ++j) size_[j] = std::max(size_[j], sum[j]);
     join_by_influence(members, components);
   }
-  std::vector<std::vector<int>> groups;
-  for (const auto& component : components.lists()) {
-    auto& group = groups.emplace_back();
-    for (const std::size_t k : component) group.push_back(members[k]);
-  }
-  return groups;
+  return components.lists_of(members);
 }
 
 /// Whether a group that slid before the point does so clearly at it.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -185,7 +186,7 @@ bool FixedElement::solve(const Point& left, double h, const ActiveSet& before, c
   if (by_pivoting(left, h, held, element) == Search::stuck &&
       by_enumeration(left, h, before, held, element) == Search::stuck) {
     // Where the equations of the modes on the way have no solution, nothing has shown what else changes.
-    if (std::find(touched_.begin(), touched_.end(), false) == touched_.end()) return false;
+    if (!contains(touched_, false)) return false;
     touched_.assign(touched_.size(), true);
     if (by_enumeration(left, h, before, held, element) == Search::stuck) return false;
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 
 namespace saltus::fesd_integrator {
 Recorder::Recorder(const discretization::PointFunctions& functions, const Facts& facts)
@@ -156,12 +157,9 @@ Recorder::Differences Recorder::differences(const Columns& from, const Columns& 
     note(facts_.columns[c].name, from.mode[c], to.mode[c]);
   }
   for (std::size_t g = 0; g < facts_.regions.size(); ++g) {
-    const auto holds = [](const auto& list, const std::string& name) {
-      return std::find(list.begin(), list.end(), name) != list.end();
-    };
     const bool replaced = from.regions[g].size() == 1 && to.regions[g].size() == 1;
     for (const auto& name : facts_.regions[g].names) {
-      const bool was = holds(from.regions[g], name), is = holds(to.regions[g], name);
+      const bool was = contains(from.regions[g], name), is = contains(to.regions[g], name);
       if (was == is) continue;
       if (replaced) {
         note(name, was ? -1 : 1, was ? 1 : -1);
@@ -216,14 +214,13 @@ bool Recorder::started(double t, const std::vector<double>& x, const std::vector
   row(t, x, chosen.set, chosen.selections, held);
   result::Event event;
   for (const auto& column : facts_.columns) {
-    const bool zero = std::find(at_zero.begin(), at_zero.end(), column.function) != at_zero.end();
+    const bool zero = contains(at_zero, column.function);
     if (column.listed && zero) event.surfaces.push_back(column.name);
   }
   for (const auto& group : facts_.regions) {
     for (std::size_t i = 0; i < group.names.size(); ++i) {
       const int function = group.first + static_cast<int>(i);
-      if (std::find(at_zero.begin(), at_zero.end(), function) != at_zero.end())
-        event.surfaces.push_back(group.names[i]);
+      if (contains(at_zero, function)) event.surfaces.push_back(group.names[i]);
     }
   }
   if (event.surfaces.empty()) return false;

@@ -1,13 +1,13 @@
 // Events the user asked for: zeros of expressions and edges of conditions, seen along elements that are accepted.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <vector>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/discretization/point_functions.hpp"
 #include "saltus/fesd_integrator/element/facts.hpp"
 #include "saltus/model/statement/event_rules.hpp"
@@ -32,7 +32,7 @@ class UserEvents {
   /// Gives functions that have no sign yet, but have left zero at this point, their first one: that is no change.
   void settle(double t, const double* x, const double* selections, const double* held);
   /// Returns whether some function has no sign yet.
-  [[nodiscard]] bool unsettled() const { return std::find(signs_.begin(), signs_.end(), 0) != signs_.end(); }
+  [[nodiscard]] bool unsettled() const { return contains(signs_, 0); }
   /// Returns whether the value is within `noise` of zero where update() was called last, and was not at the time before
   /// that.
   [[nodiscard]] bool reaches_zero(std::size_t function, double noise) const {

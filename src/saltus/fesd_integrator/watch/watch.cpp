@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/ode/bernstein.hpp"
 
 namespace saltus::fesd_integrator {
@@ -138,7 +139,7 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   bool found = false;
   earliest.theta = std::numeric_limits<double>::infinity();
   for (const Condition& condition : set.conditions()) {
-    if (!only.empty() && std::find(only.begin(), only.end(), condition.selection) == only.end()) continue;
+    if (!only.empty() && !contains(only, condition.selection)) continue;
     for (std::size_t i = 0; i < points_; ++i) {
       values_[i] = value_at(set, condition, i);
       if (!std::isfinite(values_[i])) return Answer::not_finite;

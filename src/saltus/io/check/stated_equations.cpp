@@ -24,7 +24,7 @@ class EquationList {
   void add(const std::string& left, const expression::NodePtr& right, std::string where = "") {
     if (!right || list_.size() >= most_) return;
     const bool is_text = notation_ == Notation::text;
-    list_.push_back({is_text ? left : fmt::format("\\text{{{}}}", escaped(left)),
+    list_.push_back({is_text ? left : fmt::format("\\text{{{}}}", expression::latex_escaped(left)),
                      is_text ? expression::to_spaced_text(*right) : expression::to_latex(*right), std::move(where)});
   }
   /// Names, with what stands behind each: "'" for a derivative.
@@ -50,12 +50,6 @@ class EquationList {
   [[nodiscard]] std::vector<StatedEquation> take() { return std::move(list_); }
 
  private:
-  static std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) result += c == '_' ? std::string("\\_") : std::string(1, c);
-    return result;
-  }
-
   std::size_t most_;
   Notation notation_;
   std::vector<StatedEquation> list_;

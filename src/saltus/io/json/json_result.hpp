@@ -20,6 +20,8 @@ namespace saltus::io {
 /// Reads a stored result; errors name the file, the position or the JSON path, and what was expected.
 [[nodiscard]] Expected<result::Result> read_result(const std::filesystem::path& file);
 [[nodiscard]] Expected<result::Result> parse_result(const std::string& text, const std::string& file);
+/// Returns a field of CSV by RFC 4180: one with a comma, a quote or a line break in quotes, its quotes doubled.
+[[nodiscard]] std::string csv_field(const std::string& text);
 /// Writes the header t,side,<states>,<controls>,<outputs>, then alpha(<name>) of all surfaces, then mode(<name>) of
 /// all. Fields are quoted by RFC 4180. `side` is result::side.
 [[nodiscard]] bool write_csv(const result::Result& result, Sink sink);
@@ -51,7 +53,6 @@ class ResultParts {
 /// @param folder  for those files
 [[nodiscard]] std::unique_ptr<ResultParts> json_parts(const std::filesystem::path& folder, Sink sink);
 [[nodiscard]] std::unique_ptr<ResultParts> npz_parts(const std::filesystem::path& folder, Sink sink);
-[[nodiscard]] std::string events_to_csv(const result::Result& result);
 /// Writes the columns of both tables as a zip archive of .npy arrays, deflated: those of the trajectory by their names,
 /// those of the events with "events." before them. Numbers are float64, `side` and modes of rows int8, words unicode;
 /// what is not there is NaN, `unique` is 1, 0 or -1 (not decided).

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/io/json/json_shapes_internal.hpp"
 #include "saltus/result/kept_columns.hpp"
 
@@ -41,7 +42,7 @@ void check_times(JsonReader& reader, const std::string& path, const std::vector<
 void check_surface(JsonReader& reader, const result::Surface& surface, const std::string& path,
                    const std::vector<std::string>& states) {
   for (const auto& name : surface.states) {
-    if (std::find(states.begin(), states.end(), name) != states.end()) continue;
+    if (contains(states, name)) continue;
     reader.fail(path + "/states", fmt::format("'{}' is no state", name));
   }
   if (surface.affine) check_length(reader, path + "/affine/gradient", surface.affine->gradient, surface.states.size());
@@ -63,7 +64,7 @@ void check_active(JsonReader& reader, const std::string& path, const result::Reg
   for (std::size_t g = 0; g < std::min(regions.size(), groups.size()); ++g) {
     const auto& modes = groups[g].modes;
     for (const auto& mode : regions[g]) {
-      if (std::find(modes.begin(), modes.end(), mode) != modes.end()) continue;
+      if (contains(modes, mode)) continue;
       reader.fail(fmt::format("{}/{}", path, g), fmt::format("'{}' is no mode of this group", mode));
     }
   }

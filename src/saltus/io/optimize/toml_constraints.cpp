@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/constant_value_internal.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
@@ -65,8 +66,7 @@ class ConstraintReader {
   model::ConstraintDescription read() {
     const auto begin = std::min(text_.find_first_not_of(" \t\r\n"), text_.size());
     constraint_.location = place_in_string(string_, begin);
-    const auto end = text_.find_last_not_of(" \t\r\n");
-    if (begin < text_.size()) constraint_.text = text_.substr(begin, end + 1 - begin);
+    constraint_.text = trimmed(text_, " \t\r\n");
     scan();
     check_relations();
     if (!reader_.failed()) parse_sides();

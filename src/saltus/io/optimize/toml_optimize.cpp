@@ -111,6 +111,42 @@ void read_all_least_squares(TomlReader& reader, const TomlEntry& entry, model::O
     problem.least_squares.push_back(read_least_squares(reader, value));
 }
 
+/// A number or { free = true, initial, lower, upper }.
+model::HorizonDescription read_horizon(TomlReader& reader, const TomlEntry& entry) {
+  model::HorizonDescription horizon;
+  horizon.location = entry.value.location;
+  const auto* table = std::get_if<TomlTable>(&entry.value.value);
+  if (table == nullptr) horizon.value = reader.expression(entry.value);
+  for (const auto& field : table != nullptr ? *table : TomlTable{}) {
+    if (field.key == "initial") {
+      horizon.value = reader.expression(field.value);
+    } else if (field.key == "lower") {
+      horizon.lower = reader.bound(field.value);
+    } else if (field.key == "upper") {
+      horizon.upper = reader.bound(field.value);
+    } else if (field.key == "free") {
+      horizon.free = reader.boolean(field.value);
+    } else {
+      reader.unknown_key(field, {"free", "initial", "lower", "upper"});
+    }
+  }
+  if (!horizon.value) {
+    reader.fail(problem_mistake("the horizon has no initial value",
+                                "write horizon = { free = true, initial = 10, lower = 1, upper = 100 }",
+                                horizon.location));
+    return horizon;
+  }
+  if (!horizon.free) horizon.lower = horizon.upper = nullptr;
+  if (horizon.free) check_free(reader, "the horizon", horizon.value, horizon.lower, horizon.upper, horizon.location);
+  for (const auto& bound : {horizon.value, horizon.lower}) {
+    const auto number = bound ? constant_value(*bound) : std::nullopt;
+    if (!number || *number > 0.0) continue;
+    reader.fail(problem_mistake(fmt::format("horizon: expected a length of time > 0, found {}", *number),
+                                "write horizon = 10, counted from `from`", bound->location));
+  }
+  return horizon;
+}
+
 /// What is minimised and constrained; whether the key was one of those.
 bool read_problem_key(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   auto& problem = *model.description.optimize;
@@ -199,41 +235,6 @@ void check_free(TomlReader& reader, const std::string& what, const expression::N
                                                                    : fmt::format("above upper ({})", *to)),
                                 "choose lower <= initial <= upper", location));
   }
-}
-
-model::HorizonDescription read_horizon(TomlReader& reader, const TomlEntry& entry) {
-  model::HorizonDescription horizon;
-  horizon.location = entry.value.location;
-  const auto* table = std::get_if<TomlTable>(&entry.value.value);
-  if (table == nullptr) horizon.value = reader.expression(entry.value);
-  for (const auto& field : table != nullptr ? *table : TomlTable{}) {
-    if (field.key == "initial") {
-      horizon.value = reader.expression(field.value);
-    } else if (field.key == "lower") {
-      horizon.lower = reader.bound(field.value);
-    } else if (field.key == "upper") {
-      horizon.upper = reader.bound(field.value);
-    } else if (field.key == "free") {
-      horizon.free = reader.boolean(field.value);
-    } else {
-      reader.unknown_key(field, {"free", "initial", "lower", "upper"});
-    }
-  }
-  if (!horizon.value) {
-    reader.fail(problem_mistake("the horizon has no initial value",
-                                "write horizon = { free = true, initial = 10, lower = 1, upper = 100 }",
-                                horizon.location));
-    return horizon;
-  }
-  if (!horizon.free) horizon.lower = horizon.upper = nullptr;
-  if (horizon.free) check_free(reader, "the horizon", horizon.value, horizon.lower, horizon.upper, horizon.location);
-  for (const auto& bound : {horizon.value, horizon.lower}) {
-    const auto number = bound ? constant_value(*bound) : std::nullopt;
-    if (!number || *number > 0.0) continue;
-    reader.fail(problem_mistake(fmt::format("horizon: expected a length of time > 0, found {}", *number),
-                                "write horizon = 10, counted from `from`", bound->location));
-  }
-  return horizon;
 }
 
 void read_optimize_key(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {

@@ -21,9 +21,6 @@ enum class ConstraintPlace { path, terminal };
 /// Reads one of [[optimize.least_squares]].
 [[nodiscard]] model::LeastSquaresDescription read_least_squares(TomlReader& reader, const TomlValue& value);
 
-/// Reads a number or { free = true, initial, lower, upper }.
-[[nodiscard]] model::HorizonDescription read_horizon(TomlReader& reader, const TomlEntry& entry);
-
 /// Reads a key of [optimize], which the model has.
 void read_optimize_key(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include "saltus/base/text.hpp"
 #include "saltus/io/text_encoding_internal.hpp"
 #include "saltus/io/toml/toml_document_internal.hpp"
 
@@ -158,15 +159,12 @@ struct Slip {
 std::optional<Slip> unit_behind_number(std::string_view line) {
   const auto equal = line.find('=');
   if (equal == std::string_view::npos) return std::nullopt;
-  const auto trimmed = [](std::string_view text) {
-    const auto first = text.find_first_not_of(" \t"), last = text.find_last_not_of(" \t\r");
-    return first == std::string_view::npos ? std::string_view() : text.substr(first, last - first + 1);
-  };
-  const auto name = trimmed(line.substr(0, equal));
-  const auto value = trimmed(line.substr(equal + 1, line.find('#', equal) - equal - 1));
+  constexpr std::string_view blanks = " \t\r";
+  const auto name = trimmed(line.substr(0, equal), blanks);
+  const auto value = trimmed(line.substr(equal + 1, line.find('#', equal) - equal - 1), blanks);
   const auto space = value.find_first_of(" \t");
   if (space == std::string_view::npos || value.find_first_not_of("0123456789.eE+-_") != space) return std::nullopt;
-  auto unit = trimmed(value.substr(space));
+  auto unit = trimmed(value.substr(space), blanks);
   if (unit.starts_with('[') && unit.ends_with(']')) unit = unit.substr(1, unit.size() - 2);
   const bool is_word = !unit.empty() && (std::isalpha(static_cast<unsigned char>(unit.front())) != 0 ||
                                          static_cast<unsigned char>(unit.front()) >= 0x80U);

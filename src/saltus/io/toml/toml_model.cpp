@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/same_place.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_result.hpp"
@@ -70,7 +71,7 @@ void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) 
   for (const auto& section : sections) {
     if (section.name != entry.key) continue;
     constexpr std::array arrays{"events", "modes", "jumps", "hysteresis", "contacts"};
-    const bool is_array = std::find(arrays.begin(), arrays.end(), entry.key) != arrays.end();
+    const bool is_array = contains(arrays, entry.key);
     reader.enter(is_array ? fmt::format("[[{}]]", entry.key) : fmt::format("[{}]", entry.key));
     section.read(reader, entry, model);
     reader.enter("");
@@ -113,7 +114,7 @@ Expected<void> check_clock(const model::Description& description) {
   }
   std::vector<std::string> states;
   for (const auto& state : description.states) states.push_back(state.name);
-  if (std::find(states.begin(), states.end(), description.clock->clock) != states.end()) return {};
+  if (contains(states, description.clock->clock)) return {};
   return tl::unexpected(with_context({ErrorCode::unknown_name,
                                       fmt::format("the clock '{}' is no state", description.clock->clock),
                                       suggest(description.clock->clock, states),
@@ -300,11 +301,11 @@ Error located(Error error, const ModelFile& model) {
   }
   for (const auto& [key, location] : model.option_locations) {
     const auto frame = fmt::format("in simulate.{}", key);
-    if (std::find(error.context.begin(), error.context.end(), frame) != error.context.end()) error.location = location;
+    if (contains(error.context, frame)) error.location = location;
   }
   for (const auto& [key, location] : model.optimize_locations) {
     const auto frame = fmt::format("in optimize.{}", key);
-    if (std::find(error.context.begin(), error.context.end(), frame) != error.context.end()) error.location = location;
+    if (contains(error.context, frame)) error.location = location;
   }
   return error;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
@@ -37,7 +38,7 @@ Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::ve
     return quantity;
   }
   for (const auto& [key, location, value] : *table) {
-    if (std::find(known.begin(), known.end(), key) == known.end()) {
+    if (!contains(known, key)) {
       unknown_quantity_key(reader, {key, location, value}, known);
       // Perhaps it was to be the initial value: that this is missing, and what follows from it, is the same mistake.
       if (quantity.initial == nullptr) quantity.initial = expression::unreadable(location);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
 
@@ -48,7 +49,7 @@ bool is_table_of_options(std::string_view key) {
 
 bool is_option(std::string_view key) {
   const auto keys = pipeline::simulate_keys();
-  return std::find(keys.begin(), keys.end(), key) != keys.end();
+  return contains(keys, key);
 }
 
 void read_option(TomlReader& reader, const std::string& key, const TomlEntry& entry, ModelFile& model) {

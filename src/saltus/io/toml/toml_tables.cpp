@@ -1,5 +1,4 @@
 // [tables.name], and inputs from files and results.
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/io/named_files_internal.hpp"
 #include "saltus/io/sample_files.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
@@ -155,7 +155,7 @@ std::vector<std::string> table_names(const TomlTable& document) {
   std::set<std::string> taken;  // a second meaning is refused later; until then the first one holds
   for (const auto& entry : document) {
     const auto* table = std::get_if<TomlTable>(&entry.value.value);
-    if (table == nullptr || std::find(others.begin(), others.end(), entry.key) == others.end()) continue;
+    if (table == nullptr || !contains(others, entry.key)) continue;
     for (const auto& field : *table) taken.insert(field.key);
   }
   std::vector<std::string> names;

@@ -28,6 +28,10 @@ double seeded_draw(std::uint64_t point, std::uint64_t variable) {
   return (bits & 1U) != 0 ? -size : size;
 }
 
+namespace {
+
+/// Sets the variables of a cone to those of point number k of the pool: several magnitudes, the first four with
+/// positive coordinates (where logarithms and roots are defined). Parameters and alphas stay as they are.
 void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& point) {
   // Small points separate thresholds that large ones cannot tell apart, and the other way round.
   constexpr std::array<double, 16> magnitudes{1.0,  1.0, 1e-2, 1e2,  1.0, 1e-5, 10.0, 1e-9,
@@ -46,8 +50,6 @@ void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& 
     point[i] = k < 4 ? std::abs(draw) : draw;
   }
 }
-
-namespace {
 
 /// Constants of cells at numbers of their own: functions of time and state that look alike at the points of the pool
 /// may differ in a cell that none of them lies in. So only the same cells, used in the same way, are equal.

@@ -25,10 +25,6 @@ namespace saltus::model {
 inline constexpr int pool_points = 64;
 inline constexpr int extreme_points = 12;
 
-/// Sets the variables of a cone to those of point number k of the pool: several magnitudes, the first four with
-/// positive coordinates (where logarithms and roots are defined). Parameters and alphas stay as they are.
-void draw_pool_point(const Tape& tape, std::span<const int> cone, int k, Point& point);
-
 /// Returns the value of a polynomial expression that does not change with t, x, u, whatever its alphas (corners) are;
 /// with the parameters' values, to rounding. A value that is 0 to rounding is 0.
 [[nodiscard]] std::optional<double> constant_value(const Tape& tape, int node);

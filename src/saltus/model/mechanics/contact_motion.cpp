@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/model/mechanics/contact_motion_internal.hpp"
 #include "saltus/model/mechanics/smooth_check_internal.hpp"
 #include "saltus/model/statement/start_values_internal.hpp"
@@ -150,7 +151,7 @@ class ContactMotion {
     const auto& velocities = motion_.velocities;
     for (const auto& jump : statement_.jumps) {
       const bool sets_velocity = std::any_of(jump.set.begin(), jump.set.end(), [&](const auto& assignment) {
-        return std::find(velocities.begin(), velocities.end(), assignment.state) != velocities.end();
+        return contains(velocities, assignment.state);
       });
       if (!sets_velocity) continue;
       const bool is_there = (jump.guard && is_gap(SX(*jump.guard), contact)) ||

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/model/mechanics/smooth_check_internal.hpp"
 
 namespace saltus::model {
@@ -34,7 +35,7 @@ std::optional<Error> check_smooth(const Recognition& recognition, const Statemen
     if (variable.kind == VariableKind::time && allowed.and_time) continue;
     const bool is_state = variable.kind == VariableKind::state || variable.kind == VariableKind::discrete;
     const auto& positions = allowed.positions;
-    if (is_state && std::find(positions.begin(), positions.end(), variable.index) != positions.end()) continue;
+    if (is_state && contains(positions, variable.index)) continue;
     const SXElem symbol = recognition.graph.expression(member);
     if (variable.kind == VariableKind::control && is_a_parameter(statement, symbol)) continue;
     if (allowed.and_time && SXElem::is_equal(symbol, statement.time, 0)) {

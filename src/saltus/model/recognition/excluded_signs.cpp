@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/model/recognition/excluded_signs_internal.hpp"
 
 namespace saltus::model {
@@ -23,7 +24,7 @@ class Thresholds {
       psi.push_back(function.psi_node);
     }
     // Multiples of each other that are not shared are discrete; without any there is nothing to find.
-    if (std::find(discrete_.begin(), discrete_.end(), true) != discrete_.end()) {
+    if (contains(discrete_, true)) {
       first_multiple_ = first_multiples(tape, psi);
     }
   }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/model/recognition/recognition_internal.hpp"
 
 namespace saltus::model {
@@ -24,7 +25,7 @@ Expected<std::optional<BothValues>> Recognition::both_values(const SXElem& e) {
   const auto cone = graph.tape().cone(std::span(&*node, 1), Links::written);
   for (const int function : two_valued_) {
     const int state = functions_[at(function)].alpha_node;
-    if (std::find(cone.begin(), cone.end(), state) == cone.end()) continue;
+    if (!contains(cone, state)) continue;
     return BothValues{function, graph.with_alphas(*node, {{state, 1.0}}), graph.with_alphas(*node, {{state, 0.0}})};
   }
   return std::nullopt;
@@ -78,7 +79,7 @@ Expected<std::vector<std::pair<SXElem, SXElem>>> Recognition::restated_selection
   // What is restated is met no more: surfaces of the states, on which they wait, are functions of their own.
   index_ = {};
   for (int i = 0; i < static_cast<int>(functions_.size()); ++i) {
-    if (std::find(compare.begin(), compare.end(), i) == compare.end()) {
+    if (!contains(compare, i)) {
       index_.insert(graph.tape(), functions_[at(i)].psi_node, i);
     }
   }
@@ -103,11 +104,11 @@ Expected<std::vector<std::pair<SXElem, SXElem>>> Recognition::restated_selection
 std::vector<int> Recognition::functions_of_two_valued() const {
   std::vector<int> found;
   for (int i = 0; i < static_cast<int>(functions_.size()); ++i) {
-    if (std::find(two_valued_.begin(), two_valued_.end(), i) != two_valued_.end()) continue;
+    if (contains(two_valued_, i)) continue;
     const int psi = functions_[at(i)].psi_node;
     const auto cone = graph.tape().cone(std::span(&psi, 1), Links::through_alpha);
     const bool compares = std::any_of(two_valued_.begin(), two_valued_.end(), [&](int function) {
-      return std::find(cone.begin(), cone.end(), functions_[at(function)].alpha_node) != cone.end();
+      return contains(cone, functions_[at(function)].alpha_node);
     });
     if (compares) found.push_back(i);
   }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/statement/model_scope_internal.hpp"
 
@@ -65,7 +66,7 @@ std::optional<Error> ModelScope::work_out_needs(const Meaning& meaning) {
       const Meaning* found = names_.find(name);
       const bool has_expression =
           found != nullptr && (found->kind == NameKind::definition || found->kind == NameKind::switching);
-      if (has_expression && !is_worked_out(*found) && std::find(open_.begin(), open_.end(), name) == open_.end()) {
+      if (has_expression && !is_worked_out(*found) && !contains(open_, name)) {
         return found;
       }
     }

@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/recognition/guards_internal.hpp"
 #include "saltus/model/statement/jumps_internal.hpp"
@@ -199,7 +199,7 @@ std::optional<Error> fill_set(Recognition& recognition, const JumpStatement& sta
   }
   std::vector<SXElem> values;
   for (const auto& [state, value, location] : stated.set) {
-    if (std::find(jump.targets.begin(), jump.targets.end(), state) != jump.targets.end()) {
+    if (contains(jump.targets, state)) {
       return jump_error(location, fmt::format("the jump '{}' sets a state twice", jump.name), "set it once");
     }
     if (const auto node = recognition.graph.add(value); !node) return node.error();

@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/enum_names.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/statement/names_internal.hpp"
@@ -68,7 +68,7 @@ const Meaning* NameTable::find(const std::string& name) const {
 std::vector<std::string> NameTable::of(const std::vector<NameKind>& kinds) const {
   std::vector<std::string> names;
   for (const auto& [name, meaning] : meanings_) {
-    if (std::find(kinds.begin(), kinds.end(), meaning.kind) != kinds.end()) names.push_back(name);
+    if (contains(kinds, meaning.kind)) names.push_back(name);
   }
   return names;
 }

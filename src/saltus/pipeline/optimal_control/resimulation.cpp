@@ -43,6 +43,15 @@ std::optional<result::Mode> mode_at_start(const OptimizedPath& path, std::size_t
   return mode;
 }
 
+/// n + 1 times of equal distance.
+std::vector<double> equal_times(double from, double until, std::size_t n) {
+  std::vector<double> times;
+  for (std::size_t i = 0; i <= n; ++i) {
+    times.push_back(i == n ? until : from + (until - from) * (static_cast<double>(i) / static_cast<double>(n)));
+  }
+  return times;
+}
+
 }  // namespace
 
 IntegrationOptions resimulation_options(double from, double until, std::size_t rows) {
@@ -56,14 +65,6 @@ IntegrationOptions resimulation_options(double from, double until, std::size_t r
   options.output.rows = OutputTimes::Rows::at_times;
   options.output.times = equal_times(from, until, rows);
   return options;
-}
-
-std::vector<double> equal_times(double from, double until, std::size_t n) {
-  std::vector<double> times;
-  for (std::size_t i = 0; i <= n; ++i) {
-    times.push_back(i == n ? until : from + (until - from) * (static_cast<double>(i) / static_cast<double>(n)));
-  }
-  return times;
 }
 
 Resimulation::Resimulation(model::System system, evaluation::ModelKernel kernel, const OptimizedPath& path)

@@ -63,7 +63,4 @@ class Resimulation {
 /// distance.
 [[nodiscard]] event_integrator::IntegrationOptions resimulation_options(double from, double until, std::size_t rows);
 
-/// Returns n + 1 times of equal distance from `from` until `until`.
-[[nodiscard]] std::vector<double> equal_times(double from, double until, std::size_t n);
-
 }  // namespace saltus::pipeline

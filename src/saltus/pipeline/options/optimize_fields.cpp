@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/pipeline/options/mpcc_options.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
@@ -184,7 +185,7 @@ Error unknown_optimize_key(std::string_view key) {
   const auto last = key.substr(key.rfind('.') + 1);
   for (const auto& candidate : known) {  // the right name in the wrong table: optimize.sigma_final
     const bool same = std::string_view(candidate).substr(candidate.rfind('.') + 1) == last;
-    if (same && std::find(nearest.begin(), nearest.end(), candidate) == nearest.end()) nearest.push_back(candidate);
+    if (same && !contains(nearest, candidate)) nearest.push_back(candidate);
   }
   error.remedy = nearest.empty() ? suggest(std::string(key), known)
                                  : fmt::format("did you mean 'optimize.{}'?", fmt::join(nearest, "' or 'optimize."));

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
 namespace saltus::pipeline {
@@ -275,8 +276,7 @@ Error unknown_key(std::string_view key) {
   std::vector<std::string> nearest = nearest_names(std::string(key), simulate_keys());
   for (const auto& known : simulate_keys()) {  // the right name in the wrong table: simulate.integrator
     const auto known_last = known.substr(known.rfind('.') + 1);
-    if (known_last == last && std::find(nearest.begin(), nearest.end(), known) == nearest.end())
-      nearest.push_back(known);
+    if (known_last == last && !contains(nearest, known)) nearest.push_back(known);
   }
   error.remedy = nearest.empty() ? suggest(std::string(key), simulate_keys())
                                  : fmt::format("did you mean 'simulate.{}'?", fmt::join(nearest, "' or 'simulate."));

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
 namespace saltus::pipeline {
@@ -86,12 +87,11 @@ std::optional<std::size_t> first_decrease(const std::vector<double>& list) {
 
 bool fits(const OptionKind& kind, const OptionValue& value) {
   const auto is_one = [&](double number) {
-    return std::find(kind.values.begin(), kind.values.end(), number) != kind.values.end() ||
-           (kind.number && are_among(*kind.number, number));
+    return contains(kind.values, number) || (kind.number && are_among(*kind.number, number));
   };
   if (std::holds_alternative<bool>(value)) return kind.truth;
   if (const auto* word = std::get_if<std::string>(&value)) {
-    return kind.list == ListOf::names || std::find(kind.words.begin(), kind.words.end(), *word) != kind.words.end();
+    return kind.list == ListOf::names || contains(kind.words, *word);
   }
   if (std::holds_alternative<std::vector<std::string>>(value)) return kind.list == ListOf::names;
   if (const auto* list = std::get_if<std::vector<double>>(&value)) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/rounding_unit.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
@@ -324,8 +325,8 @@ class PhysicalTime {
     for (const auto& one : here) {
       if (one.kind == EventKind::user) continue;
       for (const auto& surface : one.surfaces) {
-        const bool is_kept = std::find(names.begin(), names.end(), surface) != names.end();
-        const bool is_new = std::find(event.surfaces.begin(), event.surfaces.end(), surface) == event.surfaces.end();
+        const bool is_kept = contains(names, surface);
+        const bool is_new = !contains(event.surfaces, surface);
         if (!is_kept || !is_new) continue;
         event.surfaces.push_back(surface);
         event.kind = one.kind;

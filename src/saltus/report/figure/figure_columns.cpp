@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/base/function_ref.hpp"
 #include "saltus/report/axis_title.hpp"
 #include "saltus/report/figure/figure_columns_internal.hpp"
@@ -139,7 +140,7 @@ bool is_discrete(const std::vector<double>& t, const std::vector<double>& values
 
 bool slides(const result::Trajectory& trajectory, std::size_t row) {
   const auto& modes = trajectory.mode;
-  if (row < modes.size() && std::find(modes[row].begin(), modes[row].end(), 0) != modes[row].end()) return true;
+  if (row < modes.size() && contains(modes[row], 0)) return true;
   const auto& regions = trajectory.regions;
   return row < regions.size() &&
          std::any_of(regions[row].begin(), regions[row].end(), [](const auto& active) { return active.size() > 1; });

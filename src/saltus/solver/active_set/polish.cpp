@@ -8,6 +8,7 @@
 #include <Eigen/QR>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 
 namespace saltus::solver::active_set {
 namespace {
@@ -127,7 +128,7 @@ ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, cons
 
 PolishOutcome polish(mpcc::Problem& problem, Eigen::VectorXd& w, const PolishOptions& options) {
   const auto nearly_zero = mpcc::active_sides(problem, w, options.active);
-  if (std::find(nearly_zero.begin(), nearly_zero.end(), ActiveSide::none) != nearly_zero.end()) {
+  if (contains(nearly_zero, ActiveSide::none)) {
     return PolishOutcome::no_active_set;
   }
   const std::vector<ActiveSide> guesses[] = {smaller_sides(problem, w, nearly_zero, 1e-3), nearly_zero,

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
-#include <numeric>
 #include <unordered_set>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/components.hpp"
 
 namespace saltus::solver::crossover {
 namespace {
@@ -18,15 +18,14 @@ using mpcc::Sign;
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
 
-/// Variables that are held, and those that are equal: each points to another one, the last to itself.
+/// Variables that are held, and those that are equal.
 class Holding {
  public:
   explicit Holding(const mpcc::Problem& problem)
       : bounds_(problem.variable_bounds()),
-        parent_(at(problem.variables())),
-        hold_(parent_.size(), Hold::free),
+        equal_(at(problem.variables())),
+        hold_(at(problem.variables()), Hold::free),
         value_(Eigen::VectorXd::Zero(problem.variables())) {
-    std::iota(parent_.begin(), parent_.end(), 0);
     for (int i = 0; i < problem.variables(); ++i) {
       if (bounds_.lower[i] == bounds_.upper[i]) set(i, Hold::bounds, bounds_.lower[i]);
     }
@@ -37,11 +36,9 @@ class Holding {
     hold_[at(variable)] = why;
     value_[variable] = value;
   }
-  [[nodiscard]] int root(int variable) const {
-    while (parent_[at(variable)] != variable) variable = parent_[at(variable)];
-    return variable;
-  }
-  void make_equal(int i, int j) { parent_[at(std::max(root(i), root(j)))] = std::min(root(i), root(j)); }
+  /// The first of the variables that are equal to this one.
+  [[nodiscard]] int root(int variable) { return static_cast<int>(equal_.first(at(variable))); }
+  void make_equal(int i, int j) { equal_.join(at(i), at(j)); }
 
   /// Whoever is equal to a held variable is held at the same value.
   void spread() {
@@ -59,7 +56,7 @@ class Holding {
 
  private:
   const mpcc::Bounds& bounds_;
-  std::vector<int> parent_;
+  Components equal_;
   std::vector<Hold> hold_;
   Eigen::VectorXd value_;
 };
@@ -84,6 +81,9 @@ void hold_side(Holding& holding, const mpcc::Bounds& bounds, const RowMatrix& ja
   }
 }
 
+/// Whether side G (or H) of the pair is a zero one.
+bool is_zero_side(ActiveSide side, ActiveSide which) { return side == which || side == ActiveSide::biactive; }
+
 /// The same function has the same value and derivatives, to the bit; pairs of one element share their sides.
 class SeenRows {
  public:
@@ -106,7 +106,7 @@ class SeenRows {
   std::unordered_set<std::uint64_t> seen_;
 };
 
-void place_variables(const Holding& holding, const mpcc::Bounds& bounds, Reduction& reduction) {
+void place_variables(Holding& holding, const mpcc::Bounds& bounds, Reduction& reduction) {
   const int n = static_cast<int>(bounds.lower.size());
   reduction.hold = holding.hold();
   reduction.value = holding.value();

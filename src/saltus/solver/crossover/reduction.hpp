@@ -38,12 +38,6 @@ enum class Closing { whole, with_freedom };
 /// @param jacobian  dc/dw at a point: signs of implied sides, and which constrained sides are one and the same
 /// @param c         values of (g, G, H) at that point
 [[nodiscard]] Reduction reduce(const mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides,
-                               const RowMatrix& jacobian, const Eigen::VectorXd& c,
-                               Closing closing = Closing::whole);
-
-/// Returns whether side G (or H) of the pair is a zero one.
-[[nodiscard]] inline bool is_zero_side(mpcc::ActiveSide side, mpcc::ActiveSide which) {
-  return side == which || side == mpcc::ActiveSide::biactive;
-}
+                               const RowMatrix& jacobian, const Eigen::VectorXd& c, Closing closing = Closing::whole);
 
 }  // namespace saltus::solver::crossover

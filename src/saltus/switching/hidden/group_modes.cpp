@@ -6,6 +6,7 @@
 #include <span>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/switching/hidden/hidden_face_internal.hpp"
 #include "saltus/switching/plane/plane_internal.hpp"
@@ -56,7 +57,7 @@ class Enumeration {
 
   void look_at_zone() {
     for (std::size_t j = 0; j < m_; ++j) u_[j] = zone_[j] > 0 ? 1.0 : zone_[j] < 0 ? 0.0 : 0.5;
-    if (std::find(zone_.begin(), zone_.end(), 0) == zone_.end()) return look_at_region();
+    if (!contains(zone_, 0)) return look_at_region();
     face_.enter(zone_);
     const std::vector<double> half(face_.free().size(), 0.5);
     bisect(half, 0.5);

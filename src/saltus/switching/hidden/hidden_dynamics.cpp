@@ -9,6 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/components.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/switching/hidden/hidden_face_internal.hpp"
 #include "saltus/switching/hidden/hidden_trajectory_internal.hpp"
@@ -189,7 +190,7 @@ void add(const TrajectoryEnd& end, HiddenDecision& decision) {
   decision.structurally_unstable = true;
   if (end.limit > HiddenLimit::oscillating) return;
   auto& others = decision.other_modes;
-  if (std::find(others.begin(), others.end(), end.mode) == others.end()) others.push_back(end.mode);
+  if (!contains(others, end.mode)) others.push_back(end.mode);
 }
 
 TrajectoryOptions trajectory_options(const HiddenOptions& options, double tolerance, double tolerance_away) {

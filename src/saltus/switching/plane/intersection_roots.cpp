@@ -40,11 +40,6 @@ bool SlidingRoot::stabilisable() const {
   return determinant > 0.0 && std::min(sliding_jacobian[0][0], sliding_jacobian[1][1]) < 0.0;
 }
 
-bool SlidingRoot::stable(const std::array<double, 2>& surface_scaling) const {
-  const double trace = surface_scaling[0] * sliding_jacobian[0][0] + surface_scaling[1] * sliding_jacobian[1][1];
-  return determinant > 0.0 && trace < 0.0;
-}
-
 bool SlidingRoot::inside() const { return alpha[0] > 0.0 && alpha[0] < 1.0 && alpha[1] > 0.0 && alpha[1] < 1.0; }
 
 IntersectionRoots intersection_roots(const Plane& plane) {

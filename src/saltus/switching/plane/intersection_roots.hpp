@@ -18,9 +18,6 @@ struct SlidingRoot {
   /// Returns whether some scaling of the surfaces makes the root an attractor of the hidden dynamics:
   ///   det G > 0 and min(G11, G22) < 0   (eq. (4.12)).
   [[nodiscard]] bool stabilisable() const;
-  /// Returns whether it is an attractor for the scaling kappa of the surfaces: det G > 0 and kappa_1 G11 + kappa_2 G22
-  /// < 0 (eq. (4.11)).
-  [[nodiscard]] bool stable(const std::array<double, 2>& surface_scaling) const;
   /// Returns whether it is strictly inside the unit square.
   [[nodiscard]] bool inside() const;
 };

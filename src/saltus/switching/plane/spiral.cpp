@@ -50,10 +50,4 @@ std::optional<SpiralCycle> spiral_cycle(const PlaneTable& table, std::size_t fir
   return cycle;
 }
 
-std::array<double, 4> SpiralCycle::times_to_limit(double delta) const {
-  std::array<double, 4> times = durations;
-  for (double& time : times) time *= delta / (1.0 - cycle_ratio);
-  return times;
-}
-
 }  // namespace saltus::switching

@@ -27,11 +27,6 @@ struct SpiralCycle {
   /// Returns kappa of (6.3), the duration of the cycle per unit of delta. NOTE: the formula is misprinted there.
   [[nodiscard]] double duration() const { return (durations[0] + durations[1]) + (durations[2] + durations[3]); }
 
-  /// Returns the times to be spent in each region from distance delta to the limit, sum_cycles gamma^n t_i delta = t_i
-  /// delta / (1 - gamma), for gamma < 1: the limit is at t + their sum, y + sum_i weights[i] f^{corners[i]} (eq.
-  /// (6.4)). Error O(delta^2) where the fields are not constant.
-  [[nodiscard]] std::array<double, 4> times_to_limit(double delta) const;
-
   /// For gamma > 1, a solution that leaves the intersection at (t, y): at t + delta duration() it is at
   /// y + delta sum_i durations[i] f^{corners[i]}, on the surface on which cycles begin, at distance delta (gamma - 1)
   /// (eq. (6.5)). delta > 0 is free: a family of solutions.

@@ -9,6 +9,7 @@
 #include <Eigen/LU>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::switching {
@@ -81,7 +82,7 @@ bool RegionPolytope::find_facets() {
     RegionBits on = 0;
     for (int i = 0; i < n; ++i) on |= std::abs(distance[i]) <= flat * size ? RegionBits{1} << i : 0U;
     if (on == (RegionBits{1} << n) - 1) return false;  // all in one plane
-    if (std::find(facets_.begin(), facets_.end(), on) != facets_.end()) continue;
+    if (contains(facets_, on)) continue;
     facets_.push_back(on);
     spanning_.push_back(std::move(through));
   } while (std::prev_permutation(chosen.begin(), chosen.end()));

@@ -8,6 +8,7 @@
 #include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/mode/large_system.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -69,6 +70,7 @@ bool SingleSurface::applies(const ModeState& before, const SwitchingPoint& switc
     return false;
   const auto exits = switching_point.exit_below.size() + switching_point.exit_above.size();
   if (arrives) return exits == 0;
+  // Beyond its bounds a selection may have been lost in a two-fold point, where the full decision looks closer.
   return exits == 1 && is_within_bounds(before.alpha[at(j)]);
 }
 
@@ -83,7 +85,7 @@ double SingleSurface::along_row(const std::vector<double>& f) const {
 double SingleSurface::noise(const Place& place) const {
   double terms = std::abs(rate_ * place.t);
   for (std::size_t i = 0; i < row_.size(); ++i) terms += std::abs(row_[i] * place.x[i]);
-  return 8.0 * rounding_unit * terms;
+  return rounding_of(terms);
 }
 
 /// Whether both velocities move psi by less than its rounding over the time scale: that decides nothing.

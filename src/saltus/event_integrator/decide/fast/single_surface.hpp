@@ -63,12 +63,6 @@ class SingleSurface {
   /// Returns those of fields that are finite, but perhaps in rows that hold the selection; `alpha` is the same behind
   /// it. Cost: few rows of f.
   [[nodiscard]] Velocities velocities_by_rows(std::vector<double>& alpha, const Place& place) const;
-  /// Returns whether the selection of what was slid on lies within its bounds at an exit, to rounding: away from them
-  /// it may have been lost in a two-fold point, where the full decision looks closer.
-  [[nodiscard]] static bool is_within_bounds(double alpha) {
-    constexpr double rounding = 1e-9;
-    return alpha >= -rounding && alpha <= 1.0 + rounding;
-  }
 
  private:
   [[nodiscard]] bool moves_no_more_than_rounding(const Velocities& velocities, const Place& place) const;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/switching/regions/regions_on_surface.hpp"
 
 namespace saltus::event_integrator {
@@ -73,7 +74,7 @@ class OnSurface {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += time() * f[i];
     return x;
   }
-  [[nodiscard]] double time() const { return 1e-2 * switching_point_.time_scale; }
+  [[nodiscard]] double time() const { return look_ahead(switching_point_.time_scale); }
 
   static double velocity_of(const std::vector<double>& velocities, const switching::RegionSet& set) {
     double sum = 0.0;

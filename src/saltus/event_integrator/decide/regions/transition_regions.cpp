@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -41,7 +42,7 @@ switching::RegionRates Decider::region_rates(const std::vector<int>& candidates,
 /// x := a little later along the motion of a set (midpoint rule).
 void Decider::step_ahead(const MeetingRegions& meeting, const switching::RegionSet& set, std::vector<double>& x) {
   const auto& candidates = meeting.candidates;
-  const double time = 1e-2 * switching_point_.time_scale;
+  const double time = look_ahead(switching_point_.time_scale);
   x.assign(switching_point_.x, switching_point_.x + s_.kernel.states());
   std::vector<double> f(x.size());
   switching::RegionSet own = set;
@@ -62,7 +63,7 @@ bool Decider::goes_on(const MeetingRegions& meeting, switching::RegionSet& set) 
   std::vector<double> ahead;
   step_ahead(meeting, set, ahead);
   switching::RegionSet later;
-  if (!solve_set(meeting, switching_point_.t + 1e-2 * switching_point_.time_scale, ahead.data(), set, later))
+  if (!solve_set(meeting, switching_point_.t + look_ahead(switching_point_.time_scale), ahead.data(), set, later))
     return false;
   if (!(later.margin >= -rounding)) return false;
   if (later.margin <= rounding) {

@@ -7,6 +7,7 @@
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/switching/regions/region_spiral.hpp"
 
 namespace saltus::event_integrator {
@@ -76,7 +77,7 @@ bool Decider::stays_tied(const MeetingRegions& meeting, const switching::RegionS
   if (basis.spans_all(static_cast<Index>(regions.size()) - 1)) return true;
   std::vector<double> ahead;
   step_ahead(meeting, set, ahead);
-  const double t = switching_point_.t + 1e-2 * switching_point_.time_scale;
+  const double t = switching_point_.t + look_ahead(switching_point_.time_scale);
   for (int pass = 0; pass < 2; ++pass) {
     for (const Index k : meeting.basis->base) {
       move_onto(s_.kernel, base_, meeting.candidates[static_cast<std::size_t>(k) + 1], t, ahead);

@@ -10,6 +10,7 @@
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/event_integrator/field/higher_order.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/switching/table/independent_rows.hpp"
 
 namespace saltus::event_integrator {
@@ -93,7 +94,7 @@ class SetSearch {
         double terms = std::abs(rate * t_);
         for (std::size_t i = 0; i < row.size(); ++i) terms += std::abs(row[i] * x_[i]);
         // Four digits above rounding, as for other functions that hold signs: a jump is something of size.
-        if (!(std::abs(psi) <= 1e5 * rounding_unit * terms)) return reject("a nested switching function that jumps");
+        if (!(std::abs(psi) <= smallest_jump(terms))) return reject("a nested switching function that jumps");
       }
     }
     return true;

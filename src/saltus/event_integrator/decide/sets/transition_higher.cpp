@@ -9,6 +9,7 @@
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/event_integrator/field/higher_order.hpp"
 #include "saltus/event_integrator/field/rooted_exit.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -25,7 +26,7 @@ std::optional<Transition> leave_to(const SwitchingContext& s, ModeState state, c
     // Explicit steps from a root overshoot.
     if (surfaces.size() != 1) return std::nullopt;
     RootedExit exit(s.kernel, s.affine_in_alpha, state, surfaces.front());
-    if (!exit.leads_away(switching_point.t, x, 1e-2 * switching_point.time_scale)) return std::nullopt;
+    if (!exit.leads_away(switching_point.t, x, look_ahead(switching_point.time_scale))) return std::nullopt;
     rooted = surfaces.front();
   }
   Transition transition = transition_to(std::move(state));
@@ -197,7 +198,7 @@ std::optional<Transition> leave_at_once(const SwitchingContext& s, const ModeSta
   field.enter(*held.higher, held.sliding, held.alpha);
   field.evaluate(switching_point.t, x.data());
   const auto now = field.ranges();
-  const double h = 1e-2 * switching_point.time_scale;
+  const double h = look_ahead(switching_point.time_scale);
   std::vector<double> ahead = x;
   for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * field.motion()[i];
   field.evaluate(switching_point.t + h, ahead.data());

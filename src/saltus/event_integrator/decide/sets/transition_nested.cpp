@@ -7,6 +7,7 @@
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -28,7 +29,7 @@ bool jumps_away(const SwitchingContext& s, const SwitchingPoint& switching_point
   const double size =
       size_of(s.kernel, j, switching_point.t, switching_point.x, behind.alpha.data(), switching_point.time_scale);
   // Four digits above rounding, as for jumps on sliding surfaces: a kink leaves rounding, a jump something of size.
-  if (!(std::abs(psi) > 1e5 * rounding_unit * size)) return false;
+  if (!(std::abs(psi) > smallest_jump(size))) return false;
   set_surface(behind, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
   state = std::move(behind);
   return true;
