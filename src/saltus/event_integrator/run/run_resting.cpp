@@ -105,14 +105,14 @@ bool Run::leaves_resting_with_cells() {
   std::vector<double> values(at(kernel_.event_functions())), magnitude(values.size()), slope(values.size());
   kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), values.data());
   kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), magnitude.data(), slope.data());
-  const auto resting = holding_.resting();
+  const auto resting = holding_.held().all();
   const bool stay = std::none_of(resting.begin(), resting.end(), [&](const HeldGuard& guard) {
     const auto function = at(guard.hold.function);
     return std::abs(values[function]) > 64.0 * rounding_unit * (magnitude[function] + slope[function]);
   });
   if (stay) return false;
   holding_.release_all();
-  search_.set_held({}, {});
+  search_.set_held({});
   cascade_.drop_zeros();
   cascade_.read_user_signs();
   jumps_.update(jump_point());
