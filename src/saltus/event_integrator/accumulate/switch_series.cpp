@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "saltus/base/contracts.hpp"
-#include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 
@@ -12,12 +11,12 @@ bool SwitchSeries::note(double t, const ModeChange& change) {
   if (!change.is_single() && change.mode_before->mode == change.mode_after->mode) return false;
   remember(t);
   if (t != last_) {
-    noted_ = 0;
+    changes_.clear();
     surface_change_.reset();
   }
   last_ = t;
   if (!change.is_single()) return is_loop(change.mode_before->mode, change.mode_after->mode);
-  SALTUS_ASSERT(noted_ == 0 && !surface_change_);
+  SALTUS_ASSERT(changes_.empty() && !surface_change_);
   surface_change_ = {at(change.surface), change.before};
   return false;
 }
@@ -25,24 +24,18 @@ bool SwitchSeries::note(double t, const ModeChange& change) {
 /// Whether this change was made at last_ already; notes it.
 bool SwitchSeries::is_loop(const std::vector<int>& before, const std::vector<int>& after) {
   if (surface_change_) {
-    auto& change = append();
+    auto& change = changes_.append();
     change.first = change.second = before;
     change.first[surface_change_->first] = surface_change_->second;
     surface_change_.reset();
   }
-  const auto end = changes_.begin() + static_cast<std::ptrdiff_t>(noted_);
+  const auto known = changes_.items();
   const auto same = [&](const Change& change) { return change.first == before && change.second == after; };
-  if (std::any_of(changes_.begin(), end, same)) return true;
-  auto& change = append();
+  if (std::any_of(known.begin(), known.end(), same)) return true;
+  auto& change = changes_.append();
   change.first = before;
   change.second = after;
   return false;
-}
-
-/// The storage of changes at earlier times is used again.
-SwitchSeries::Change& SwitchSeries::append() {
-  if (noted_ == changes_.size()) changes_.emplace_back();
-  return changes_[noted_++];
 }
 
 void SwitchSeries::remember(double t) {

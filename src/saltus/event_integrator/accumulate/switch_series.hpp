@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saltus/event_integrator/mode/mode_change.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 
@@ -36,13 +37,11 @@ class SwitchSeries {
 
  private:
   using Change = std::pair<std::vector<int>, std::vector<int>>;
-  Change& append();
   bool is_loop(const std::vector<int>& before, const std::vector<int>& after);
   void remember(double t);
   double span_;
   double last_ = 0.0;
-  std::vector<Change> changes_;  ///< the first `noted_` of them are those at last_
-  std::size_t noted_ = 0;
+  ReusedList<Change> changes_;  ///< those at last_
   /// The only change at last_, by its surface and the mode of that before: the mode behind it is the one that the next
   /// change comes from.
   std::optional<std::pair<std::size_t, int>> surface_change_;

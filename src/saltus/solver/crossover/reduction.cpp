@@ -81,6 +81,9 @@ void hold_side(Holding& holding, const mpcc::Bounds& bounds, const RowMatrix& ja
   }
 }
 
+/// Whether side G (or H) of the pair is a zero one.
+bool is_zero_side(ActiveSide side, ActiveSide which) { return side == which || side == ActiveSide::biactive; }
+
 /// The same function has the same value and derivatives, to the bit; pairs of one element share their sides.
 class SeenRows {
  public:
@@ -175,8 +178,7 @@ Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& si
   for (int side = 0; side < 2 * pairs; ++side) {
     const int pair = side % pairs;
     if (problem.pair_group(pair) < 0 || sides[at(pair)] == ActiveSide::none) continue;
-    const auto own = side < pairs ? ActiveSide::G : ActiveSide::H;
-    const bool is_zero = sides[at(pair)] == own || sides[at(pair)] == ActiveSide::biactive;
+    const bool is_zero = is_zero_side(sides[at(pair)], side < pairs ? ActiveSide::G : ActiveSide::H);
     const bool is_implied = problem.signs()[at(side)] == Sign::implied;
     if (is_zero && is_implied) hold_side(holding, bounds, jacobian, n_g + side);
     if (!is_implied) (is_zero ? zero_rows : other_rows).push_back(n_g + side);

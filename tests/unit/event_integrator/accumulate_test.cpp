@@ -1,12 +1,15 @@
-// Limits of sequences of jumps: geometric ones, chattering, and what has none.
-#include "saltus/event_integrator/accumulate/accumulation.hpp"
-
+// Limits of sequences of jumps and of switches.
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "../precision.hpp"
+#include "saltus/event_integrator/accumulate/accumulation.hpp"
+#include "saltus/event_integrator/accumulate/switch_series.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -40,7 +43,7 @@ TEST(EventSeries, FindsTheLimitOfGeometricCycles) {
     int k = 0;
     for (; k < 2000 && !limit; ++k) {
       add_nth(k, ratio, series);
-      EXPECT_EQ(series.shrinks(), k >= 5) << k;  // the durations of three cycles
+      EXPECT_EQ(series.shrinks(), k >= 4) << k;  // behind two cycles
       limit = series.limit({0.0, 0.0, 0.0});
     }
     ASSERT_TRUE(limit.has_value()) << ratio;
@@ -68,20 +71,67 @@ TEST(EventSeries, ChatteringIsWhereItIsAndGoesOnThroughRests) {
   EventSeries series;
   std::optional<SeriesLimit> limit;
   int k = 0;
-  // Faster than a hundredth of what their guards resolve, and in no order.
+  // Faster than a hundredth of what their guards resolve, in no order, and never faster.
+  std::mt19937 random(20261127);
+  const double interval = std::ldexp(1.0, -30);
   for (; k < 200 && !limit; ++k) {
-    series.add(1.0 + 1e-9 * k, {(k * k / 3) % 3}, {5.0});
+    series.add(1.0 + interval * k, {static_cast<int>(random() % 3)}, {5.0});
     if (k == 40) series.clear_cycles();
     limit = series.limit({1e-6, 1e-6, 1e-6});
   }
   ASSERT_TRUE(limit.has_value());
   EXPECT_EQ(k, 64);
   EXPECT_EQ(limit->kind, SeriesKind::chattering);
-  EXPECT_EQ(limit->t, 1.0 + 1e-9 * (k - 1));
+  EXPECT_EQ(limit->t, 1.0 + interval * (k - 1));
   EXPECT_EQ(limit->x, (std::vector<double>{5.0}));
   series.clear();
   EXPECT_TRUE(series.empty());
   EXPECT_FALSE(series.limit({1e-6, 1e-6, 1e-6}));
+}
+
+TEST(SwitchSeries, CyclesThatHalveUntilNoModelLivesThereHaveALimit) {
+  SwitchSeries series(10.0);
+  double cycle = 1e-10;
+  double t = 1.0;
+  for (int k = 0; k < 8; ++k, cycle *= 0.5) series.note(t += cycle, {.surface = 0, .before = k % 2 == 0 ? 1 : -1});
+  EXPECT_TRUE(series.shrinks(t));
+}
+
+TEST(SwitchSeries, CyclesThatTimeDoesNotResolveHaveALimitHoweverTheyAreRounded) {
+  SwitchSeries series(10.0);
+  const double cycles[] = {1.0, 0.1, 20.0 * epsilon, 24.0 * epsilon, 20.0 * epsilon, 24.0 * epsilon};
+  double t = 4.0;
+  for (const double cycle : cycles) series.note(t += 4.0 * cycle, {.surface = 0, .before = 1});
+  EXPECT_TRUE(series.shrinks(t));
+}
+
+TEST(SwitchSeries, CyclesOfOneLengthThatTimeResolvesHaveNone) {
+  SwitchSeries series(10.0);
+  double t = 4.0;
+  for (int k = 0; k < 20; ++k) series.note(t += 1e-11, {.surface = 0, .before = 1});
+  EXPECT_FALSE(series.shrinks(t));
+}
+
+TEST(SwitchSeries, CyclesThatShrinkALittleAreTakenForASpiralOnceTheyHaveHalved) {
+  SwitchSeries series(10.0);
+  constexpr double q = 0.9995;
+  double t = 0.0;
+  double cycle = 1e-3;
+  int before = 0;
+  for (; before < 5000 && !series.tightens(); ++before, cycle *= q)
+    series.note(t += cycle, {.surface = 0, .before = 1});
+  // Two cycles of four to tell that they shrink, and ln(1/2)/ln(q) switches from the first of them.
+  EXPECT_NEAR(before, 8 + std::log(0.5) / std::log(q), 8.0);
+}
+
+TEST(SwitchSeries, CyclesThatShrinkToALengthAreALimitCycle) {
+  SwitchSeries series(10.0);
+  double t = 0.0;
+  double more = 5e-4;
+  for (int k = 0; k < 20000; ++k, more *= 0.9995) {
+    series.note(t += 1e-3 + more, {.surface = 0, .before = 1});
+    EXPECT_FALSE(series.tightens());
+  }
 }
 
 }  // namespace
