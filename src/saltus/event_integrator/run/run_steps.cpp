@@ -221,8 +221,7 @@ std::optional<Run::Step> Run::first_event(double t_new) {
   if (outcome == SearchOutcome::none) return std::nullopt;
   if (outcome == SearchOutcome::unresolved) return shorten_to(0.5);
   const double h = t_new - here_.t;
-  if (h > 8.0 * here_.smallest_step() && steps_.doubts(hit.doubts))
-    return shorten_to(0.5 * h / steps_.length());
+  if (h > 8.0 * here_.smallest_step() && steps_.doubts(hit.doubts)) return shorten_to(0.5 * h / steps_.length());
   note_time_scale(t_new - here_.t);
   const Located* located = locator_.locate({here_.t, here_.x.data(), here_.slope.data()}, steps_.dense(), hit);
   if (!located || zeros_.is_repelled(*located)) return shorten_to(0.5);
@@ -235,6 +234,7 @@ std::optional<Run::Step> Run::first_event(double t_new) {
 
 /// One attempt at a step: undefined, too inaccurate, up to an event, or accepted.
 Run::Step Run::attempt() {
+  if (steps_.uses_another()) choose_method();
   const double limit = next_stop();
   const bool to_the_limit = here_.t + steps_.length() * (1.0 + 4.0 * rounding_unit) >= limit;
   const double t_new = to_the_limit ? limit : here_.t + steps_.length();
