@@ -247,6 +247,23 @@ class Contacts(tool.ResultTest):
             self.assertAlmostEqual(friction[0], -9.81 * math.sin(0.3), delta=1e-9)
             self.assertAlmostEqual(friction[1], 0.0, delta=1e-9)
 
+    def test_a_growing_pull_breaks_a_block_away_in_few_steps(self):
+        """Pulled by 5 t against a friction of 5 it moves from t = 1 on like (t - 1)^3 5/6, with a direction at each speed."""
+        written = "[model]\nname = 'm'\n[states]\nx = 0\ny = 0\nvx = 0\nvy = 0\n[dynamics]\nx = 'vx'\ny = 'vy'\n" \
+            "vx = '3*t - 5*vx/hypot(vx, vy)'\nvy = '4*t - 5*vy/hypot(vx, vy)'\n[simulate]\nuntil = 2\n"
+        pulled = SPACE.replace("z = 1", "z = 0").replace("vx = 3", "vx = 0").replace("vy = 4", "vy = 0").replace(
+            'potential = "10*z"', 'potential = "10*z"\nforce = { vx = "3*t", vy = "4*t" }').replace(
+            "friction = 0.3", "friction = 0.5").replace("until = 3", "until = 2")
+        for name, model, velocity in (("written", written, 2), ("pulled", pulled, 3)):
+            for integrator in ("dopri5", "dop853", "taylor", "radau5"):
+                with self.subTest(model=name, integrator=integrator):
+                    result = self.result(model, "--integrator", integrator, "--set", "simulate.max_steps=1000")
+                    self.assertEqual(result["events"][-1]["kind"], "slip")
+                    self.assertAlmostEqual(result["events"][-1]["t"], 1, delta=1e-9)
+                    x = result["final"]["x"]
+                    for value, expected in zip(x[:2] + x[velocity:velocity + 2], (0.5, 2 / 3, 1.5, 2)):
+                        self.assertAlmostEqual(value, expected, delta=1e-8)
+
     def test_what_is_drawn_lies_at_every_row(self):
         drawn = BALL.replace('potential = "10*z"', 'potential = "10*z"\ndraw = [{ line = [[-1, 0], [5, 0]] }, '
                              '{ point = ["x", "z + mu"], radius = "mu" }]')

@@ -198,6 +198,33 @@ until = 0.53
                 self.assertAlmostEqual(hit["x_after"][1], restitution * math.sqrt(20), delta=1e-9)
                 self.assertAlmostEqual(hit["impulse"][0][0], 2 * (1 + restitution) * math.sqrt(20), delta=1e-8)
 
+    def test_a_force_along_the_ground_pushes_whatever_holds_the_gap(self):
+        """Of the gap and its rate one equation holds two selections at rest: none may leave its bounds, nor time its way."""
+        model = HEAD + """[states]
+x = 0.03
+z = 0.1
+vx = 1
+vz = -1.71
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+force = { vx = "2.75*sin(2.1*t)", vz = -9.81 }
+[[contacts]]
+name = "ground"
+gap = "z - 0.1"
+restitution = 0.5
+[simulate]
+until = 2
+"""
+        part = 2.75 / 2.1
+        for stages, steps in ((2, 100), (3, 50), (3, 400), (4, 100), (4, 200), (5, 60)):
+            with self.subTest(stages=stages, steps=steps):
+                frozen = self.simulated(model, "fesd", "--set", f"simulate.fesd.stages={stages}",
+                                        "--set", f"simulate.fesd.steps={steps}")
+                self.assertEqual(frozen["final"]["t"], 2)
+                self.assertAlmostEqual(frozen["final"]["x"][0], 2.03 + part * (2 - math.sin(4.2) / 2.1), delta=1e-6)
+                self.assertAlmostEqual(frozen["final"]["x"][2], 1 + part * (1 - math.cos(4.2)), delta=1e-6)
+
     def test_bounces_end_at_rest(self):
         ball = (tool.SOURCE / "models/elastic-ball.toml").read_text(encoding="utf-8").replace("e = 0.9", "e = 0.5")
         frozen = self.simulated(ball, "fesd", "--until", "4")

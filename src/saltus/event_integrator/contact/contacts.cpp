@@ -107,10 +107,14 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
     terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * std::abs(x[at(system_.velocities[k])]);
   }
   const double small = small_velocity * fastest(moment, point, x), end = none_below * slowest(moment, point, x);
+  const auto is_over = [&](int i) {
+    return slips(mode_of(i, x)) && point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
+  };
+  // Below the slowest speed none has a direction: slips that come to rest together do so at one time.
+  const bool in_plane = std::any_of(ended.begin(), ended.end(), [&](int i) { return point.in_plane(i) && is_over(i); });
   std::vector<bool> slip_has_ended(at(m), false);
-  for (const int i : ended) {
-    if (slips(mode_of(i, x)))
-      slip_has_ended[at(i)] = point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
+  for (int i = 0; i < m; ++i) {
+    slip_has_ended[at(i)] = (contains(ended, i) || (in_plane && point.in_plane(i))) && is_over(i);
   }
   for (int row = 0; row < static_cast<int>(point.velocity.size()); ++row) {
     const int contact = row % m;

@@ -81,6 +81,8 @@ class Contacts {
                const std::vector<int>& touching = {}, Slips slips = Slips::kept);
   /// Returns whether a jump of a contact has only bounded the speed of a slip in a plane anew.
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
+  /// Returns whether friction of a slip in a plane turns so fast that explicit steps would be short, and many.
+  [[nodiscard]] bool turns_fast(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns their names, for messages.
   [[nodiscard]] std::string names(const std::vector<int>& contacts) const;
   /// Forgets impulses, which belong to one instant.

@@ -55,6 +55,26 @@ void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x)
   }
 }
 
+/// The direction settles within |v| over the push of friction, which is three explicit steps; from where a growing
+/// force breaks a contact away the speed grows like t^2, and each time it doubles takes as many of them as 1/t.
+bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>& x) {
+  const auto [modes, closed] = modes_at(x);
+  if (std::find(modes.begin(), modes.end(), ContactMode::slip) == modes.end()) return false;
+  const ContactPoint point = point_at(moment.t, moment.alpha, x);
+  ContactForces forces;
+  if (!forces_in(point, closed, modes, forces)) return false;
+  constexpr double steps = 30.0, limit = 3.0;
+  return std::any_of(closed.begin(), closed.end(), [&](int i) {
+    if (modes[at(i)] != ContactMode::slip) return false;
+    const Eigen::Vector2d velocity = point.along(point.velocity, i);
+    const int first = point.tangent_row(i, 0), second = point.tangent_row(i, 1);
+    const double push = point.friction[at(i)] * forces.forces(i) *
+                        std::max(point.influence(first, first), point.influence(second, second));
+    const double growth = std::abs(point.along(forces.acceleration, i).dot(velocity)) / velocity.norm();
+    return push > steps * growth && push * moment.time_scale > limit * velocity.norm();
+  });
+}
+
 /// Gives it a slip of this velocity, its gap as it is.
 void Contacts::set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity,
                         std::vector<double>& x) const {

@@ -28,7 +28,7 @@ Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const Int
       zeros_(switching_context_, here_, field_, search_),
       nested_(kernel, here_, search_, tolerances_, zeros_),
       switches_(switching_context_, here_, options.until - options.from, tolerances_),
-      locator_(options.method, kernel.states(), steps_.stepper(), field_, search_, tolerances_.step()),
+      locator_(kernel.states(), steps_.stepper(), field_, search_, tolerances_.step()),
       fast_(switching_context_, options, tolerances_),
       user_events_(kernel, system),
       jumps_(kernel, system, options.from),

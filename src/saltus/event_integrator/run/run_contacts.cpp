@@ -56,7 +56,14 @@ bool Run::move_contacts() {
   auto problem = contacts_.resolve(contact_moment(), ended, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   for (const int jump : contacts_.last_bounces()) event_.last_bounces.push_back(jump);
+  if (!problem) choose_method();
   return !problem;
+}
+
+/// Steps through the beginning of a slip in a plane are implicit.
+void Run::choose_method() {
+  if (contacts_.none() || ode::is_implicit(options_.method)) return;
+  steps_.use(contacts_.turns_fast(contact_moment(), here_.x) ? ode::Method::radau5 : options_.method);
 }
 
 /// A mode whose own conditions clearly do not hold would never end.

@@ -173,6 +173,7 @@ class Run {
   bool begin_contacts();
   [[nodiscard]] bool begin_contacts_anew();
   bool move_contacts();
+  void choose_method();
   bool contact_modes_hold();
   void settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before);
   bool decide_behind_jumps();

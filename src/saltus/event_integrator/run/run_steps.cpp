@@ -234,6 +234,7 @@ std::optional<Run::Step> Run::first_event(double t_new) {
 
 /// One attempt at a step: undefined, too inaccurate, up to an event, or accepted.
 Run::Step Run::attempt() {
+  if (steps_.uses_another()) choose_method();
   const double limit = next_stop();
   const bool to_the_limit = here_.t + steps_.length() * (1.0 + 4.0 * rounding_unit) >= limit;
   const double t_new = to_the_limit ? limit : here_.t + steps_.length();

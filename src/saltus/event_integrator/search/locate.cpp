@@ -47,14 +47,9 @@ class NewtonSlope {
 
 }  // namespace
 
-Locator::Locator(ode::Method method, int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
+Locator::Locator(int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
                  const ode::Tolerances& tolerances)
-    : explicit_(!ode::is_implicit(method)),
-      stepper_(stepper),
-      field_(field),
-      search_(search),
-      tolerances_(tolerances),
-      n_(at(states)) {
+    : stepper_(stepper), field_(field), search_(search), tolerances_(tolerances), n_(at(states)) {
   for (auto* x : {&trial_.x, &moved_.x, &slope_, &slope_ahead_, &x_, &located_.x}) x->resize(n_);
 }
 
@@ -89,7 +84,7 @@ bool Locator::take(double h) {
   if (field_.attempt(stepper_, start_.t, start_.x, start_.slope, h, tolerances_) == ode::Attempt::undefined)
     return false;
   std::copy_n(stepper_.x_new(), n_, trial_.x.begin());
-  const bool moved = field_.project(start_.t + h, trial_.x.data()) && explicit_;
+  const bool moved = field_.project(start_.t + h, trial_.x.data()) && !ode::is_implicit(stepper_.method());
   has_slope_ = !moved && !stepper_.follows();
   if (has_slope_) std::copy_n(stepper_.slope_new(), n_, slope_.begin());
   evaluate(start_.t + h, trial_.x.data(), trial_.values);
@@ -123,7 +118,7 @@ void Locator::find_slope() {
 
 /// Moves the trial to the event if it is close enough for that; otherwise leaves it where it is.
 bool Locator::finish(double slope) {
-  if (!explicit_) return false;
+  if (ode::is_implicit(stepper_.method())) return false;
   double value = trial_.values[place_];
   double dt = -value / slope;
   if (!(std::abs(dt) <= two_stages_suffice * trial_.h)) return false;
@@ -258,7 +253,8 @@ void Locator::find_vanishing_with(std::size_t located) {
   const auto rate_of = [&](std::size_t k) { return sign(candidates[k]) * (beside_[k] - trial_.values[k]) / back; };
   // What implicit steps leave of the located one, their iteration leaves of functions that are the same.
   const double left = std::max(0.0, std::abs(trial_.values[place_]) / rate_of(place_));
-  const double apart = 2.0 * std::max(time_resolution(), explicit_ || !std::isfinite(left) ? 0.0 : left);
+  const double apart =
+      2.0 * std::max(time_resolution(), !ode::is_implicit(stepper_.method()) || !std::isfinite(left) ? 0.0 : left);
   for (std::size_t k = 0; k < candidates.size(); ++k) {
     const std::size_t i = candidates[k];
     if (i == located || sign(i) == 0) continue;

@@ -32,8 +32,7 @@ struct Located {
 /// before.
 class Locator {
  public:
-  Locator(ode::Method method, int states, ode::Stepper& stepper, ModeField& field, EventSearch& search,
-          const ode::Tolerances& tolerances);
+  Locator(int states, ode::Stepper& stepper, ModeField& field, EventSearch& search, const ode::Tolerances& tolerances);
 
   /// Locates the event of a hit on the dense output of the step (start, dense.h). The step is retaken to the zero of
   /// the interpolant, so the order of the method is kept. What is then left is moved along the field where it is so
@@ -74,7 +73,6 @@ class Locator {
   }
   [[nodiscard]] double time_resolution() const;
 
-  bool explicit_;
   ode::Stepper& stepper_;
   ModeField& field_;
   EventSearch& search_;

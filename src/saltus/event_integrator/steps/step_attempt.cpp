@@ -12,6 +12,7 @@ StepAttempt::StepAttempt(const IntegrationOptions& options, const model::System&
       field_(field),
       here_(here),
       tolerances_(tolerances),
+      method_(options.method),
       stepper_(options.method, static_cast<int>(here.x.size())),
       control_(options.method),
       x_(here.x.size()),
@@ -28,6 +29,14 @@ StepAttempt::StepAttempt(const IntegrationOptions& options, const model::System&
 ode::Attempt StepAttempt::take(double t_new) {
   dense_is_last_ = false;
   return field_.attempt(stepper_, here_.t, here_.x.data(), here_.slope.data(), t_new - here_.t, tolerances_.step());
+}
+
+void StepAttempt::use(ode::Method method) {
+  if (method == method_) return;
+  method_ = method;
+  stepper_ = ode::Stepper(method, static_cast<int>(x_.size()));
+  control_ = ode::StepControl(method);
+  stiffness_.reset();
 }
 
 bool StepAttempt::remake_dense() {

@@ -54,6 +54,10 @@ class StepAttempt {
   /// Returns the factor of the next length behind an attempt whose error was too large.
   [[nodiscard]] double rejected(double error) { return control_.rejected(error); }
   void follow_method() { control_.follow(stepper_.method()); }
+  /// Takes the steps from here on by a method in place of the one that was asked for, or by that again.
+  void use(ode::Method method);
+  /// Returns whether they are taken by another method than that.
+  [[nodiscard]] bool uses_another() const { return method_ != options_.method; }
 
   /// Notes that the last attempt, of length h, was accepted, and the position is at its end.
   void accepted(double h);
@@ -85,6 +89,7 @@ class StepAttempt {
   ModeField& field_;
   const Position& here_;
   const StepTolerances& tolerances_;
+  ode::Method method_;
   ode::Stepper stepper_;
   ode::StepControl control_;
   ode::StiffnessWatch stiffness_;

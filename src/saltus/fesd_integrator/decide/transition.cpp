@@ -124,7 +124,8 @@ double Transition::margin_from(const std::vector<double>& unknown, const Decisio
 
 ElementSolver::Outcome Transition::solve_trial(const Decision& decision, const Continuation& candidate, double length) {
   const Point left{decision.t, {decision.x.begin(), decision.x.end()}, candidate.selections, decision.size};
-  return solver_.solve(left, length, {&candidate.set, 1}, decision.held, ElementSolver::Guess::left_end, trial_);
+  const auto guess = projected_.regular() ? ElementSolver::Guess::left_end : ElementSolver::Guess::field;
+  return solver_.solve(left, length, {&candidate.set, 1}, decision.held, guess, trial_);
 }
 
 /// Whether a selection follows from a higher derivative of its surface only.

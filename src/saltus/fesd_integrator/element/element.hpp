@@ -54,9 +54,9 @@ class ElementSolver {
 
   enum class Outcome { solved, not_converged, not_finite };
   /// Solves the element. `sets`: one, or one per stage. `held`: values of Dcs::held. The stage values in `element` are
-  /// the first guess with `stages`, else those of Euler's method (with roots, whose derivatives are infinite where they
-  /// are 0), or the left end. Cost: n_Newton (n_s evaluations + (n_s (n_x + n_sliding))^3 / 3).
-  enum class Guess { left_end, stages };
+  /// the first guess with `stages`, else the left end or those of Euler's method (`field`, and with roots, whose
+  /// derivatives are infinite where they are 0). Cost: n_Newton (n_s evaluations + (n_s (n_x + n_sliding))^3 / 3).
+  enum class Guess { left_end, field, stages };
   [[nodiscard]] Outcome solve(const Point& left, double h, std::span<const ActiveSet> sets, const double* held,
                               Guess guess, Element& element);
   /// Returns whether the states of the last solve() are the only ones in their set: false where selections move them

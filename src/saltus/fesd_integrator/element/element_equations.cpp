@@ -274,10 +274,10 @@ void ElementEquations::set_guess(std::size_t stage, const Point& left, ElementSo
   const bool is_known = known(static_cast<Index>(stage));
   const auto count = static_cast<Index>(set(static_cast<Index>(stage)).sliding().size());
   double* selections = element.stage_selections.data() + stage * static_cast<std::size_t>(n_psi_);
-  if (is_known || guess == ElementSolver::Guess::left_end) {
+  if (is_known || guess != ElementSolver::Guess::stages) {
     std::copy(left.selections.begin(), left.selections.end(), selections);
   }
-  if (guess == ElementSolver::Guess::left_end) {
+  if (guess != ElementSolver::Guess::stages) {
     std::copy_n(left.x.begin(), n_x_, element.stage_states.data() + static_cast<Index>(stage) * n_x_);
   }
   mu_.head(count).setZero();
@@ -309,8 +309,9 @@ void ElementEquations::begin(const Point& left, double h, std::span<const Active
     set_guess(m, left, guess, element);
   }
   set_warp(element.warp);
+  const bool has_roots = !roots_.empty() && guess == ElementSolver::Guess::left_end;
+  if (has_roots || guess == ElementSolver::Guess::field) guess_by_euler(left, held, element);
   if (roots_.empty()) return;
-  if (guess == ElementSolver::Guess::left_end) guess_by_euler(left, held, element);
   for (std::size_t m = 0; m < n_s; ++m) {
     roots_.start(m, element.t + h * c_(static_cast<Index>(m)), element.stage_states.data() + m * n_x,
                  element.stage_selections.data() + m * static_cast<std::size_t>(n_psi_), held);

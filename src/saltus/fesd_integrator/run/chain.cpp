@@ -42,9 +42,9 @@ Chain::Solved Chain::solve(int count, double h, Violation& violation) {
   for (int i = 0; i < count; ++i) {
     auto& element = elements_[at(i)];
     element.warp = {i == 0 ? behind : 1, 1};
-    auto guess = ElementSolver::Guess::left_end;
+    auto guess = position_.first_guess();
     const Element* last = before(i);
-    if (last != nullptr && h <= 2.0 * last->h && last->warp.is_none()) {
+    if (position_.is_determined() && last != nullptr && h <= 2.0 * last->h && last->warp.is_none()) {
       context_.solver.extrapolate(*last, h, element);
       guess = ElementSolver::Guess::stages;
     }
@@ -84,7 +84,8 @@ bool Chain::solve_to_end(int count, double h, TimeWarp warp, Try which) {
     element.warp = {k == 0 ? warp.left : 1, k + 1 == count ? warp.right : 1};
     const bool continues = last != nullptr && last->warp.is_none() && element.warp.is_none();
     if (which == Try::first && continues) context_.solver.extrapolate(*last, h, element);
-    const auto guess = which == Try::again || continues ? ElementSolver::Guess::stages : ElementSolver::Guess::left_end;
+    const bool has_stages = position_.is_determined() && (which == Try::again || continues);
+    const auto guess = has_stages ? ElementSolver::Guess::stages : position_.first_guess();
     auto right = left.selections;
     if (solve_from(left, h, guess, element) != ElementSolver::Outcome::solved ||
         context_.watch.look(element, position_.set(), context_.held.data(), right, ignored) ==
@@ -104,7 +105,7 @@ bool Chain::jumps_over(const Point& left, double h, int halvings) {
   for (int i = 0; i < 2; ++i) {
     half.warp = {from.t == whole.t ? whole.warp.left : 1, 1};
     Violation ignored;
-    if (solve_from(from, 0.5 * h, ElementSolver::Guess::left_end, half) != ElementSolver::Outcome::solved) return true;
+    if (solve_from(from, 0.5 * h, position_.first_guess(), half) != ElementSolver::Outcome::solved) return true;
     auto right = from.selections;
     const auto answer = context_.watch.look(half, position_.set(), context_.held.data(), right, ignored);
     if (answer != Watch::Answer::holds) return true;

@@ -121,7 +121,7 @@ EventTracker::Refined EventTracker::refine(const Element& element, const std::ve
   for (int i = 0; i < most_iterations; ++i) {
     shorter_.warp = {element.warp.left, 1};
     if (context_.solver.solve(left, theta * element.h, {&position_.set(), 1}, context_.held.data(),
-                              ElementSolver::Guess::left_end, shorter_) != ElementSolver::Outcome::solved) {
+                              position_.first_guess(), shorter_) != ElementSolver::Outcome::solved) {
       break;
     }
     const double t = element.t + theta * element.h;

@@ -24,6 +24,11 @@ class Position {
   [[nodiscard]] const std::vector<double>& selections() const { return selections_; }
   /// Returns Continuation::determined of the set.
   [[nodiscard]] bool is_determined() const { return determined_; }
+  /// Returns how the first guess at an element is made. Where nothing determines selections they stay what they are at
+  /// its left end: along polynomials that are continued they would grow from element to element, out of their bounds.
+  [[nodiscard]] ElementSolver::Guess first_guess() const {
+    return determined_ ? ElementSolver::Guess::left_end : ElementSolver::Guess::field;
+  }
   /// Returns the largest state of late: what roundings are relative to. Halved with every element, as what was large a
   /// long time ago has left no roundings.
   [[nodiscard]] double size() const { return size_; }

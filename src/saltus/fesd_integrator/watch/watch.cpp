@@ -130,6 +130,7 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
     solver_.watch_state(element, i, x_.data());
     if (slides) {
       if (!projected_.solve(t, x_.data(), set, held, at, rounding)) return Answer::not_finite;
+      if (!projected_.regular() && !stage_holds(element, set, i)) return Answer::not_finite;
       if (!projected_.regular()) take_from_stages(element, set, i, at);
       if (!set.balances().empty()) note_margins(set, i, at);
       std::copy(at, at + n, selections.begin());
@@ -147,6 +148,20 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
     first_change(set, element, condition, earliest, found);
   }
   return found ? Answer::violated : Answer::holds;
+}
+
+/// Whether the selections of a stage are near their bounds at least, where equations of the projected field hold some
+/// of them together only: these may be anything there.
+bool Watch::stage_holds(const Element& element, const ActiveSet& set, std::size_t point) const {
+  const int stage = solver_.watch_stage(point);
+  if (stage < 0 || !set.balances().empty()) return true;
+  constexpr double near = 0.5;  // the order of selections at stages is low
+  const double* selections = element.stage_selections.data() + static_cast<std::size_t>(stage) * kernel_.selections();
+  for (std::size_t k = 0; k < set.sliding().size(); ++k) {
+    const double value = selections[at(set.sliding()[k].selection)];
+    if (!projected_.in_no_equation(k) && !(std::abs(value - 0.5) <= 0.5 + near)) return false;
+  }
+  return true;
 }
 
 /// Selections that the projected field does not determine, where a stage has them (second-order sliding).

@@ -61,6 +61,7 @@ class Watch {
                    const std::vector<double>& selections);
   void note_margins(const ActiveSet& set, std::size_t point, double* selections);
   [[nodiscard]] double value_at(const ActiveSet& set, const Condition& condition, std::size_t point) const;
+  [[nodiscard]] bool stage_holds(const Element& element, const ActiveSet& set, std::size_t point) const;
   void take_from_stages(const Element& element, const ActiveSet& set, std::size_t point, double* selections);
   void find_warped_errors(const Element& element, const ActiveSet& set, const double* f, const double* held,
                           const std::vector<double>& selections);
