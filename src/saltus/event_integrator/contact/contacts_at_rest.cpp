@@ -32,7 +32,7 @@ double Contacts::pull_on(int contact, const ContactPoint& point, const std::vect
   }
   double acceleration = point.acceleration(contact);
   Eigen::VectorXd forces;
-  if (!rows.held.empty() && rows.solve(point.influence, point.acceleration, forces) != HeldRows::Solution::none)
+  if (!rows.held().empty() && rows.solve(point.influence, point.acceleration, forces) != HeldRows::Solution::none)
     acceleration = std::min(acceleration, acceleration + point.influence.row(contact).dot(forces));
   return std::max(0.0, -acceleration);
 }
