@@ -136,6 +136,7 @@ auto Contacts::gap_motion(int function, const ContactMoment& moment, const std::
     along_time -= term;
   }
   motion.terms += std::abs(along_time);
+  motion.size += std::abs(along_time * moment.t);
   return motion;
 }
 
