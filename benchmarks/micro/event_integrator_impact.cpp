@@ -1,5 +1,6 @@
 // What does the resolution of an impact cost? Contacts of boxes: one without friction, one that slips and sticks, one
 // with two tangents whose slip turns, four corners at once.
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -15,7 +16,7 @@ using Eigen::Index;
 /// Contacts of a body with 6 velocities (mass 1, moments of inertia 0.1) at points under it, 0.5 below its centre.
 /// @param tangents  of each contact
 ContactPoint body(int contacts, int tangents, double friction) {
-  const int rows = contacts * (1 + tangents);
+  const int rows = contacts * (1 + std::max(tangents, 1));  // those of missing tangents are 0
   Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(rows, 6);
   for (int i = 0; i < contacts; ++i) {
     const double angle = 0.3 + 1.5707963267948966 * i;

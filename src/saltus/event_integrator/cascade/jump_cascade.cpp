@@ -146,7 +146,8 @@ Motion JumpCascade::find_motion(int function) {
   // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
   // than sign_tolerance / 1000 of them.
   constexpr double cancelled = 1e-3;
-  const Rate rate = rates_.here(function);
+  const auto gap = contacts_.gap_motion(function, {here_.t, here_.state.alpha, here_.time_scale}, here_.x, here_.slope);
+  const Rate rate = gap ? Rate{gap->rate, gap->terms} : rates_.here(function);
   const Rate& here = largest_rates_[at(function)];
   // What kept its rate at 0 has just let go: errors are left of it, unless a jump changes it.
   const auto left = std::find_if(left_.begin(), left_.end(), [&](const auto& l) { return l.function == function; });
@@ -159,8 +160,10 @@ Motion JumpCascade::find_motion(int function) {
   if (!by_rate && contacts_.guards(function)) return {{}, 2};
   // A rate that the second derivative turns around within the rounding of the function is none: it may as well be that
   // of a state at rest.
-  const double bend = kernel_.lie_derivative(function, 2, here_.t, here_.x.data(), here_.state.alpha.data());
-  if (rate.value * bend < 0.0 && rate.value * rate.value <= 2.0 * std::abs(bend) * rounding_unit * size_at(function)) {
+  const double bend =
+      gap ? gap->bend : kernel_.lie_derivative(function, 2, here_.t, here_.x.data(), here_.state.alpha.data());
+  const auto size = [&] { return gap ? gap->size : size_at(function); };
+  if (rate.value * bend < 0.0 && rate.value * rate.value <= 2.0 * std::abs(bend) * rounding_unit * size()) {
     return {{0.0, bend > 0.0 ? switching::Drift::up : switching::Drift::down}, 2};
   }
   if (by_rate) return *by_rate;

@@ -55,6 +55,7 @@ class JumpCascade {
   }
   /// Returns what is left of a function that is at zero.
   [[nodiscard]] double zero_value(int function) const { return zero_values_[at(function)]; }
+  [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   /// Returns the largest |dg/dt| of a guard at this time.
   [[nodiscard]] double rate(int function) const { return largest_rates_[at(function)].value; }
 

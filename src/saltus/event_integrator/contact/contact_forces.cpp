@@ -71,11 +71,11 @@ HeldRows held_rows(const ContactPoint& point, const std::vector<int>& resting, c
     const auto mode = result.modes[k];
     if (mode == ContactMode::open || contains(result.idle, i)) continue;
     const bool given = !point.has_gap[k];
-    if (given) rows.given(i) = 1.0;
+    if (given) rows.give(i);
     const int normal = given ? -1 : rows.hold(i);
     for (int tangent = 0; tangent < point.tangents[k]; ++tangent) {
       const int row = point.tangent_row(i, tangent);
-      (given ? rows.given(row) : rows.columns(row, normal)) = -point.friction[k] * result.directions[k](tangent);
+      rows.share(row, normal, -point.friction[k] * result.directions[k](tangent));
       if (mode == ContactMode::stick) rows.hold(row);
     }
   }
@@ -119,7 +119,7 @@ void drop_idle(const ContactPoint& point, const std::vector<int>& resting, Conta
     if (result.modes[static_cast<std::size_t>(*i)] == ContactMode::open || contains(result.idle, *i)) continue;
     ContactForces without = result;
     without.idle.push_back(*i);
-    if (!is_kept(point, held_rows(point, resting, without).held, without, *i)) continue;
+    if (!is_kept(point, held_rows(point, resting, without).held(), without, *i)) continue;
     if (!solve_forces(point, resting, without)) continue;
     without.margin = margin_of(point, resting, without);
     if (!best || without.margin > best->margin) best = std::move(without);

@@ -1,53 +1,146 @@
 #include "saltus/event_integrator/contact/contact_point.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
 
 #include <Eigen/LU>
 #include <Eigen/QR>
 
+#include "saltus/base/at.hpp"
+
 namespace saltus::event_integrator {
 
-int HeldRows::hold(int row) {
-  const auto unknown = static_cast<int>(held.size());
-  held.push_back(row);
-  columns(row, unknown) = 1.0;
-  return unknown;
+void HeldRows::clear() {
+  given_.setZero();
+  held_.clear();
+  shares_.clear();
 }
 
-auto HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start, Eigen::VectorXd& forces) const
+int HeldRows::hold(int row) {
+  held_.push_back(row);
+  return static_cast<int>(held_.size()) - 1;
+}
+
+void HeldRows::share(int row, int unknown, double part) {
+  if (unknown < 0) {
+    given_(row) = part;
+  } else {
+    shares_.push_back({row, unknown, part});
+  }
+}
+
+template <class Unknowns, class Forces>
+void HeldRows::add(const Unknowns& unknowns, Forces& forces) const {
+  for (std::size_t k = 0; k < held_.size(); ++k) forces.row(held_[k]) += unknowns.row(index(k));
+  for (const auto& share : shares_) forces.row(share.row) += share.part * unknowns.row(share.unknown);
+}
+
+auto HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start, Eigen::VectorXd& forces)
     -> Solution {
-  forces = given;
-  if (held.empty()) return Solution::one;
-  const Eigen::VectorXd before = start + influence * given;
-  const auto n = static_cast<Eigen::Index>(held.size());
-  if (n == 1) {
-    const double row = influence.row(held.front()).dot(columns.col(0)), right = -before(held.front());
-    if (row != 0.0) forces += columns.col(0) * (right / row);
-    return row != 0.0 || right == 0.0 ? Solution::one : Solution::none;
+  forces = given_;
+  if (held_.empty()) return Solution::one;
+  const auto n = index(held_.size());
+  right_.resize(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const int row = held_[at(k)];
+    right_(k) = -(start(row) + influence.row(row).dot(given_));
+  }
+  if (const auto solution = eliminate(influence)) {
+    if (*solution != Solution::none) add(unknowns_, forces);
+    return *solution;
   }
   const Eigen::MatrixXd rows = rows_of(influence);
-  const Eigen::VectorXd right = -before(held);
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
   factors.setThreshold(dependent);
   factors.compute(rows);
-  const Eigen::VectorXd unknowns = factors.solve(right);
-  const double size = rows.cwiseAbs().maxCoeff() * unknowns.cwiseAbs().maxCoeff() + right.cwiseAbs().maxCoeff();
-  if (!((rows * unknowns - right).cwiseAbs().maxCoeff() <= 1e-8 * size)) return Solution::none;
-  forces += columns.leftCols(n) * unknowns;
+  unknowns_ = factors.solve(right_);
+  const double size = rows.cwiseAbs().maxCoeff() * unknowns_.cwiseAbs().maxCoeff() + right_.cwiseAbs().maxCoeff();
+  if (!((rows * unknowns_ - right_).cwiseAbs().maxCoeff() <= contradiction * size)) return Solution::none;
+  add(unknowns_, forces);
   return factors.rank() < n ? Solution::open : Solution::one;
 }
 
+/// By complete pivoting, in the memory that is there; nothing where the rank is not clear.
+auto HeldRows::eliminate(const Eigen::MatrixXd& influence) -> std::optional<Solution> {
+  const std::size_t n = held_.size(), width = n + 1;
+  table_.resize(n * width);
+  order_.resize(n);
+  const auto row_of = [&](std::size_t i) { return table_.data() + i * width; };
+  for (std::size_t i = 0; i < n; ++i) {
+    double* row = row_of(i);
+    for (std::size_t k = 0; k < n; ++k) row[k] = influence(held_[i], held_[k]);
+    for (const auto& share : shares_) row[at(share.unknown)] += share.part * influence(held_[i], share.row);
+    row[n] = right_(index(i));
+    order_[i] = static_cast<int>(i);
+  }
+  constexpr double clear = 1e-7, none = 1e-12;
+  double largest = 0.0;
+  std::size_t rank = 0;
+  for (; rank < n; ++rank) {
+    std::size_t row = rank, column = rank;
+    double pivot = std::abs(row_of(rank)[rank]);
+    for (std::size_t i = rank; i < n; ++i) {
+      for (std::size_t k = rank; k < n; ++k) {
+        if (std::abs(row_of(i)[k]) > pivot) pivot = std::abs(row_of(row = i)[column = k]);
+      }
+    }
+    largest = std::max(largest, pivot);
+    if (pivot <= none * largest) break;
+    if (!(pivot > clear * largest)) return std::nullopt;
+    if (row != rank) std::swap_ranges(row_of(row), row_of(row) + width, row_of(rank));
+    for (std::size_t i = 0; i < n && column != rank; ++i) std::swap(row_of(i)[column], row_of(i)[rank]);
+    std::swap(order_[column], order_[rank]);
+    const double* from = row_of(rank);
+    for (std::size_t i = rank + 1; i < n; ++i) {
+      double* to = row_of(i);
+      const double factor = to[rank] / from[rank];
+      to[rank] = 0.0;
+      for (std::size_t k = rank + 1; k < width; ++k) to[k] -= factor * from[k];
+    }
+  }
+  return solve_least(rank, largest);
+}
+
+/// The least solution of the rows behind an elimination, made orthogonal one after the other.
+auto HeldRows::solve_least(std::size_t rank, double largest) -> Solution {
+  const std::size_t n = held_.size(), width = n + 1;
+  unknowns_.setZero(index(n));
+  for (std::size_t i = 0; i < rank; ++i) {
+    double* row = table_.data() + i * width;
+    for (std::size_t j = 0; j < i; ++j) {
+      const double* other = table_.data() + j * width;
+      const double part = std::inner_product(other, other + n, row, 0.0);
+      for (std::size_t k = 0; k < width; ++k) row[k] -= part * other[k];
+    }
+    const double size = std::sqrt(std::inner_product(row, row + n, row, 0.0));
+    for (std::size_t k = 0; k < width; ++k) row[k] /= size;
+    for (std::size_t k = 0; k < n; ++k) unknowns_(order_[k]) += row[n] * row[k];
+  }
+  const double size = largest * unknowns_.cwiseAbs().maxCoeff() + right_.cwiseAbs().maxCoeff();
+  for (std::size_t i = rank; i < n; ++i) {
+    if (!(std::abs(table_[i * width + n]) <= contradiction * size)) return Solution::none;
+  }
+  return rank < n ? Solution::open : Solution::one;
+}
+
 Eigen::MatrixXd HeldRows::rows_of(const Eigen::MatrixXd& influence) const {
-  return influence(held, Eigen::all) * columns.leftCols(static_cast<Eigen::Index>(held.size()));
+  Eigen::MatrixXd rows = influence(held_, held_);
+  for (const auto& share : shares_) rows.col(share.unknown) += share.part * influence(held_, share.row);
+  return rows;
 }
 
 Eigen::MatrixXd HeldRows::open(const Eigen::MatrixXd& influence) const {
-  const auto n = static_cast<Eigen::Index>(held.size());
+  const auto n = index(held_.size());
   Eigen::FullPivLU<Eigen::MatrixXd> factors;
   factors.setThreshold(dependent);
   if (n > 0) factors.compute(rows_of(influence));
-  if (n == 0 || factors.rank() == n) return Eigen::MatrixXd(columns.rows(), 0);
-  return columns.leftCols(n) * factors.kernel();
+  if (n == 0 || factors.rank() == n) return Eigen::MatrixXd(given_.size(), 0);
+  const Eigen::MatrixXd kernel = factors.kernel();
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(given_.size(), kernel.cols());
+  add(kernel, forces);
+  return forces;
 }
 
 bool find_directions(const ContactPoint& point, const std::vector<int>& free, std::vector<Eigen::Vector2d>& directions,

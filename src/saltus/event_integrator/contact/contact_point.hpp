@@ -1,6 +1,7 @@
 // Contacts at one instant, in numbers.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -32,28 +33,46 @@ struct ContactPoint {
   }
 };
 
-/// Holds n <= r unknown forces or impulses y of contacts, in forces = given + columns y (its first n), that keep the
-/// rows `held` of start + influence forces at 0; the least ones where rows depend on each other.
-struct HeldRows {
-  Eigen::VectorXd given;
-  Eigen::MatrixXd columns;
-  std::vector<int> held;
-
-  explicit HeldRows(Eigen::Index rows)
-      : given(Eigen::VectorXd::Zero(rows)), columns(Eigen::MatrixXd::Zero(rows, rows)) {}
-  /// Adds one more unknown and its row; returns its number.
+/// Holds n <= r unknown forces or impulses of contacts, beside given ones, that keep as many rows of start + influence
+/// forces at 0; the least ones where rows depend on each other.
+class HeldRows {
+ public:
+  explicit HeldRows(Eigen::Index rows) : given_(Eigen::VectorXd::Zero(rows)) {}
+  /// Forgets all rows, and keeps the memory.
+  void clear();
+  /// Adds one more unknown, the force of a row that is held; returns its number.
   int hold(int row);
+  /// Gives the normal force 1 to a contact whose row is not held.
+  void give(int row) { given_(row) = 1.0; }
+  /// Gives a row this part of an unknown, or of the given force 1 where its number is negative.
+  void share(int row, int unknown, double part);
+  [[nodiscard]] const std::vector<int>& held() const { return held_; }
   enum class Solution { none, one, open };
   /// Finds the forces; none where the rows contradict each other, one of many where they depend on each other.
-  [[nodiscard]] Solution solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start,
-                               Eigen::VectorXd& forces) const;
+  [[nodiscard]] Solution solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start, Eigen::VectorXd& forces);
   /// Returns, as columns, forces that leave the held rows as they are.
   [[nodiscard]] Eigen::MatrixXd open(const Eigen::MatrixXd& influence) const;
 
   static constexpr double dependent = 1e-11;  ///< rows that depend on each other to rounding
 
  private:
+  static constexpr double contradiction = 1e-8;  ///< relative, of rows
+  struct Share {
+    int row, unknown;
+    double part;
+  };
   [[nodiscard]] Eigen::MatrixXd rows_of(const Eigen::MatrixXd& influence) const;
+  [[nodiscard]] std::optional<Solution> eliminate(const Eigen::MatrixXd& influence);
+  [[nodiscard]] Solution solve_least(std::size_t rank, double largest);
+  template <class Unknowns, class Forces>
+  void add(const Unknowns& unknowns, Forces& forces) const;
+
+  Eigen::VectorXd given_;
+  std::vector<int> held_;
+  std::vector<Share> shares_;  ///< of what is unknown, by ascending unknowns
+  std::vector<double> table_;  ///< memory of an elimination
+  std::vector<int> order_;     ///< likewise
+  Eigen::VectorXd right_, unknowns_;
 };
 
 /// Finds the directions in which contacts begin to slip from rest: along the rates of their tangential velocities,

@@ -54,7 +54,7 @@ class Shown {
   /// Whether a slip goes on in the other direction.
   [[nodiscard]] static bool turns(const model::Contact& contact, const std::vector<double>& x,
                                   const std::vector<double>& after) {
-    return !contact.in_plane && x[at(contact.slip)] != 0.0 && after[at(contact.slip)] != 0.0 &&
+    return contact.has_friction && !contact.in_plane && x[at(contact.slip)] != 0.0 && after[at(contact.slip)] != 0.0 &&
            x[at(contact.share)] * after[at(contact.share)] < 0.0;
   }
 

@@ -287,7 +287,7 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
     const bool closed = found.modes[at(i)] != ContactMode::open;
     x[at(contact.closed)] = closed ? 1.0 : 0.0;
     x[at(contact.active)] = closed && !contains(found.idle, i) && basis.takes(i) ? 1.0 : 0.0;
-    std::fill(x.begin() + contact.stick, x.begin() + contact.force_unit, 0.0);
+    std::fill(x.begin() + contact.active + 1, x.begin() + contact.force_unit, 0.0);
     set_units(moment, point, i, x);
   }
   for (int i = 0; i < m; ++i) {
@@ -321,7 +321,7 @@ void Contacts::set_units(const ContactMoment& moment, const ContactPoint& point,
   const auto& contact = contacts_[at(i)];
   const double force = response > 0.0 ? point.free_terms / response : 0.0, speed = fastest(moment, point, x);
   x[at(contact.force_unit)] = force > 0.0 && std::isfinite(force) ? force : 1.0;
-  x[at(contact.speed_unit)] = speed > 0.0 && std::isfinite(speed) ? speed : 1.0;
+  if (contact.has_friction) x[at(contact.speed_unit)] = speed > 0.0 && std::isfinite(speed) ? speed : 1.0;
 }
 
 /// What others hold at rest is at the edge of its cone, and does not slip.

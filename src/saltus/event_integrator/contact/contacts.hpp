@@ -39,6 +39,14 @@ class Contacts {
   /// Returns how far a guard may be on the wrong side where a mode begins: the gap of a contact that has just opened is
   /// 0 to the rounding of bodies whose positions may all be 0.
   [[nodiscard]] double tolerated(int function, const std::vector<double>& x) const;
+  struct GapMotion {
+    double size, rate, terms, bend;  ///< sizes of the terms of the gap, and of its rate; its second derivative
+  };
+  /// Returns how a guard that is the gap of an open contact moves along a slope; nothing of other ones. The second
+  /// derivative is a difference.
+  [[nodiscard]] std::optional<GapMotion> gap_motion(int function, const ContactMoment& moment,
+                                                    const std::vector<double>& x,
+                                                    const std::vector<double>& slope) const;
   /// Returns those whose jumps are in a list, or for which a condition on their jumps holds.
   template <class Condition>
   [[nodiscard]] std::vector<int> with_jumps(Condition condition) const {
@@ -119,6 +127,7 @@ class Contacts {
   [[nodiscard]] bool reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
                                      const std::vector<double>& x) const;
   void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
+  [[nodiscard]] std::optional<int> open_with_gap(int function, const std::vector<double>& x) const;
   [[nodiscard]] double no_gap(int contact, const std::vector<double>& x) const;
   [[nodiscard]] double gap_terms(int contact, const std::vector<double>& x) const;
   [[nodiscard]] double pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const;

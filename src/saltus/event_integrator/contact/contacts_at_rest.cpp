@@ -32,7 +32,7 @@ double Contacts::pull_on(int contact, const ContactPoint& point, const std::vect
   }
   double acceleration = point.acceleration(contact);
   Eigen::VectorXd forces;
-  if (!rows.held.empty() && rows.solve(point.influence, point.acceleration, forces) != HeldRows::Solution::none)
+  if (!rows.held().empty() && rows.solve(point.influence, point.acceleration, forces) != HeldRows::Solution::none)
     acceleration = std::min(acceleration, acceleration + point.influence.row(contact).dot(forces));
   return std::max(0.0, -acceleration);
 }
@@ -116,11 +116,40 @@ std::optional<std::string> Contacts::begin_anew(const ContactMoment& moment, std
   return std::nullopt;
 }
 
-double Contacts::tolerated(int function, const std::vector<double>& x) const {
-  const auto leaves = [&](const auto& contact) {
+/// The contact that is open, and whose gap this event function is.
+std::optional<int> Contacts::open_with_gap(int function, const std::vector<double>& x) const {
+  const auto is_it = [&](const auto& contact) {
     return contact.has_gap && x[at(contact.closed)] == 0.0 && kernel_.jump_guard(contact.jump, 0) == function;
   };
-  return std::any_of(contacts_.begin(), contacts_.end(), leaves) ? none_at_start : 0.0;
+  const auto found = std::find_if(contacts_.begin(), contacts_.end(), is_it);
+  return found == contacts_.end() ? std::nullopt : std::optional(static_cast<int>(found - contacts_.begin()));
+}
+
+double Contacts::tolerated(int function, const std::vector<double>& x) const {
+  return open_with_gap(function, x) ? none_at_start : 0.0;
+}
+
+auto Contacts::gap_motion(int function, const ContactMoment& moment, const std::vector<double>& x,
+                          const std::vector<double>& slope) const -> std::optional<GapMotion> {
+  const auto contact = guards(function) ? open_with_gap(function, x) : std::nullopt;
+  if (!contact) return std::nullopt;
+  evaluation::ContactValues here, later;
+  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), here);
+  const double h = ahead_by * moment.time_scale;
+  auto ahead = x;
+  for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * slope[i];
+  kernel_.contacts(moment.t + h, ahead.data(), moment.alpha.data(), later);
+  GapMotion motion{0.0, here.velocity(*contact), 0.0, (later.velocity(*contact) - here.velocity(*contact)) / h};
+  double along_time = motion.rate;
+  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
+    const double normal = here.rows(*contact, index(k)), term = normal * x[at(system_.velocities[k])];
+    motion.size += std::abs(normal * x[at(system_.positions[k])]);
+    motion.terms += std::abs(term);
+    along_time -= term;
+  }
+  motion.terms += std::abs(along_time);
+  motion.size += std::abs(along_time * moment.t);
+  return motion;
 }
 
 }  // namespace saltus::event_integrator

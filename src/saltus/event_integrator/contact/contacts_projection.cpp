@@ -14,6 +14,25 @@ namespace saltus::event_integrator {
 
 using Eigen::VectorXd;
 
+namespace {
+
+/// The smallest change of velocities that changes these rows by so much; they do not depend on each other.
+VectorXd least_change(const evaluation::ContactValues& values, const std::vector<int>& rows, const VectorXd& change) {
+  const auto n = index(rows.size());
+  Eigen::MatrixXd influence(n, n);  // its lower half: the other one is not read
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const auto response = values.responses.col(rows[at(k)]);
+    for (Eigen::Index i = k; i < n; ++i) influence(i, k) = values.rows.row(rows[at(i)]).dot(response);
+  }
+  const bool one = n == 1 && influence(0, 0) > 0.0;
+  const VectorXd pushes = one ? VectorXd(change / influence(0, 0)) : VectorXd(influence.ldlt().solve(change));
+  VectorXd velocities = VectorXd::Zero(values.responses.rows());
+  for (Eigen::Index k = 0; k < n; ++k) velocities += pushes(k) * values.responses.col(rows[at(k)]);
+  return velocities;
+}
+
+}  // namespace
+
 std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
   std::vector<int> rows;
   const auto m = static_cast<int>(contacts_.size());
@@ -22,7 +41,7 @@ std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
   }
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
-    for (int k = 0; k < contact.tangents(); ++k) {
+    for (int k = 0; contact.has_friction && k < contact.tangents(); ++k) {
       if (x[at(contact.stick + k)] != 0.0) rows.push_back(m * (1 + k) + i);
     }
   }
@@ -42,19 +61,16 @@ void Contacts::correct_positions(const std::vector<int>& touching, std::vector<d
     std::copy_if(touching.begin(), touching.end(), std::back_inserter(rows),
                  [&](int row) { return values_.gap(row) < 0.0 && basis.takes(row); });
   }
-  if (rows.empty()) return;
-  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
-  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
-  const VectorXd change = response * influence.ldlt().solve(values_.gap(rows));
+  const VectorXd gap = values_.gap(rows);
+  if (gap.isZero(0.0)) return;
+  const VectorXd change = least_change(values_, rows, gap);
   for (std::size_t k = 0; k < system_.positions.size(); ++k) {
     x[at(system_.positions[k])] -= change(static_cast<Eigen::Index>(k));
   }
 }
 
-/// The smallest change of velocities that changes these rows by so much; they do not depend on each other.
 void Contacts::change_velocities(const std::vector<int>& rows, const VectorXd& change, std::vector<double>& x) const {
-  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
-  const VectorXd velocities = response * (values_.rows(rows, Eigen::all) * response).ldlt().solve(change);
+  const VectorXd velocities = least_change(values_, rows, change);
   for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
     x[at(system_.velocities[k])] += velocities(static_cast<Eigen::Index>(k));
   }

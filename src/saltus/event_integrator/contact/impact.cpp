@@ -35,7 +35,11 @@ class Process {
         velocity_(point.velocity),
         impulse_(VectorXd::Zero(velocity_.size())),
         stored_(touching.size(), 0.0),
-        releasing_(touching.size(), false) {
+        releasing_(touching.size(), false),
+        options_(touching.size()),
+        branches_(touching.size()),
+        rows_(velocity_.size()),
+        none_(VectorXd::Zero(velocity_.size())) {
     for (const int i : touching) {
       size_ = std::max({size_, std::abs(velocity_(i)), slip(i).norm()});
       strength_ = std::max(strength_, point.influence(i, i));
@@ -108,47 +112,45 @@ class Process {
     return velocity_(touching_[k]) < 0.0 || releasing_[k] || forced_ == touching_[k];
   }
 
-  [[nodiscard]] std::vector<Branch> options(std::size_t k) const {
+  void note_options(std::size_t k) {
+    using Normal = Branch::Normal;
     const int i = touching_[k];
-    std::vector<Branch::Normal> normals;
-    if (pushes(k)) {
-      normals = {Branch::Normal::pushed};
-    } else if (velocity_(i) > 0.0) {
-      normals = {Branch::Normal::open};
-    } else {
-      normals = {Branch::Normal::held, Branch::Normal::open, Branch::Normal::pushed};
-    }
-    std::vector<Branch> result;
-    for (const auto normal : normals) {
-      const Vector2d along = slip(i);
-      if (normal == Branch::Normal::open || friction(i) == 0.0) {
-        result.push_back({normal});
-      } else if (!along.isZero(0.0)) {
-        result.push_back({normal, false, along.normalized()});
+    const Vector2d along = slip(i);
+    const bool slips = !along.isZero(0.0);
+    auto& options = options_[k];
+    options.clear();
+    const auto note = [&](Normal normal) {
+      if (normal == Normal::open || friction(i) == 0.0) {
+        options.push_back({normal});
+      } else if (slips) {
+        options.push_back({normal, false, along.normalized()});
       } else {
-        result.push_back({normal, true});
+        options.push_back({normal, true});
         if (point_.in_plane(i)) {
-          result.push_back({normal, false, Vector2d::Zero(), true});
+          options.push_back({normal, false, Vector2d::Zero(), true});
         } else {
-          for (const double sign : {1.0, -1.0}) result.push_back({normal, false, {sign, 0.0}});
+          for (const double sign : {1.0, -1.0}) options.push_back({normal, false, {sign, 0.0}});
         }
       }
-    }
-    return result;
+    };
+    const bool pushed = pushes(k);
+    if (!pushed && velocity_(i) == 0.0) note(Normal::held);
+    if (!pushed) note(Normal::open);
+    if (pushed || velocity_(i) == 0.0) note(Normal::pushed);
   }
 
   /// The rates of all impulses in these branches, and those of the velocities.
   bool rates(std::vector<Branch>& branches) {
     std::vector<int> beginning;
-    std::vector<Vector2d> directions(static_cast<std::size_t>(m_), Vector2d::Zero());
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       if (branches[k].begins) beginning.push_back(touching_[k]);
     }
-    if (beginning.empty()) return solve_rates(branches);
+    if (beginning.empty()) return solve_impulses(branches);
     // Against the impulses that would keep them from slipping.
     auto sticking = branches;
     for (auto& branch : sticking) branch.sticks = branch.sticks || branch.begins;
-    const bool solved = solve_rates(sticking);
+    const bool solved = solve_impulses(sticking);
+    std::vector<Vector2d> directions(static_cast<std::size_t>(m_), Vector2d::Zero());
     for (const int i : beginning) {
       const Vector2d needed = solved ? Vector2d(-point_.along(rate_, i)) : Vector2d::Zero();
       directions[static_cast<std::size_t>(i)] = needed.norm() > 0.0 ? needed.normalized() : Vector2d(1.0, 0.0);
@@ -161,62 +163,69 @@ class Process {
     });
   }
 
-  bool solve_rates(const std::vector<Branch>& branches) {
-    HeldRows rows(velocity_.size());
+  bool solve_impulses(const std::vector<Branch>& branches) {
+    rows_.clear();
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const auto& branch = branches[k];
       if (branch.normal == Branch::Normal::open) continue;
       const bool pushed = branch.normal == Branch::Normal::pushed;
-      if (pushed) rows.given(i) = 1.0;
-      const int normal = pushed ? -1 : rows.hold(i);
+      if (pushed) rows_.give(i);
+      const int normal = pushed ? -1 : rows_.hold(i);
       for (int tangent = 0; tangent < tangents(i); ++tangent) {
         const int row = point_.tangent_row(i, tangent);
-        (pushed ? rows.given(row) : rows.columns(row, normal)) = -friction(i) * branch.direction(tangent);
-        if (branch.sticks) rows.hold(row);
+        if (branch.sticks) {
+          rows_.hold(row);
+        } else {
+          rows_.share(row, normal, -friction(i) * branch.direction(tangent));
+        }
       }
     }
-    const VectorXd none = VectorXd::Zero(velocity_.size());
-    if (rows.solve(point_.influence, none, rate_) == HeldRows::Solution::none) return false;
-    change_ = point_.influence * rate_;
+    return rows_.solve(point_.influence, none_, rate_) != HeldRows::Solution::none;
+  }
+
+  void find_change() { change_.noalias() = point_.influence * rate_; }
+
+  bool solve_rates(const std::vector<Branch>& branches) {
+    if (!solve_impulses(branches)) return false;
+    find_change();
     return true;
   }
 
   [[nodiscard]] bool admits(std::vector<Branch>& branches) {
     if (!rates(branches)) return false;
-    const double least = share_rounding, slow = least * strength_;
+    for (std::size_t k = 0; k < touching_.size(); ++k) {
+      const int i = touching_[k];
+      const double normal = rate_(i), largest = friction(i) * normal + share_rounding;
+      const bool held = branches[k].normal == Branch::Normal::held;
+      if (held && !(normal >= -share_rounding && normal <= 1.0 + share_rounding)) return false;
+      if (branches[k].sticks && point_.along(rate_, i).norm() > largest) return false;
+    }
+    find_change();
+    const double slow = share_rounding * strength_;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const auto& branch = branches[k];
-      const double normal = rate_(i);
       const bool at_rest = velocity_(i) == 0.0 && !pushes(k);
-      if (branch.normal == Branch::Normal::held && !(normal >= -least && normal <= 1.0 + least)) return false;
-      if (branch.normal == Branch::Normal::open) {
-        if (at_rest && change_(i) < -slow) return false;
-        continue;
-      }
+      if (branch.normal == Branch::Normal::open && at_rest && change_(i) < -slow) return false;
       if (branch.normal == Branch::Normal::pushed && at_rest && change_(i) > slow) return false;
-      if (friction(i) == 0.0) continue;
-      if (branch.sticks && point_.along(rate_, i).norm() > friction(i) * normal + least) return false;
-      const bool from_rest = !branch.sticks && slip(i).isZero(0.0);
-      if (from_rest && branch.direction.dot(point_.along(change_, i)) < -slow) return false;
+      const bool from_rest = branch.normal != Branch::Normal::open && friction(i) > 0.0 && !branch.sticks;
+      if (from_rest && slip(i).isZero(0.0) && branch.direction.dot(point_.along(change_, i)) < -slow) return false;
     }
     return true;
   }
 
   /// The branches that hold from here on, the first admissible ones of all combinations.
   bool choose() {
-    std::vector<std::vector<Branch>> all;
-    for (std::size_t k = 0; k < touching_.size(); ++k) all.push_back(options(k));
-    std::vector<std::size_t> number(all.size(), 0);
+    for (std::size_t k = 0; k < options_.size(); ++k) note_options(k);
+    numbers_.assign(options_.size(), 0);
     constexpr long most = 20000;
     for (long tried = 0; tried < most; ++tried) {
-      branches_.clear();
-      for (std::size_t k = 0; k < all.size(); ++k) branches_.push_back(all[k][number[k]]);
+      for (std::size_t k = 0; k < options_.size(); ++k) branches_[k] = options_[k][numbers_[k]];
       if (admits(branches_)) return true;
       std::size_t k = 0;
-      while (k < all.size() && ++number[k] == all[k].size()) number[k++] = 0;
-      if (k == all.size()) return false;
+      while (k < options_.size() && ++numbers_[k] == options_[k].size()) numbers_[k++] = 0;
+      if (k == options_.size()) return false;
     }
     return false;
   }
@@ -404,7 +413,11 @@ class Process {
   VectorXd rate_, change_;      ///< of impulses and velocities in the piece
   std::vector<double> stored_;  ///< by touching contact: work to give back
   std::vector<bool> releasing_;
+  std::vector<std::vector<Branch>> options_;  ///< by touching contact
+  std::vector<std::size_t> numbers_;          ///< of those that are tried
   std::vector<Branch> branches_;
+  HeldRows rows_;
+  VectorXd none_;  ///< nothing is given but the impulses
   std::optional<int> forced_;
   double size_ = 0.0, strength_ = 0.0;  ///< of velocities; of the influence of a normal impulse
   double closing_ = 0.0;                ///< of normal velocities up to here

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -29,6 +30,25 @@ const std::array<std::array<double, ode::event_nodes>, 2>& tail_cosines() {
       }
     }
     return cosines;
+  }();
+  return table;
+}
+
+/// Three places that are not symmetric to each other: a periodic function does not fool the nodes and these as well.
+constexpr std::array<std::size_t, 3> checked_places{0, 3, 6};
+
+/// What each Bernstein coefficient contributes there.
+const std::array<ode::BernsteinCoefficients, checked_places.size()>& weights_at_checks() {
+  static const auto table = [] {
+    std::array<ode::BernsteinCoefficients, checked_places.size()> weights{};
+    for (std::size_t place = 0; place < weights.size(); ++place) {
+      for (std::size_t i = 0; i < ode::event_nodes; ++i) {
+        ode::BernsteinCoefficients unit{};
+        unit[i] = 1.0;
+        weights[place][i] = ode::evaluate(unit, ode::check_nodes()[checked_places[place]]);
+      }
+    }
+    return weights;
   }();
   return table;
 }
@@ -306,13 +326,10 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location,
 /// Whether the interpolant of function i misses the function's values between the nodes.
 bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std::size_t i,
                          const ode::BernsteinCoefficients& coefficients, double accuracy) {
-  // Three places that are not symmetric to each other: a periodic function does not fool the nodes and these as well.
-  constexpr std::size_t places[] = {0, 3, 6};
-  for (std::size_t k = 0; k < std::size(places); ++k) {
-    const double local = ode::check_nodes()[places[k]];
+  for (std::size_t k = 0; k < checked_places.size(); ++k) {
     auto& checks = checks_[k];
     if (checks.empty()) {  // one evaluation for all functions that ask
-      const double theta = from + (to - from) * local;
+      const double theta = from + (to - from) * ode::check_nodes()[checked_places[k]];
       step.evaluate(theta, x_.data());
       evaluate_parts(step.t + theta * step.h, x_.data(), mode_.curved_parts);
       checks.resize(mode_.functions.size());
@@ -320,7 +337,9 @@ bool EventSearch::misses(const ode::DenseStep& step, double from, double to, std
         if (!mode_.forms.has(j) && uses_phi(mode_.functions[j])) checks[j] = value(j, x_.data());
       }
     }
-    if (!(std::abs(checks[i] - ode::evaluate(coefficients, local)) <= accuracy)) return true;
+    const auto& weights = weights_at_checks()[k];
+    const double interpolated = std::inner_product(weights.begin(), weights.end(), coefficients.begin(), 0.0);
+    if (!(std::abs(checks[i] - interpolated) <= accuracy)) return true;
   }
   return false;
 }

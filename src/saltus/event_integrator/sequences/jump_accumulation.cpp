@@ -17,7 +17,6 @@ JumpAccumulation::JumpAccumulation(const SwitchingContext& switching_context, co
     : system_(switching_context.system),
       kernel_(switching_context.kernel),
       here_(here),
-      rates_(kernel_, here),
       last_guard_(system_.jumps.size()),
       last_rate_(system_.jumps.size(), 0.0),
       shortest_cycle_(system_.jumps.size(), 0.0),
@@ -49,14 +48,13 @@ void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps, cons
 /// Impacts leave gaps at 0 with rates that may be 0: what counts is how fast they closed.
 void JumpAccumulation::note_bounces(const JumpCascade& cascade) {
   for (const auto& executed : cascade.executed().items()) {
-    const auto contact = std::find_if(system_.contacts.contacts.begin(), system_.contacts.contacts.end(),
-                                      [&](const auto& one) { return one.jump == executed.jump; });
-    if (contact == system_.contacts.contacts.end() || !contact->has_gap || executed.x[at(contact->closed)] != 0.0)
-      continue;
+    if (!cascade.contacts().owns(executed.jump)) continue;
     std::vector<double> slope(executed.x.size());
     kernel_.field(here_.t, executed.x.data(), here_.state.alpha.data(), slope.data());
-    const Rate rate = rates_.at(kernel_.jump_guard(executed.jump, 0), here_.t, executed.x, slope);
-    shortest_cycle_[at(executed.jump)] = rate.value != 0.0 ? unresolved * rate.magnitude / std::abs(rate.value) : 0.0;
+    const auto gap = cascade.contacts().gap_motion(kernel_.jump_guard(executed.jump, 0),
+                                                   {here_.t, here_.state.alpha, here_.time_scale}, executed.x, slope);
+    if (!gap) continue;
+    shortest_cycle_[at(executed.jump)] = gap->rate != 0.0 ? unresolved * gap->size / std::abs(gap->rate) : 0.0;
   }
 }
 

@@ -6,7 +6,6 @@
 
 #include "saltus/event_integrator/accumulate/accumulation.hpp"
 #include "saltus/event_integrator/cascade/jump_cascade.hpp"
-#include "saltus/event_integrator/mode/field_rates.hpp"
 
 namespace saltus::event_integrator {
 
@@ -34,7 +33,6 @@ class JumpAccumulation {
   const model::System& system_;
   const evaluation::ModelKernel& kernel_;
   const Position& here_;
-  FieldRates rates_;
   EventSeries series_;
   std::vector<std::optional<HeldGuard>> last_guard_;  ///< by jump, as are these
   std::vector<double> last_rate_;

@@ -43,23 +43,30 @@ class ContactBuild {
     return index;
   }
 
-  /// A name of a hidden state has a point in it, which no name of a user has.
+  /// A name of a hidden state has a point in it, which no name of a user has. Those that friction needs are missing
+  /// without it: every step pays for each of them.
   void declare(Contact& contact) {
     contact.closed = declare_state(contact.name + ".closed");
     contact.active = declare_state(contact.name + ".active");
-    contact.stick = declare_along(contact, ".stick");
-    contact.slip = declare_state(contact.name + ".slip");
-    contact.share = declare_along(contact, ".share");
-    if (contact.in_plane) {
-      contact.speeds = declare_state(contact.name + ".least_speed");
-      const int largest = declare_state(contact.name + ".largest_speed");
-      for (const int bound : {contact.speeds, largest}) statement_.states[at(bound)].initial = 1.0;
+    if (contact.has_friction) {
+      contact.stick = declare_along(contact, ".stick");
+      contact.slip = declare_state(contact.name + ".slip");
+      contact.share = declare_along(contact, ".share");
     }
-    contact.force_unit = declare_state(contact.name + ".force_unit");
-    contact.speed_unit = declare_state(contact.name + ".speed_unit");
-    for (const int unit : {contact.force_unit, contact.speed_unit}) statement_.states[at(unit)].initial = 1.0;
+    if (contact.in_plane) {
+      contact.speeds = declare_unit(contact.name + ".least_speed");
+      static_cast<void>(declare_unit(contact.name + ".largest_speed"));
+    }
+    contact.force_unit = declare_unit(contact.name + ".force_unit");
+    if (contact.has_friction) contact.speed_unit = declare_unit(contact.name + ".speed_unit");
     contact.impulse = declare_state(contact.name + ".impulse");
     declare_along(contact, ".impulse_t");
+  }
+
+  int declare_unit(const std::string& name) {
+    const int index = declare_state(name);
+    statement_.states[at(index)].initial = 1.0;
+    return index;
   }
 
   /// One state per tangent; returns the first one.
