@@ -8,6 +8,7 @@ import typing
 import numpy as np
 
 from . import _array
+from ._checks import one_of, points
 from ._errors import ModelError
 from ._expression import Expression, Operand, number, refuse
 from ._model import Model
@@ -96,7 +97,8 @@ class Builder(Structure):
         """
         if np.ndim(initial) != 1:
             raise refuse(f"{initial!r} is no list of initial values", f'm.states("{name}", [0] * 3)')
-        return _array.array([self.state(f"{name}{i + 1}", value) for i, value in enumerate(initial)])
+        with self._all_or_nothing():
+            return _array.array([self.state(f"{name}{i + 1}", value) for i, value in enumerate(initial)])
 
     def control(
         self,
@@ -161,8 +163,9 @@ class Builder(Structure):
         """
         if (file is None) == (x is None) or (x is None) != (y is None):
             raise refuse(f"the points of the table '{name}' are not clear", 'give x and y, or file="points.csv"')
-        points = {"file": file} if file is not None else {"x": _numbers(name, x), "y": _numbers(name, y)}
-        self._declare("tables", name, {**points, "kind": kind})
+        one_of("kind", kind, "linear", "cubic")
+        stated = {"file": file} if file is not None else points(name, x, y, kind)
+        self._declare("tables", name, {**stated, "kind": kind})
 
         def value(argument: Operand) -> typing.Any:
             if isinstance(argument, np.ndarray) and argument.ndim > 0:
@@ -186,8 +189,9 @@ class Builder(Structure):
             states, values = _array.array(state), _array.array(value)
             if values.shape not in ((), states.shape):
                 raise refuse(f"rates of shape {values.shape} for states of shape {states.shape}", "one for every state")
-            for one, its in zip(states.flat, np.broadcast_to(values, states.shape).flat):
-                self.rate(one, its)
+            with self._all_or_nothing():
+                for one, its in zip(states.flat, np.broadcast_to(values, states.shape).flat):
+                    self.rate(one, its)
             return
         name = self._state(state)
         if name in self._parts["dynamics"]:
@@ -243,6 +247,7 @@ class Builder(Structure):
         >>> r.status, r.events[0]
         ('stopped_by_event', <user of low at t = 3>)
         """
+        one_of("direction", direction, "up", "down", "both")
         entry = {"when": self._own(when), "name": name, "direction": direction, "stop": stop or None}
         self._lists["events"].append(given(entry))
 
@@ -393,10 +398,3 @@ class Builder(Structure):
         except ModelError as error:
             # In a notebook a builder is looked at before it is complete.
             return f"<div>{html.escape(repr(self))}<br>not yet a model: {html.escape(error.message)}</div>"
-
-
-def _numbers(name: str, values: typing.Any) -> list[float]:
-    try:
-        return [float(value) for value in values]
-    except (TypeError, ValueError):
-        raise refuse(f"the points of the table '{name}' are no lists of numbers", "e.g. [0, 1, 2]") from None

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import typing
+
 from . import _core
 from ._model import Model
 from ._result import Result
@@ -39,7 +41,7 @@ def compare(model: Model, until: float | None = None, **options: Value) -> Resul
     >>> saltus.compare(saltus.catalogue("stick-slip"), until=1).comparison["runs"][0]["method"]
     'event'
     """
-    return model.compare(until, **options)
+    return _stated(model).compare(until, **options)
 
 
 def order(model: Model, until: float | None = None, **options: Value) -> Result:
@@ -49,4 +51,10 @@ def order(model: Model, until: float | None = None, **options: Value) -> Result:
     >>> study.order["series"][0]["stages"]
     2
     """
-    return model.order(until, **options)
+    return _stated(model).order(until, **options)
+
+
+def _stated(model: typing.Any) -> Model:
+    if isinstance(model, str):
+        raise TypeError(f'expected a model, found the text {model!r}; write saltus.catalogue("{model}") for a shipped one')
+    return typing.cast(Model, model)

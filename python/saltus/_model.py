@@ -25,6 +25,8 @@ from ._settings import (
     is_several,
     names_in,
     names_no_keys,
+    near_option,
+    not_two_things,
     is_option,
     once,
     optimize_options,
@@ -57,14 +59,16 @@ class Model:
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
-        """Reads a model file. Raises :class:`ModelError` with file, line and column where it states no model."""
+        """Reads a model file. Raises :class:`ModelError` with file, line and column of what cannot be read; whether names
+        and equations fit is said, likewise, by whatever is asked of the model first."""
         check_path(path, "saltus.Model")
         self._core = _core.Model(os.fspath(path))
         self._made: tuple[typing.Any, ...] = (Model, (os.path.abspath(self._core.path),))
 
     @classmethod
     def from_text(cls, text: str, name: str = "model.toml") -> Model:
-        """A model from the text of a file. `name` is used in messages, and its folder to find files it names.
+        """A model from the text of a file, as if it were read. `name` is used in messages, and its folder to find files it
+        names.
 
         >>> m = saltus.Model.from_text('[model]\\nname = "decay"\\n[states]\\nx = 1\\n[dynamics]\\nx = "-x"')
         >>> round(m.simulate(until=1).final["x"], 6)
@@ -234,6 +238,9 @@ class Model:
         whole runs ``branches="all"`` follows the others). Nothing depends on the number of threads. More
         than 10^7 runs need `yes`.
 
+        Names of the model come before options of the same name, which are swept by their whole names
+        (``{"simulate.fesd.rho": [1, 2]}``).
+
         `executor` is one of concurrent.futures, or of a library that has its interface (mpi4py.futures,
         dask.distributed, Ray): it gets shares of the runs, each with `jobs` threads (one without it).
 
@@ -243,9 +250,9 @@ class Model:
         """
         check_sweep(over, sample, runs, seed, jobs)
         options = {"until": until, **options}
-        swept = self._swept(over or {}, set or {}, options)
+        swept = self._swept(over or {}, set, options)
         for name in sample or {}:
-            once(name, names_in(set or {}))
+            once(name, names_in(set))
         if not swept and not sample:
             raise refuse("nothing is changed from run to run", "e.g. m.sweep(mu=np.linspace(0.1, 0.5, 50), until=10)")
         typed, chosen = simulate_options(options, self._core.method)
@@ -278,18 +285,28 @@ class Model:
         warn_of_runs(warned)
         return Sweep(with_results(found, self, arguments), shape, len(sample or {}))
 
-    def _swept(self, over: Settings, set: Settings, options: dict[str, Value]) -> dict[str, Value]:
+    def _swept(self, over: Settings, set: Settings | None, options: dict[str, Value]) -> dict[str, Value]:
         """All that is swept, by the names of settings; keywords that have several values leave the options."""
         chosen = options.get("method")
         method = chosen if isinstance(chosen, str) else self._core.method
         swept: dict[str, Value] = {}
         taken = names_in(set)
         for key, values in over.items():
-            swept[once(sweep_name(getattr(key, "text", key), method), [*swept, *taken])] = values
+            swept[once(self._swept_name(getattr(key, "text", key), method), [*swept, *taken])] = values
         for name in [name for name, value in options.items() if is_several(value) and name != "times"]:
-            swept[once(sweep_name(name, method), [*swept, *taken])] = options.pop(name)
-        self._refuse_parameters(options)
+            swept[once(self._swept_name(name, method), [*swept, *taken])] = options.pop(name)
+        self._refuse_parameters({name: value for name, value in options.items() if name != "until"})
         return swept
+
+    def _swept_name(self, name: str, method: str) -> str:
+        if not isinstance(name, str) or self._core.declares(name):
+            return name
+        setting = sweep_name(name, method)
+        if setting == name and "." not in name:
+            near = near_option(name, {**self.states, **self.parameters})
+            if near is not None:
+                raise refuse(f"'{name}' is no name of the model and no option", f"did you mean '{near}'?")
+        return setting
 
     def equations(self, *, latex: bool = False) -> list[tuple[str, str, str]]:
         """The equations as they were read: left side, right side, and where or when they hold; at most 1000.
@@ -351,6 +368,7 @@ class Model:
     def _refuse_parameters(self, options: Settings) -> None:
         """Of keywords that are no options those that the model knows; the rest is the tool's to say."""
         check_together(options)
+        not_two_things(options, self._core.declares, self._core.method)
         if any(not is_option(name, self._core.method) for name in options):
             parameters_among(options, {**self.states, **self.parameters}, self._core.method)
 

@@ -66,6 +66,17 @@ class Final:
             raise unknown(name, list(self._named), parameters=self._parameters)
         return float(self._named[name])
 
+    def keys(self) -> list[str]:
+        """Names of states and outputs, so that ``dict(r.final)`` has their values.
+
+        >>> list(dict(saltus.catalogue("bouncing-ball").simulate(until=1).final))
+        ['y', 'v']
+        """
+        return list(self._named)
+
+    def __iter__(self) -> typing.Iterator[str]:
+        return iter(self._named)
+
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:.6g}" for name, value in self._named.items())
         return f"<t = {self.t:.6g}: {values}>"

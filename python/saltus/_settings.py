@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 import numbers
 import os
+import re
 import typing
 
 import numpy as np
@@ -38,6 +40,7 @@ _STATED = {
 }
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
 Option = tuple[str, str, str]
+_DISTRIBUTION = re.compile(r"\s*(normal|uniform|lognormal)\s*\(")
 _SIMULATE = frozenset(_core.simulate_keys())
 _OPTIMIZE = frozenset(_core.optimize_keys())
 
@@ -79,14 +82,18 @@ def text_of(value: Value, name: str = "") -> str:
 
 def settings_of(values: typing.Mapping[str, Value] | None) -> list[str]:
     """NAME=VALUE of `set`; tables inside become dotted names."""
+    return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(_set(values))]
+
+
+def names_in(values: typing.Mapping[str, Value] | None) -> list[str]:
+    """The names that `set` changes, dotted."""
+    return [name for name, _ in _flat(_set(values))]
+
+
+def _set(values: typing.Any) -> typing.Mapping[str, Value]:
     if values is not None and not isinstance(values, typing.Mapping):
         raise TypeError(f'set={values!r}: expected a dict, e.g. set={{"mu": 0.5}}')
-    return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(values or {})]
-
-
-def names_in(values: typing.Mapping[str, Value]) -> list[str]:
-    """The names that `set` changes, dotted."""
-    return [name for name, _ in _flat(values)]
+    return values or {}
 
 
 def _one_value(name: str, value: Value) -> Value:
@@ -189,14 +196,39 @@ def is_list(value: Value) -> bool:
 
 
 def sweep_name(name: str, method: str) -> str:
-    """What a keyword with several values changes: an option by its last word, else a name of the model."""
-    ((key, _, _),) = simulate_options({name: 0}, method)[1]
-    return key if key.removeprefix("simulate.") in _SIMULATE else name
+    """What a name that is none of the model changes in a sweep: an option by its last word, or an input."""
+    return option_named(name, method) or (f"simulate.{name}" if name.startswith("inputs.") else name)
+
+
+def option_named(name: str, method: str) -> str | None:
+    """The whole name of the option that a keyword stands for."""
+    options = simulate_options({name: 0}, method)[1]
+    return next((key for key, _, _ in options if key.removeprefix("simulate.") in _SIMULATE), None)
+
+
+def near_option(name: str, known: typing.Iterable[str]) -> str | None:
+    """The word of an option that is nearer to a name than those that are known."""
+    words = {key.rpartition(".")[2] for key in _SIMULATE}
+    near = difflib.get_close_matches(name, [*known, *words], 1, 0.8)
+    return near[0] if near and near[0] in words else None
+
+
+def not_two_things(options: typing.Mapping[str, Value], declares: typing.Callable[[str], bool], method: str) -> None:
+    """Refuses a keyword that an option and a parameter or state of the model have."""
+    for name, value in options.items():
+        key = option_named(name, method) if value is not None and declares(name) else None
+        if key is not None:
+            raise refuse(
+                f"{name}={_shown(value)} may be two things: '{name}' is an option and a name of the model",
+                f'write set={{"{name}": …}} for that of the model, set={{"{key}": …}} for the option',
+            )
 
 
 def axis(name: str, values: Value) -> str:
     """The values of a swept name, as the tool reads them: a list, or the text FROM:TO:NUMBER."""
     if isinstance(values, str):
+        if _DISTRIBUTION.match(values):
+            raise refuse(f"{name}: a distribution is no list of values", f'write sample={{"{name}": "{values}"}}, runs=100')
         return values
     if np.ndim(values) > 1:
         raise refuse(f"{name}: expected a list of values, found an array of shape {np.shape(values)}", "values.ravel()")
@@ -215,20 +247,22 @@ def is_several(value: Value) -> bool:
 def check_sweep(over: Value, sample: Value, runs: Value, seed: Value, jobs: Value) -> None:
     """What a sweep is asked for has the right kind."""
     if jobs is not None:
-        whole("jobs", jobs, 1)
-    whole("seed", seed, 0)
+        whole("jobs", jobs, 1, 4096)
+    whole("seed", seed, 0, 2**64 - 1)
     if runs is not None:
-        whole("runs", runs, 1)
+        whole("runs", runs, 1, 10**12)
     if sample is not None and not isinstance(sample, typing.Mapping):
         raise refuse(f"sample={sample!r}: expected a dict", 'e.g. sample={"v": "normal(3, 0.1)"}')
     if over is not None and not isinstance(over, typing.Mapping):
         raise refuse(f"over={over!r}: expected a dict", 'e.g. over={"mu": [0.1, 0.2]}, or mu=[0.1, 0.2]')
 
 
-def whole(name: str, value: Value, least: int) -> None:
-    """Refuses what is no whole number from `least` on."""
+def whole(name: str, value: Value, least: int, most: int) -> None:
+    """Refuses what is no whole number from `least` to `most`."""
     if not isinstance(value, numbers.Integral) or value < least:
         raise refuse(f"{name}={value!r}: expected a whole number >= {least}", f"e.g. {name}={max(least, 1)}")
+    if value > most:
+        raise refuse(f"{name}={value!r}: expected a whole number <= {most}", f"e.g. {name}={max(least, 1)}")
 
 
 def count_of(values: Value) -> int:
@@ -245,8 +279,7 @@ def once(name: str, taken: typing.Sequence[str]) -> str:
 
 def is_option(name: str, method: str) -> bool:
     """Whether a keyword is a key of [simulate], or the table of several."""
-    ((key, _, _),) = simulate_options({name: 0}, method)[1] or [("simulate.inputs", "", "")]
-    return key.removeprefix("simulate.") in _SIMULATE or name in ("inputs", "set", "event", "fesd", "output", "smoothed")
+    return option_named(name, method) is not None or name in ("inputs", "set", "event", "fesd", "output", "smoothed")
 
 
 def parameters_among(options: typing.Mapping[str, Value], known: typing.Container[str], method: str) -> None:
@@ -254,6 +287,8 @@ def parameters_among(options: typing.Mapping[str, Value], known: typing.Containe
     for name in options:
         if name in _ELSEWHERE and name not in known and not is_option(name, method):
             raise refuse(f"'{name}' is no option", f"write {_ELSEWHERE[name]}")
+        if name in known and isinstance(options[name], str) and _DISTRIBUTION.match(options[name]):
+            axis(name, options[name])
         if name in known and not is_option(name, method):
             raise refuse(
                 f"'{name}' is a name of the model, not an option",

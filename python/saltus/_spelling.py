@@ -21,7 +21,7 @@ _SPELLINGS = [
     (r"--set (?:simulate|optimize)\.(?:\w+\.)*(\w+)=([\w.+-]+)", r"\1=\2"),
     (r"--set (?:simulate\.|optimize\.)?inputs\.([\w.]+)", r'inputs={"\1": …}'),
     (r"--set (?:simulate|optimize)\.(\w+)", r"\1=…"),
-    (r"in --(set|over|sample) ([\w.]+)", r'in \1={"\2": …}'),
+    (r"in --(set|over|sample) (\S+)", r'in \1={"\2": …}'),
     (r"--set ([\w.]+)=(\S+?)(:?)(?=\s|$)", r'set={"\1": \2}\3'),
     (r"--set ([\w.]+)", r'set={"\1": …}'),
     # Sweeps.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 import typing
@@ -71,6 +72,16 @@ class Statement:
             ("[time_freezing]", self._time_freezing),
         ]
         return "\n".join(f"{head}\n{_lines(entries)}" for head, entries in parts if entries)
+
+    @contextlib.contextmanager
+    def _all_or_nothing(self) -> typing.Iterator[None]:
+        """What fails in the middle leaves nothing, so that the corrected call may follow."""
+        parts, taken = {part: dict(entries) for part, entries in self._parts.items()}, set(self._taken)
+        try:
+            yield
+        except BaseException:
+            self._parts, self._taken = parts, taken
+            raise
 
     # Names and owners ----------------------------------------------------------------------------------------------
 

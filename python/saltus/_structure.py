@@ -7,6 +7,7 @@ import typing
 
 import numpy as np
 
+from ._checks import one_of
 from ._expression import Expression, Operand, refuse
 from ._statement import Entries, Rates, Statement, given
 
@@ -44,6 +45,7 @@ class Structure(Statement):
             raise refuse(f"set={set}: expected a dict of states and their new values", "m.jump(x > 1, {x: 0})")
         if not set:
             raise refuse("the jump changes nothing", "say which states get which values: m.jump(x > 1, {x: 0})")
+        one_of("direction", direction, "up", "down", "both")
         if sum(cause is not None for cause in (when, at, every)) != 1:
             raise refuse("when the jump happens is not clear", "give one of: a condition, at=[t1, t2], every=T")
         entry = {
@@ -76,9 +78,10 @@ class Structure(Statement):
         >>> m.simulate(until=10).events[0]
         <jump of heats off at t = 0.606246218>
         """
-        self._take(name)
         entry = given({"input": input, "on": on, "off": off, "initial": initial})
-        self._lists["hysteresis"].append({"name": name, **{key: self._own(value) for key, value in entry.items()}})
+        owned = {key: self._own(value) for key, value in entry.items()}
+        self._take(name)
+        self._lists["hysteresis"].append({"name": name, **owned})
         return Expression(name, owner=self)
 
     def mechanics(
@@ -105,6 +108,7 @@ class Structure(Statement):
         """
         if self._mechanics:
             raise refuse("the mechanics are stated twice", "state all positions and velocities at once")
+        one_of("coriolis", coriolis, "auto", "none")
         entry = {
             "positions": [self._state(name) for name in positions],
             "velocities": [self._state(name) for name in velocities],
@@ -137,7 +141,6 @@ class Structure(Statement):
         >>> m.simulate(until=1).events[0]
         <stick of ground at t = 0.4>
         """
-        self._take(name)
         entry = {
             "name": name,
             "gap": self._own(gap),
@@ -146,6 +149,7 @@ class Structure(Statement):
             "friction": self._own_or_none(friction),
             "restitution": self._own_or_none(restitution),
         }
+        self._take(name)
         self._lists["contacts"].append(given(entry))
 
     def optimal_control(self, **problem: typing.Any) -> None:

@@ -261,7 +261,7 @@ class Sweep:
     def plot(self, name: str | None = None, over: str | None = None, axis: typing.Any = None) -> typing.Any:
         """Draws a column of the table (matplotlib) over what was swept; of several, one line for each value of the
         others. `over` says what lies along the axis, without it what has the most values. Random samples are points, not
-        joined by lines. Without a name all states and
+        joined by lines. Runs that stopped early are gaps, with a cross at the foot. Without a name all states and
         outputs at the end are drawn, each into axes of its own, which are returned. Needs ``keep="final"``.
 
         >>> s = saltus.catalogue("stick-slip").sweep(belt=np.linspace(0.1, 0.3, 5), q=[0, 0.1], until=5)

@@ -15,6 +15,9 @@ if typing.TYPE_CHECKING:
     from ._shape import Array
     from ._sweep import Sweep
 
+#: How runs end that did what was asked; where others stopped is no end of theirs.
+_DONE = ("completed", "stopped_by_event")
+
 
 def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
     """Lines of a column over what was swept, one for each value of everything else."""
@@ -26,7 +29,8 @@ def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
 
     if name != "events" and (len(s["run"]) != len(s) or "kind" in s.table):
         raise ValueError('a line has a value for every run: sweep(…, keep="final"), or s.bifurcation(…) for events')
-    column, (x, others) = of_runs(name), _axes(s, over)
+    done = np.isin(of_runs("status"), _DONE)
+    column, (x, others) = np.where(done, of_runs(name), np.nan), _axes(s, over)
     along = of_runs(x)
     axis = _axis(axis)
     rows = np.column_stack([of_runs(other) for other in others]) if others else np.zeros((len(along), 1))
@@ -38,7 +42,11 @@ def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
         label = ", ".join(f"{other} = {_shown(of_runs(other)[runs[0]])}" for other in others)
         marker = "." if len(runs) < 60 or s._sampled else None
         axis.plot(along[runs], column[runs], marker=marker, linewidth=0 if s._sampled else 1.2, label=label or None)
-    if 1 < len(lines) <= 12:
+    if not done.all():
+        # At the foot: they have no value, and their last one may lie far off.
+        foot = axis.get_xaxis_transform()
+        axis.plot(along[~done], np.full((~done).sum(), 0.03), "x", color="black", transform=foot, label="stopped early")
+    if not done.all() or 1 < len(lines) <= 12:
         axis.legend()
     axis.set_xlabel(_caption(s, x))
     axis.set_ylabel(_caption(s, name))

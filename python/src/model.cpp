@@ -1,5 +1,6 @@
 #include "model.hpp"
 
+#include <algorithm>
 #include <memory>
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/pair.h>
@@ -158,6 +159,15 @@ std::vector<std::tuple<std::string, std::string, std::string>> equations(const M
   return list;
 }
 
+/// Whether a parameter, a state or a control has this name.
+bool declares(const Model& model, const std::string& name) {
+  const auto& stated = model.input().file.description;
+  const auto has = [&](const auto& part) {
+    return std::any_of(part.begin(), part.end(), [&](const auto& entry) { return entry.name == name; });
+  };
+  return has(stated.parameters) || has(stated.states) || has(stated.controls);
+}
+
 /// (name, initial value) of states and parameters, as they are without settings.
 std::vector<std::pair<std::string, double>> quantities(Model& model, bool of_states) {
   const Request request{{}, {}, cli::RunMethods::several};
@@ -190,6 +200,7 @@ void add_model(nb::module_& module) {
            nb::arg("warnings"))
       .def("simulate_between", simulate_between, nb::arg("settings"), nb::arg("options"), nb::arg("branches"))
       .def("equations", equations, nb::arg("latex"))
+      .def("declares", declares, nb::arg("name"))
       .def("quantities", quantities, nb::arg("of_states"))
       .def("check", check, nb::arg("settings"));
   add_sweep(type);

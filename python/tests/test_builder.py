@@ -417,3 +417,33 @@ def test_what_is_optimised_may_be_said_where_it_is():
         b.optimize(terminal_constraint=ends)
     with pytest.raises(saltus.ModelError, match="b.optimize.terminal_constraints="):
         b.model().optimize(terminal_constraints=["q == 1"])
+
+
+def test_a_call_that_fails_leaves_the_builder_as_it_was():
+    m = saltus.Builder("m")
+    m.state("x2", 0)
+    before = m.to_toml()
+    x, v = "x2", None
+    for call, told in [
+        (lambda: m.states("x", [1, 2, 3]), "'x2' is taken"),
+        (lambda: m.rate(["x2", "x3"], [1, 2]), "'x3' is none of the states"),
+        (lambda: m.hysteresis("h", "what", on=1, off=2), "what"),
+        (lambda: m.contact("c", gap=1, tangent=3), "expected a dict"),
+        (lambda: m.event(m._own(1), direction="sideways"), "direction='sideways': expected up, down or both"),
+        (lambda: m.jump(m._own(1), {x: 1}, direction="no"), "direction='no': expected up, down or both"),
+        (lambda: m.table("f", [1, 0], [0, 1]), "must ascend, found 0.0 after 1.0"),
+        (lambda: m.table("f", [0, 1], [0]), "2 x and 1 y"),
+        (lambda: m.table("f", [0], [0]), "at least 2"),
+        (lambda: m.table("f", [0, 1, 2], [0, 1, 2], "cubic"), "at least 4"),
+        (lambda: m.table("f", [0, 1], [0, float("nan")]), "have a nan"),
+        (lambda: m.table("f", [0, 1], [0, 1], "spline"), "kind='spline': expected linear or cubic"),
+    ]:
+        with pytest.raises((saltus.ModelError, TypeError), match=told):
+            call()
+        assert m.to_toml() == before
+    x = m.states("y", [1, 2])
+    with pytest.raises((saltus.ModelError, TypeError)):
+        m.rate(x, [x[0], v])
+    m.rate(x, -x)
+    for name in "h", "c", "f", "x1":
+        m.parameter(name, 1)

@@ -175,3 +175,24 @@ def test_states_called_like_columns_of_the_table():
 def test_trajectories_beyond_the_memory_are_refused_behind_the_first_run():
     with pytest.raises(ValueError, match="need more than 4 GB"):
         saltus.catalogue("stick-slip").sweep(belt=range(2_000_000), keep="trajectory", points=1000, until=1, jobs=1)
+
+
+@pytest.fixture(scope="module")
+def failing():
+    return saltus.Model.from_text(
+        '[model]\nname = "z"\n[parameters]\na = 1\n[states]\nx = 1\n[dynamics]\nx = "sqrt(a - x)*x"\n'
+    )
+
+
+def test_runs_that_stopped_early_are_gaps_with_crosses(failing):
+    s = failing.sweep(a=[0, 2, 0.5, 3], until=0.1)
+    done = s["status"] == "completed"
+    assert done.tolist() == [False, True, False, True]
+    axis = s.plot("x")
+    line, crosses = axis.lines
+    assert line.get_xdata().tolist() == [0, 0.5, 2, 3] and np.isnan(line.get_ydata()).tolist() == [True, True, False, False]
+    assert crosses.get_xdata().tolist() == [0, 0.5] and crosses.get_marker() == "x"
+    assert [text.get_text() for text in axis.get_legend().get_texts()] == ["stopped early"]
+    # What lies at the foot has no value that the axis must reach.
+    assert axis.get_ylim()[0] > 1
+    assert len(failing.sweep(a=[2, 3], until=0.1).plot("x").lines) == 1

@@ -177,6 +177,31 @@ class Sweep(Page):
                 " - text.closest('svg').getBoundingClientRect().left))")
         self.assertGreaterEqual(self.value(left), 0)
 
+    def test_runs_that_stopped_early_are_no_ends(self):
+        (self.folder / "m.toml").write_text(
+            '[model]\nname = "m"\n[parameters]\na = 1\nb = 1\n[states]\nx = 1\n[dynamics]\nx = "b*sqrt(a - x)*x"\n')
+        over = ["--over", "a=2,0,3,4,0.5", "--until", "0.1"]
+        self.tool("sweep", "m.toml", *over, "--report", "sweep.html", exit_code=3)
+        self.open("sweep.html")
+        self.assertIn("2 of 5 runs stopped early", self.value("document.querySelector('#pictures p').textContent"))
+        runs = "[...document.querySelector('section svg').querySelectorAll('{}')].map((mark) => mark.dataset.run)"
+        self.assertEqual(self.value(runs.format("circle")), ["1", "3", "4"])
+        self.assertEqual(self.value(runs.format(".stopped")), ["2", "5"])
+        path = "document.querySelector('section svg path').getAttribute('d').replace(/[^ML]/g, '')"
+        self.assertEqual(self.value(path), "MLL")
+        self.tool("sweep", "m.toml", *over, "--over", "b=1,2", "--report", "sweep.html", exit_code=3)
+        self.open("sweep.html")
+        grey = "[...document.querySelector('section svg').querySelectorAll('rect.run[fill=\"#999\"]')].map((cell) => cell.dataset.run)"
+        self.assertEqual(self.value(grey), ["3", "4", "9", "10"])
+        self.assertEqual(self.value(runs.format(".stopped")), ["3", "4", "9", "10"])
+        status = "[...document.querySelectorAll('section')].at(-1)"
+        cells = f"[...{status}.querySelectorAll('rect.run')].map((cell) => cell.getAttribute('fill'))"
+        colours = self.value(cells)
+        self.assertEqual((len(colours), len(set(colours))), (10, 2))
+        self.assertEqual({colours[k - 1] for k in (3, 4, 9, 10)}, {colours[2]})
+        words = self.value(f"[...{status}.querySelectorAll('text')].map((text) => text.textContent)")
+        self.assertTrue({"completed", "evaluation_failed"} <= set(words), words)
+
     def test_letters_keep_their_size_on_narrow_screens(self):
         self.map_of(390)
         size = "(() => { const svg = document.querySelector('svg'); return 12 * svg.clientWidth / svg.viewBox.baseVal.width; })()"

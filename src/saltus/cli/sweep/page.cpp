@@ -16,7 +16,7 @@ constexpr std::string_view style = R"(
 :root{color-scheme:light dark;--line:#8888;--text:CanvasText}
 body{font:16px/1.4 system-ui,sans-serif;margin:1.5rem auto;max-width:60rem;padding:0 1rem;background:Canvas;color:var(--text)}
 h1{font-size:1.4rem}h2{font-size:1rem;margin:1rem 0 .2rem}svg{width:100%;height:auto;font-size:12px}svg text{fill:var(--text)}
-.frame{fill:none;stroke:var(--line)}.run{cursor:pointer}.run:hover{stroke:var(--text)}.alarm{fill:none;stroke:#d00;stroke-width:2;pointer-events:none}select{font:inherit}label{margin-right:1rem}
+.frame{fill:none;stroke:var(--line)}.run{cursor:pointer}.run:hover{stroke:var(--text)}.alarm{fill:none;stroke:#d00;stroke-width:2;pointer-events:none}.stopped{fill:none;stroke:var(--text);stroke-width:1.5}select{font:inherit}label{margin-right:1rem}
 #run{position:sticky;bottom:0;background:Canvas;border-top:1px solid var(--line);padding:.5rem 0}code{user-select:all;word-break:break-all}
 )";
 

@@ -27,7 +27,11 @@ const runRows = [...rowOf.values()];
 const eventsOf = (row) => columns.events?.[row] ?? null;
 // Other solutions are admissible (older tables do not say it).
 const isAlarming = (row) => columns.unique?.[row] === 0;
+// Where a run stopped early is no end of it.
+const isDone = (row) => ["completed", "stopped_by_event"].includes(columns.status[row]);
+const ofDone = (of) => (row) => (isDone(row) ? of(row) : null);
 const doubtOf = (row) => isAlarming(row) ? "; the solution is not unique, --branch all follows the others" : columns.unique?.[row] < 0 ? "; uniqueness not decided" : "";
+const noteOf = (row) => (isDone(row) ? doubtOf(row) : `; ${columns.status[row]}`);
 // Those of kept events; a run without one has a row that names none.
 const eventRows = columns.kind ? columns.run.map((_, row) => row).filter((row) => columns.kind[row]) : [];
 const allEvents = eventRows.length === runRows.reduce((sum, row) => sum + eventsOf(row), 0);
@@ -104,9 +108,16 @@ function frame(title, xName, yName, xAxis, yAxis) {
 function cross(picture, row, x, y) {
   if (isAlarming(row)) picture.append(make("path", { d: `M${x - 5} ${y - 5}l10 10m0 -10l-10 10`, class: "alarm" }));
 }
+// Of a run that stopped early, without a value.
+function stopped(picture, row, x, y, label) {
+  const sign = make("path", { d: `M${x - 4} ${y - 4}l8 8m0 -8l-8 8`, class: "run stopped", "data-run": columns.run[row] });
+  sign.append(make("title", {}, label + noteOf(row)));
+  sign.addEventListener("click", () => choose(row));
+  picture.append(sign);
+}
 function mark(picture, row, x, y, colour, radius, label) {
   const dot = make("circle", { cx: x, cy: y, r: radius, fill: colour, class: "run", "data-run": columns.run[row] });
-  dot.append(make("title", {}, label + doubtOf(row)));
+  dot.append(make("title", {}, label + noteOf(row)));
   dot.addEventListener("click", () => choose(row));
   picture.append(dot);
 }
@@ -115,17 +126,39 @@ function points(title, xName, yName, chosen, yOf, joined, colourOf = () => palet
   const plain = chosen.filter((row) => yOf(row) !== null);
   const drawn = frame(title, xName, yName, axisOf(runRows.map((row) => columns[xName][row])), axisOf(plain.map(yOf)));
   if (joined) {
-    const along = [...plain].sort((a, b) => columns[xName][a] - columns[xName][b]);
-    const path = along.map((row, k) => `${k ? "L" : "M"}${drawn.x(columns[xName][row])} ${drawn.y(yOf(row))}`).join("");
+    const along = [...chosen].sort((a, b) => columns[xName][a] - columns[xName][b]);
+    const path = along.map((row, k) => yOf(row) === null ? "" :
+      `${k && yOf(along[k - 1]) !== null ? "L" : "M"}${drawn.x(columns[xName][row])} ${drawn.y(yOf(row))}`).join("");
     drawn.picture.append(make("path", { d: path, fill: "none", stroke: palette[0] }));
   }
   const first = new Map(plain.map((row) => [columns.run[row], row]).reverse());
   for (const row of first.values()) cross(drawn.picture, row, drawn.x(columns[xName][row]), drawn.y(yOf(row)));
   for (const row of plain) mark(drawn.picture, row, drawn.x(columns[xName][row]), drawn.y(yOf(row)), colourOf(row), joined ? 3 : 2, `${shown(columns[xName][row])}: ${shown(yOf(row))}`);
+  const foot = size.height - size.bottom - 7;
+  for (const row of chosen) if (yOf(row) === null && !isDone(row)) stopped(drawn.picture, row, drawn.x(columns[xName][row]), foot, shown(columns[xName][row]));
   return drawn.picture;
 }
 const colourAt = (share) => `hsl(${240 - 200 * share} 60% ${30 + 40 * share}%)`;
-function map(title, xName, yName, valueOf) {
+const colourOfWord = (words, word) => palette[words.indexOf(word) % palette.length];
+function legend(picture, words) {
+  let x = size.width - size.right;
+  for (const word of [...words].reverse()) {
+    picture.append(make("text", { x, y: size.height - 10, "text-anchor": "end" }, word));
+    x -= 8 + 6.5 * word.length;
+    picture.append(make("rect", { x: x - 10, y: size.height - 19, width: 10, height: 10, fill: colourOfWord(words, word) }));
+    x -= 24;
+  }
+}
+function scaleBar(picture, low, high) {
+  const bar = { x: size.width - size.right - 150, y: size.height - 18, width: 80, steps: 20 };
+  for (let k = 0; k < bar.steps; ++k) {
+    picture.append(make("rect", { x: bar.x + (k * bar.width) / bar.steps, y: bar.y, width: bar.width / bar.steps + 0.3, height: 8, fill: colourAt(k / (bar.steps - 1)) }));
+  }
+  picture.append(make("text", { x: bar.x - 4, y: bar.y + 8, "text-anchor": "end" }, shown(low)));
+  picture.append(make("text", { x: bar.x + bar.width + 4, y: bar.y + 8 }, shown(high)));
+}
+// A cell for every run, of numbers or of `words`.
+function map(title, xName, yName, valueOf, words = null) {
   const xs = [...new Set(runRows.map((row) => columns[xName][row]))], ys = [...new Set(runRows.map((row) => columns[yName][row]))];
   const [across, up] = [cellsOf(xs), cellsOf(ys)], drawn = frame(title, xName, yName, across, up);
   const share = (axis, place) => (place - axis.low) / (axis.high - axis.low);
@@ -134,25 +167,22 @@ function map(title, xName, yName, valueOf) {
   const width = size.width - size.left - size.right, height = size.height - size.top - size.bottom;
   let low = NaN, high = NaN;
   for (const row of runRows) {
-    const value = valueOf(row), colour = value === null ? "#999" : colourAt(share(scale, value));
+    const value = valueOf(row), colour = words ? colourOfWord(words, value) : value === null ? "#999" : colourAt(share(scale, value));
     const [left, right] = across.edgesOf(columns[xName][row]).map((place) => size.left + width * share(across, place));
     const [bottom, top] = up.edgesOf(columns[yName][row]).map((place) => size.top + height * (1 - share(up, place)));
     const cell = make("rect", { x: left, y: top, width: right - left + 0.3, height: bottom - top + 0.3, fill: colour, class: "run", "data-run": columns.run[row] });
     low = value !== null && !(value >= low) ? value : low;
     high = value !== null && !(value <= high) ? value : high;
-    cell.append(make("title", {}, `${xName} ${shown(columns[xName][row])}, ${yName} ${shown(columns[yName][row])}: ${shown(value)}${doubtOf(row)}`));
+    cell.append(make("title", {}, `${xName} ${shown(columns[xName][row])}, ${yName} ${shown(columns[yName][row])}: ${shown(value)}${noteOf(row)}`));
     cell.addEventListener("click", () => choose(row));
     drawn.picture.append(cell);
+    if (value === null && !isDone(row)) stopped(drawn.picture, row, (left + right) / 2, (bottom + top) / 2, "");
     cross(drawn.picture, row, (left + right) / 2, (bottom + top) / 2);
   }
-  // On narrow screens the scale of colours takes the middle.
-  if (size.width < 500) drawn.name.setAttribute("x", size.left);
-  const bar = { x: size.width - size.right - 150, y: size.height - 18, width: 80, steps: 20 };
-  for (let k = 0; k < bar.steps; ++k) {
-    drawn.picture.append(make("rect", { x: bar.x + (k * bar.width) / bar.steps, y: bar.y, width: bar.width / bar.steps + 0.3, height: 8, fill: colourAt(k / (bar.steps - 1)) }));
-  }
-  drawn.picture.append(make("text", { x: bar.x - 4, y: bar.y + 8, "text-anchor": "end" }, shown(low)));
-  drawn.picture.append(make("text", { x: bar.x + bar.width + 4, y: bar.y + 8 }, shown(high)));
+  // On narrow screens the legend takes the middle.
+  if (size.width < 500 || words) drawn.name.setAttribute("x", size.left);
+  if (words) legend(drawn.picture, words);
+  else scaleBar(drawn.picture, low, high);
   return drawn.picture;
 }
 
@@ -205,6 +235,10 @@ function section(title, picture) {
   document.getElementById("pictures").append(box);
 }
 const roomFor = (pictures) => Math.max(340, Math.min(720, pictures.clientWidth));
+function stops() {
+  const count = runRows.filter((row) => !isDone(row)).length, runs = `${count} of ${runRows.length} runs`;
+  if (count) document.getElementById("pictures").append(make("p", { role: "alert" }, `${runs} stopped early and ${count === 1 ? "has no end" : "have no ends"}: lines have gaps and crosses there.`));
+}
 function doubts() {
   const runs = runRows.filter(isAlarming);
   if (!runs.length) return;
@@ -223,11 +257,12 @@ function draw() {
   size.width = roomFor(pictures);
   pictures.replaceChildren();
   if (!rows || !swept.length) return;
+  stops();
   doubts();
   const grid = swept.length === 2 && data.grid;
   // Random samples are no line.
   const joined = data.grid && swept.length === 1 && isNumber(state.x);
-  const over = (name, of) => (grid ? map(name, state.x, state.y, of) : points(name, state.x, name, runRows, of, joined));
+  const over = (name, of) => (grid ? map(name, state.x, state.y, ofDone(of)) : points(name, state.x, name, runRows, ofDone(of), joined));
   if (kinds.length) {
     const chosen = eventRows.filter((row) => kindOf(row) === state.kind && columns.t[row] > state.behind);
     const behind = state.behind > -Infinity ? ` behind t = ${shown(state.behind)}` : "";
@@ -238,7 +273,9 @@ function draw() {
   } else if (!columns.kind) section(state.value, over(state.value, (row) => columns[state.value][row]));
   section("number of events", over("number", eventsOf));
   const statuses = [...new Set(columns.status)];
-  section("status", points("status", state.x, "status", runRows, (row) => columns.status[row], false, (row) => palette[statuses.indexOf(columns.status[row]) % palette.length]));
+  const statusOf = (row) => columns.status[row];
+  section("status", grid ? map("status", state.x, state.y, statusOf, statuses)
+    : points("status", state.x, "status", runRows, statusOf, false, (row) => colourOfWord(statuses, statusOf(row))));
 }
 const controls = document.getElementById("controls");
 if (values.length) controls.append(selector("value", values, state.value, (value) => (state.value = value)));

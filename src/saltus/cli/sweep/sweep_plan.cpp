@@ -82,6 +82,11 @@ class PlanReader {
   Expected<void> add_axis(const std::string& typed) {
     const auto parts = name_and_rest("--over", typed, over_remedy);
     if (!parts) return tl::unexpected(parts.error());
+    const auto open = parts->second.find('(');
+    if (open != std::string_view::npos && kind_named(trimmed(parts->second.substr(0, open)))) {
+      return refused_plan(fmt::format("--over {}: expected values, found a distribution", typed),
+                          fmt::format("--sample \"{}\" --runs 100", typed));
+    }
     const bool is_range = parts->second.find(':') != std::string_view::npos;
     auto values = is_range ? range_values(typed, parts->second) : listed_values(typed, parts->second);
     if (!values) return tl::unexpected(values.error());

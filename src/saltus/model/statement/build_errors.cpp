@@ -9,9 +9,11 @@ Error not_settable(const Override& entry, const Meaning* meaning, const NameTabl
   const auto known = names.of({NameKind::parameter, NameKind::state, NameKind::control, NameKind::hysteresis});
   const std::string found =
       meaning == nullptr ? "which is not in the model" : fmt::format("which is {}", with_article(meaning->kind));
+  // Tables of sweeps call a start "x(0)".
+  const auto name = entry.name.substr(0, entry.name.ends_with("(0)") ? entry.name.size() - 3 : entry.name.size());
   return {meaning == nullptr ? ErrorCode::unknown_name : ErrorCode::invalid_option,
           fmt::format("expected the name of a parameter, a state or a control, found '{}', {}", entry.name, found),
-          suggest(entry.name, known),
+          suggest(name, known),
           entry.value ? entry.value->location : SourceLocation{},
           {fmt::format("in --set {}", entry.name)}};
 }
