@@ -1,5 +1,6 @@
 """The small commands: diff, new, cite."""
 
+import bisect
 import json
 import re
 
@@ -40,6 +41,25 @@ class Diff(tool.ToolTest):
         slip = self.run_model("slip.json", "bouncing-ball", "--set", "simulate.output=auto")
         again = self.run_model("again.json", "bouncing-ball", "--set", "simulate.output=auto", "--integrator", "taylor")
         self.run_tool("diff", slip, again, code=0)
+
+    def test_the_largest_difference_on_the_way_is_told(self):
+        a = self.run_model("a.json", "bouncing-ball")
+        b = self.run_model("b.json", "bouncing-ball", "--set", "v=1")
+        text = self.run_tool("diff", a, b, code=1)[0]
+        found = float(re.search(r"(?m)^on the way\n  y at t = .* difference (\S+)$", text)[1])
+        first, second = (json.loads((self.folder / name).read_text(encoding="utf-8"))["trajectory"] for name in (a, b))
+
+        def line(rows, t):
+            """Between two rows; None at jumps."""
+            place = bisect.bisect_left(rows["t"], t)
+            if not 0 < place < len(rows["t"]) or rows["t"][place] == t:
+                return None
+            begin, end = rows["t"][place - 1], rows["t"][place]
+            return ((end - t) * rows["x"][place - 1][0] + (t - begin) * rows["x"][place][0]) / (end - begin)
+
+        apart = [abs(line(other, t) - x[0]) for rows, other in ((first, second), (second, first))
+                 for t, x in zip(rows["t"], rows["x"]) if line(other, t) is not None]
+        self.assertGreater(abs(found), 0.95 * max(apart))
 
     def test_lines_between_thinned_rows_say_nothing(self):
         self.write("wave.toml", "[model]\nname = \"wave\"\n[states]\nx = 1\n[dynamics]\nx = \"cos(t)\"\n[simulate]\nuntil = 6\n")

@@ -140,6 +140,15 @@ class TimeFreezing(FrozenTest):
                 self.assertEqual(len(found), 1)
                 self.run_tool("report", "r.json", code=0)
 
+    def test_where_time_stands_still_there_are_no_forces(self):
+        for output in ("auto", "{ every = 0.001 }"):
+            self.run_tool("simulate", "falling-rod", "--method", "fesd", "--set", f"simulate.output={output}", "--quiet",
+                          "--out", "r.json", code=3)
+            result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+            forces = [k for k, name in enumerate(result["outputs"]) if name.startswith(("force", "friction"))]
+            self.assertEqual(len(forces), 4)
+            self.assertLess(max(abs(row[k]) for row in result["trajectory"]["outputs"] for k in forces), 1e6, output)
+
     def test_ball_lands_slides_and_stops(self):
         event, frozen = self.assert_agree(BALL, 1e-8)
         self.assertAlmostEqual(frozen["events"][0]["impulse"][0][0], math.sqrt(20), delta=1e-9)

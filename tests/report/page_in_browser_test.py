@@ -120,6 +120,24 @@ class Columns(Page):
         equations = "document.querySelector('.equations')"
         self.assertEqual(self.value(f"{equations}.scrollHeight - {equations}.clientHeight"), 0)
 
+    def test_long_names_leave_room_for_equations_and_values(self):
+        rotor, winding = "angular_velocity_of_the_rotor", "temperature_of_the_left_hand_outer_winding_of_the_second_stage_of_machine"
+        (self.folder / "names.toml").write_text(
+            f'[model]\nname = "names"\n[states]\n{rotor} = 1.25\n{winding} = 0.3333333333333\np = 0\n[dynamics]\n'
+            f'{rotor} = "-0.3*sign({rotor}) + sin({winding})"\n{winding} = "cos({rotor})"\np = "1"\n'
+            "[simulate]\nuntil = 5\n", encoding="utf-8")
+        self.show("names.toml")
+        heights = ("[...document.querySelectorAll('.info .plain td.digits, .equations td:first-of-type')].map("
+                   "(cell) => { const text = document.createRange(); text.selectNodeContents(cell);"
+                   " return text.getBoundingClientRect().height; })")
+        for width in (1280, 390):
+            self.browser.open((self.folder / "page.html").as_uri(), width, 800, "light")
+            self.assertEqual(self.value("document.documentElement.scrollWidth"), width)
+            self.assertLess(max(self.value(heights)), 3 * 20, width)
+        self.value("window.dispatchEvent(new Event('beforeprint'))")
+        right = "Math.max(...[...document.querySelectorAll('.info table')].map((one) => one.getBoundingClientRect().right))"
+        self.assertLess(self.value(right), 721)
+
     def test_panels_are_ordered_joined_and_kept_in_the_address(self):
         self.show("stick-slip")
         self.press(".toolbar button[aria-expanded]")

@@ -134,18 +134,20 @@ void compare_list(const std::vector<std::string>& names, const std::vector<doubl
   }
 }
 
-/// A state that the rows of both have, and where it differs most.
+/// A state that the rows of both have, and where it is farthest apart of where it differs: rows have closer tolerances
+/// than lines.
 struct CommonColumn {
   std::string name;
   std::size_t of_a, of_b;
   Allowed allowed, of_line;
-  double worst = 1.0;
+  double farthest = 0.0;
   std::optional<NumberDifference> found{};
 
   void compare(double t, double in_a, double in_b, const Allowed& tolerances) {
-    const double ratio = excess(in_a, in_b, tolerances);
-    if (ratio <= worst) return;
-    worst = ratio;
+    if (excess(in_a, in_b, tolerances) <= 1.0) return;
+    const double apart = std::isnan(in_a - in_b) ? INFINITY : std::abs(in_a - in_b);
+    if (apart <= farthest) return;
+    farthest = apart;
     found = {name + " at t = " + number_text(t), in_a, in_b};
   }
 };
@@ -222,11 +224,9 @@ void compare_rows(const Result& a, const Result& b, const AllowedDifferences& al
     }
     ++i, ++j;
   }
-  if (has_true_lines(a) && has_true_lines(b)) {
-    const auto events = event_times(a, b);
-    compare_lines(a, b, false, events, allowed.time, columns, difference);
-    compare_lines(b, a, true, events, allowed.time, columns, difference);
-  }
+  const auto events = event_times(a, b);
+  if (has_true_lines(b)) compare_lines(a, b, false, events, allowed.time, columns, difference);
+  if (has_true_lines(a)) compare_lines(b, a, true, events, allowed.time, columns, difference);
   for (auto& column : columns) {
     if (column.found) difference.rows.push_back(std::move(*column.found));
   }

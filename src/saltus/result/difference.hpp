@@ -19,7 +19,7 @@ struct Tolerances {
   std::optional<double> atol{};
 };
 
-/// Holds two numbers of one meaning; of a state the pair that lies farthest beyond the tolerances.
+/// Holds two numbers of one meaning; of a state the pair that is farthest apart.
 struct NumberDifference {
   std::string what;  ///< "x", "t of event 3"
   double a = 0.0, b = 0.0;
@@ -45,9 +45,8 @@ struct Difference {
 /// if one of them states none.
 [[nodiscard]] std::string differing_equation(const Result& a, const Result& b);
 
-/// Compares end states, events (kind, name, surfaces, time, state) and the rows at common times; rows of
-/// `output = "auto"` also at times that one of both has, but not beside events, with the lines between the other's
-/// rows.
+/// Compares end states, events (kind, name, surfaces, time, state) and the rows at common times; with the lines
+/// between rows of `output = "auto"` also those of the other one, but not beside events.
 /// @return the differences, or an error: results of different models (another name, other states, switching functions
 ///         or outputs).
 [[nodiscard]] Expected<Difference> difference(const Result& a, const Result& b, const Tolerances& tolerances);

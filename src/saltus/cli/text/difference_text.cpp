@@ -1,5 +1,6 @@
 #include "saltus/cli/text/difference_text.hpp"
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -32,13 +33,13 @@ std::string difference_text(const result::Difference& difference, const result::
   const auto absolute = atol ? fmt::format("atol {:g}", *atol) : fmt::format("atol {:g} of each range", rtol);
   const auto states = difference.common_states == states_of_model
                           ? ""
-                          : fmt::format(" of {} of {} states", difference.common_states, states_of_model);
+                          : fmt::format(" ({} of {})", difference.common_states, states_of_model);
   const auto between = difference.between_times == 0
                            ? ""
-                           : fmt::format(", {} between rows to 0.2 % of the range", difference.between_times);
-  return text + fmt::format("{} to rtol {:g}, {} ({} events, {} common times{}{})\n",
-                            difference.is_none() ? "the same" : "different", rtol, absolute, difference.events_a,
-                            difference.common_times, between, states);
+                           : fmt::format(" and, to 0.2 % of the range, at {} between rows", difference.between_times);
+  return text + fmt::format("{} to rtol {:g}, {} (compared: {} events, states{} at {} common times{})\n",
+                            difference.is_none() ? "the same" : "different", rtol, absolute,
+                            std::min(difference.events_a, difference.events_b), states, difference.common_times, between);
 }
 
 }  // namespace saltus::cli

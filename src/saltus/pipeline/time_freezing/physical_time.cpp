@@ -170,13 +170,14 @@ class PhysicalTime {
     if (!raw.theta.empty()) rows.theta.push_back(raw.theta[r]);
   }
 
-  /// Forces of numerical time become forces; where time stands still there are impulses instead.
+  /// Forces of numerical time become forces; where time stands still, to the rounding of its rate in free motion (1),
+  /// there are impulses instead.
   [[nodiscard]] std::vector<double> outputs(std::vector<double> values) const {
     const double rate = values[at(freezing_.clock_rate)];
     for (const auto& contact : freezing_.contacts) {
       const std::size_t force = at(contact.gap_output) + 1;
       for (std::size_t k = force; k <= force + at(contact.tangents); ++k) {
-        values[k] = rate > 0.0 ? values[k] / rate : 0.0;
+        values[k] = rate > 8.0 * rounding_unit ? values[k] / rate : 0.0;
       }
     }
     values.pop_back();
