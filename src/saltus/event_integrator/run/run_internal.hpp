@@ -130,6 +130,7 @@ class Run {
   CellChange leave_cells(const Located& located);
   Located breaks_here();
   bool change_resting_with_cells();
+  [[nodiscard]] std::vector<bool> functions_in_moved_cells() const;
   bool jump_with_cells();
   bool find_undefined_cells();
   bool go_on();
