@@ -135,6 +135,7 @@ class Run {
   bool find_undefined_cells();
   bool go_on();
   bool begin_field(const ModeChange& change, double t, std::vector<double>& x);
+  [[nodiscard]] int state_moved_from(const std::vector<double>& met) const;
   bool enter(const Transition& transition);
   void begin_spiral();
   void leave_root();
