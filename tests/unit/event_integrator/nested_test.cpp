@@ -89,7 +89,7 @@ TEST(Nested, WhatIsTooSlowForAFunctionThatJumpsAwayIsLeftWithIt) {
   // Two rate limiters in a row follow a step at 1.5, the first with rate 2, the second behind it with rate 1.
   for (const auto method : testing::every_method) {
     Builder b("limiters");
-    const SX t = b.time(), first = b.state("first", 0.5), second = b.state("second", 0.5);
+    const SX t = b.time(), first = b.state("first", {0.5}), second = b.state("second", {0.5});
     const SX reference = b.if_(model::greater(t, 1.5), 1, 0.5);
     b.dynamics("first", b.if_(model::greater(reference, first), 2, -1));
     b.dynamics("second", b.sign(first - second));
@@ -106,7 +106,7 @@ TEST(Nested, WhatIsTooSlowForAFunctionThatJumpsAwayIsLeftWithIt) {
 TEST(Nested, AnInputThatStepsIsInsideWhatComparesIt) {
   // The surface at the step of the input is inside u > 0.5, and this one inside what is slid on.
   Builder b("input");
-  const SX t = b.time(), y = b.state("y", 0.0), u = b.control("u", 0.0);
+  const SX t = b.time(), y = b.state("y", {0.0}), u = b.control("u", {0.0});
   b.dynamics("y", b.sign(b.if_(model::greater(u, 0.5), 2, 0) - y));
   b.input("u", b.if_(model::greater(t, 1), 1, 0));
   const auto result = testing::run_tightly(b, 1.4);

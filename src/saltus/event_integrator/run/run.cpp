@@ -22,7 +22,7 @@ Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const Int
       here_(options.from, system.initial_state),
       tolerances_(options.tolerances),
       steps_(options, system, field_, here_, tolerances_),
-      cells_(kernel, rounding_unit * std::max(std::abs(options.from), std::abs(options.until))),
+      cells_(kernel),
       search_(kernel, field_, options.method, tolerances_.step()),
       zeros_(switching_context_, here_, field_, search_),
       nested_(kernel, here_, search_, tolerances_, zeros_),

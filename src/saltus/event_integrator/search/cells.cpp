@@ -7,12 +7,8 @@
 
 namespace saltus::event_integrator {
 
-Cells::Cells(evaluation::ModelKernel& kernel, double time_rounding)
-    : kernel_(kernel),
-      time_rounding_(time_rounding),
-      index_(at(kernel.cells()), 0),
-      moved_(index_.size(), false),
-      undefined_(index_.size(), false) {
+Cells::Cells(evaluation::ModelKernel& kernel)
+    : kernel_(kernel), index_(at(kernel.cells()), 0), moved_(index_.size(), false), undefined_(index_.size(), false) {
   if (index_.empty()) return;
   magnitude_.resize(at(kernel.event_functions()));
   slope_.resize(magnitude_.size());
@@ -32,27 +28,19 @@ CellChange Cells::move(int cell, long target) {
   return kernel_.cell_table(cell).change == model::CellTable::Change::jump ? CellChange::jump : CellChange::kink;
 }
 
-/// The rounding of an argument.
-double Cells::noise(int cell, double t, const double* x, const std::vector<double>& alpha) {
-  const int function = kernel_.cell_function(cell);
-  kernel_.scales(t, x, alpha.data(), magnitude_.data(), slope_.data());
-  const double rounding = rounding_unit * magnitude_[at(function)];
-  if (!kernel_.is_time_only(function)) return 8.0 * rounding;
-  const double rate = kernel_.lie_derivative(function, 1, t, x, alpha.data());
-  return 8.0 * std::max(rounding, time_rounding_ * std::abs(rate));
-}
-
 CellChange Cells::place(int cell, double t, const double* x, const std::vector<double>& alpha) {
   const double argument = kernel_.cell_argument(cell, t, x, alpha.data());
   undefined_[at(cell)] = std::isnan(argument);
   if (std::isnan(argument)) return CellChange::none;  // nothing uses it here
   const auto& table = kernel_.cell_table(cell);
-  const double rounding = noise(cell, t, x, alpha);
+  const int function = kernel_.cell_function(cell);
+  kernel_.scales(t, x, alpha.data(), magnitude_.data(), slope_.data());
+  const double noise = 8.0 * rounding_unit * magnitude_[at(function)];
   long target = table.cell(argument);
-  const bool below = std::abs(table.upper(target) - argument) <= rounding;
-  const bool above = std::abs(argument - table.lower(target)) <= rounding;
+  const bool below = std::abs(table.upper(target) - argument) <= noise;
+  const bool above = std::abs(argument - table.lower(target)) <= noise;
   if (below || above) {
-    const double rate = kernel_.lie_derivative(kernel_.cell_function(cell), 1, t, x, alpha.data());
+    const double rate = kernel_.lie_derivative(function, 1, t, x, alpha.data());
     if (below && rate >= 0.0) ++target;
     if (!below && rate < 0.0) --target;
   }
@@ -90,8 +78,10 @@ bool Cells::jumps_at(const EventFunction& end, double t, const double* x, const 
   const bool upper = end.kind == FunctionKind::cell_upper;
   const double argument = kernel_.cell_argument(end.row, t, x, alpha.data());
   const double bound = upper ? table.upper(index_[at(end.row)]) : table.lower(index_[at(end.row)]);
-  if (!(std::abs(bound - argument) <= noise(end.row, t, x, alpha))) return false;
-  const double rate = kernel_.lie_derivative(kernel_.cell_function(end.row), 1, t, x, alpha.data());
+  const int function = kernel_.cell_function(end.row);
+  kernel_.scales(t, x, alpha.data(), magnitude_.data(), slope_.data());
+  if (!(std::abs(bound - argument) <= 8.0 * rounding_unit * magnitude_[at(function)])) return false;
+  const double rate = kernel_.lie_derivative(function, 1, t, x, alpha.data());
   return upper ? rate > 0.0 : rate < 0.0;
 }
 

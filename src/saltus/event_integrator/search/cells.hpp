@@ -19,8 +19,7 @@ enum class CellChange {
 /// an event function says so, never because a rounded value lies on the other side of a break.
 class Cells {
  public:
-  /// @param time_rounding  of the times of a run: at t = 0 in it, too
-  Cells(evaluation::ModelKernel& kernel, double time_rounding);
+  explicit Cells(evaluation::ModelKernel& kernel);
 
   [[nodiscard]] bool empty() const { return index_.empty(); }
 
@@ -48,12 +47,10 @@ class Cells {
   [[nodiscard]] std::string moved_names(const model::System& system) const;
 
  private:
-  double noise(int cell, double t, const double* x, const std::vector<double>& alpha);
   CellChange place(int cell, double t, const double* x, const std::vector<double>& alpha);
   CellChange move(int cell, long target);
 
   evaluation::ModelKernel& kernel_;
-  double time_rounding_;
   std::vector<long> index_;
   std::vector<bool> moved_;
   std::vector<bool> undefined_;
