@@ -211,11 +211,18 @@ class Assembly {
     for (const int node : graph_.tape().cone(roots, Links::through_alpha)) {
       if (graph_.tape()[node].psi >= 0) kept[alpha_index(node)] = true;
     }
+    // Inner functions have smaller indices: those of inputs, which are met last, are inside any that compare an input.
+    std::vector<bool> of_inputs(met.size(), false);
+    for (const int node : graph_.tape().cone(inputs_, Links::through_alpha)) {
+      if (graph_.tape()[node].psi >= 0) of_inputs[alpha_index(node)] = true;
+    }
     new_index_.assign(met.size(), -1);
-    for (std::size_t i = 0; i < met.size(); ++i) {
-      if (!met[i].named && !kept[i]) continue;
-      new_index_[i] = static_cast<int>(kept_.size());
-      kept_.push_back(static_cast<int>(i));
+    for (const bool first : {true, false}) {
+      for (std::size_t i = 0; i < met.size(); ++i) {
+        if (of_inputs[i] != first || (!met[i].named && !kept[i])) continue;
+        new_index_[i] = static_cast<int>(kept_.size());
+        kept_.push_back(static_cast<int>(i));
+      }
     }
   }
 

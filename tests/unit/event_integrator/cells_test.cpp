@@ -212,6 +212,75 @@ TEST(CellRuns, SlidingGoesOnWhereOnlyTheFieldJumps) {
   EXPECT_NEAR(result.final.alpha[0], 0.25, 1e-14);
 }
 
+/// References from 0, or 0.2, to a value r that they jump to at t = 1.
+struct SteppedReference {
+  const char* what;
+  double low;
+  SX (*of)(Builder& model, const SX& t, const SX& x, const SX& u);
+};
+
+TEST(CellRuns, SurfacesWhoseInnerSignsJumpAreLeft) {
+  // y slides on a stepped reference: at the step it stays where it is, and rises from there with rate 1.
+  const SteppedReference references[] = {
+      {"whole part", 0.0,
+       [](Builder& model, const SX& t, const SX&, const SX&) {
+         return model.if_(model::greater(model.floor(t), 0.5), 2, 0);
+       }},
+      {"equality", 0.0,
+       [](Builder& model, const SX& t, const SX&, const SX&) {
+         return model.if_(model::greater_equal(model.floor(t), 1), 2, 0);
+       }},
+      {"two levels", 0.0,
+       [](Builder& model, const SX& t, const SX&, const SX&) {
+         const SX inner = model.if_(model::greater(model.floor(t), 0.5), 1, -1);
+         return model.if_(model::greater(inner, 0), 2, 0);
+       }},
+      {"state and whole part", 0.0,
+       [](Builder& model, const SX& t, const SX& x, const SX&) {
+         return model.if_(model::greater(x + model.floor(t), 1.5), 2, 0);
+       }},
+      {"sampled input", 0.0,
+       [](Builder& model, const SX&, const SX&, const SX& u) {
+         model.input("u", {0, 1}, {0, 1});
+         return model.if_(model::greater(u, 0.5), 2, 0);
+       }},
+      {"kink of an input", 0.2,
+       [](Builder& model, const SX&, const SX&, const SX& u) {
+         model.input("u", {0, 1}, {0, 1});
+         return model.max(u, 0.2);
+       }},
+  };
+  for (const auto method : {ode::Method::dopri5, ode::Method::radau5, ode::Method::taylor}) {
+    for (const auto& reference : references) {
+      Builder model("stepped");
+      const SX t = model.time(), x = model.state("x", {0}), y = model.state("y", {0.7}), u = model.control("u", {0});
+      model.dynamics("x", 1);
+      model.dynamics("y", model.sign(reference.of(model, t, x, u) - y));
+      const auto result = run(model, {.until = 1.4, .method = method});
+      EXPECT_NEAR(result.final.x[1], reference.low + 0.4, 1e-13) << reference.what;
+      ASSERT_EQ(result.events.size(), 2U) << reference.what;
+      EXPECT_EQ(result.events[1].kind, EventKind::leave_sliding) << reference.what;
+      EXPECT_NEAR(result.events[1].t, 1.0, 1e-15) << reference.what;
+    }
+  }
+}
+
+TEST(CellRuns, ABreakAtZeroIsPassedOnceFromBeforeIt) {
+  // Guards rise where the sawtooth falls. Steps from t < 0 end at 0 to the rounding of their beginnings.
+  for (const auto method : {ode::Method::radau5, ode::Method::radau9, ode::Method::radau13}) {
+    for (const double period : {0.3, 1.078}) {
+      Builder model("resets");
+      const SX t = model.time(), x = model.state("x", {0.5}), y = model.state("y", {0});
+      const SX n = model.discrete_state("n", 0);
+      model.dynamics("x", 0.1 * cos(3 * t));
+      model.dynamics("y", model.if_(model::less(model.mod(t, period), 0.5 * period), 1, -1));
+      model.jump(x - model.mod(t, period) / period, model::Direction::up, {{"n", n + 1.0}});
+      const auto result = run(model, {.from = -0.3, .until = 1.6, .method = method, .rtol = 1e-8});
+      EXPECT_EQ(result.final.x[2], period < 1.0 ? 6.0 : 2.0) << period << " " << static_cast<int>(method);
+    }
+  }
+}
+
 TEST(CellRuns, ConditionsOfEventsTurnAtResets) {
   Builder model("edges");
   const SX t = model.time();

@@ -85,6 +85,35 @@ TEST(Nested, WhatOnlyAFunctionThatJumpsAwayHasHeldIsLeftWithIt) {
   EXPECT_LT(result.final.x[2], -0.5);
 }
 
+TEST(Nested, WhatIsTooSlowForAFunctionThatJumpsAwayIsLeftWithIt) {
+  // Two rate limiters in a row follow a step at 1.5, the first with rate 2, the second behind it with rate 1.
+  for (const auto method : testing::every_method) {
+    Builder b("limiters");
+    const SX t = b.time(), first = b.state("first", {0.5}), second = b.state("second", {0.5});
+    const SX reference = b.if_(model::greater(t, 1.5), 1, 0.5);
+    b.dynamics("first", b.if_(model::greater(reference, first), 2, -1));
+    b.dynamics("second", b.sign(first - second));
+    IntegrationOptions options;
+    options.method = method;
+    options.until = 1.9;
+    const auto result = testing::run_model(b, options);
+    EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    EXPECT_NEAR(result.final.x[0], 1.0, 1e-14);
+    EXPECT_NEAR(result.final.x[1], 0.9, 1e-14);
+  }
+}
+
+TEST(Nested, AnInputThatStepsIsInsideWhatComparesIt) {
+  // The surface at the step of the input is inside u > 0.5, and this one inside what is slid on.
+  Builder b("input");
+  const SX t = b.time(), y = b.state("y", {0.0}), u = b.control("u", {0.0});
+  b.dynamics("y", b.sign(b.if_(model::greater(u, 0.5), 2, 0) - y));
+  b.input("u", b.if_(model::greater(t, 1), 1, 0));
+  const auto result = testing::run_tightly(b, 1.4);
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.final.x[0], 0.4, 1e-14);
+}
+
 TEST(Nested, WhereSurfacesAndAKinkInsideAKinkMeetTheHiddenDynamicsLeavesAll) {
   // A start on y = 1/2, on x + y = 0 and at a kink of | |y - 1/2 - t/2| - 1|: y' = -1.25 - 1.6 sign(-x - y) or so. The
   // hidden dynamics leaves all three, the last one from a rounding beyond the end of its strip.

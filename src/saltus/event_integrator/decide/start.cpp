@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -58,15 +59,27 @@ bool vanishes_until_a_jump(const SwitchingContext& s, double t, const double* x,
   return rate == 0.0 && s.kernel.lie_derivative(j, 2, t, x, state.alpha.data()) == 0.0;
 }
 
+/// The surfaces that the solution has been on.
+struct SurfacesMet {
+  std::span<const int> held = {};  ///< at zero whatever is left of their psi
+  std::span<const int> slid = {};  ///< at zero where no more than what projections leave is left of it
+
+  [[nodiscard]] bool is_at_zero(int j, double psi, double noise) const {
+    // The projection leaves a few roundings of psi; a jump leaves something of its size.
+    return std::abs(psi) <= noise || contains(held, j) || (std::abs(psi) <= 8.0 * noise && contains(slid, j));
+  }
+};
+
 /// The regions of a group by `indicator` at its minimum: the first of them is the reference, the others are at zero.
-/// With `held` ones the reference they are measured against and they are at the minimum.
+/// Where some have been met, the reference they are measured against and they are at the minimum.
 void read_regions(const SwitchingContext& s, double t, const double* x, const ProjectedFields& fields,
-                  std::size_t group, const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
+                  std::size_t group, const SurfacesMet& met, ModeState& state, std::vector<int>& at_zero) {
   const auto& range = s.kernel.region_groups()[group];
   std::vector<double> values(at(s.kernel.event_functions()));
-  bool holds = false;
-  for (const int j : held) holds = holds || range.holds(j);
-  if (!holds) {
+  s.kernel.functions(t, x, state.alpha.data(), values.data());
+  const auto is_met = [&](int j) { return range.holds(j) && met.is_at_zero(j, values[at(j)], fields.noise(j)); };
+  if (std::none_of(met.held.begin(), met.held.end(), is_met) &&
+      std::none_of(met.slid.begin(), met.slid.end(), is_met)) {
     if (s.kernel.reference(group) < 0) s.kernel.set_reference(group, range.first);
     s.kernel.functions(t, x, state.alpha.data(), values.data());
     const auto first = values.begin() + range.first;
@@ -78,7 +91,7 @@ void read_regions(const SwitchingContext& s, double t, const double* x, const Pr
   std::vector<ActiveRegion> active{{reference, 1.0}};
   for (int j = range.first; j < range.first + range.count; ++j) {
     if (j == reference) continue;
-    if (std::abs(values[at(j)]) <= fields.noise(j) || contains(held, j)) active.push_back({j, 0.0});
+    if (met.is_at_zero(j, values[at(j)], fields.noise(j))) active.push_back({j, 0.0});
   }
   for (auto& region : active) region.weight = 1.0 / static_cast<double>(active.size());
   set_active(state, range, active);
@@ -87,7 +100,7 @@ void read_regions(const SwitchingContext& s, double t, const double* x, const Pr
 
 /// Signs of all switching functions, inner ones first; those at zero get 0.
 void read_signs(const SwitchingContext& s, double t, const double* x, const ProjectedFields& fields,
-                const std::vector<int>& held, ModeState& state, std::vector<int>& at_zero) {
+                const SurfacesMet& met, ModeState& state, std::vector<int>& at_zero) {
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
@@ -104,7 +117,7 @@ void read_signs(const SwitchingContext& s, double t, const double* x, const Proj
       set_surface(state, j, alpha > 0.5 ? 1 : -1, alpha);
       continue;
     }
-    if (std::abs(psi) <= fields.noise(j) || contains(held, j)) {
+    if (met.is_at_zero(j, psi, fields.noise(j))) {
       at_zero.push_back(j);
       set_surface(state, j, 0, 0.5);
     } else {
@@ -112,7 +125,7 @@ void read_signs(const SwitchingContext& s, double t, const double* x, const Proj
     }
   }
   for (std::size_t g = 0; g < s.kernel.region_groups().size(); ++g) {
-    read_regions(s, t, x, fields, g, held, state, at_zero);
+    read_regions(s, t, x, fields, g, met, state, at_zero);
   }
 }
 
@@ -175,8 +188,8 @@ struct Point {
 };
 
 /// A point as one at which the solution starts: the surfaces through it, and the sides of the others that it is on.
-/// `held` are taken to pass through it, `resting` to stay there.
-Point read_point(const SwitchingContext& s, double t, const double* x, double time_scale, const std::vector<int>& held,
+/// Those of `resting` stay there.
+Point read_point(const SwitchingContext& s, double t, const double* x, double time_scale, const SurfacesMet& met,
                  const RestingSurfaces& resting = {}) {
   Point point;
   auto& [switching_point, state] = point;
@@ -193,7 +206,7 @@ Point read_point(const SwitchingContext& s, double t, const double* x, double ti
     state.mode[at(resting.surfaces[i])] = 0;
     state.alpha[at(resting.surfaces[i])] = resting.alpha[i];
   }
-  read_signs(s, t, x, fields, held, state, switching_point.at_zero);
+  read_signs(s, t, x, fields, met, state, switching_point.at_zero);
   note_ties(s.kernel, state, switching_point);
   return point;
 }
@@ -305,17 +318,20 @@ Start decide_start(const SwitchingContext& s, double t, const double* x, double 
 }
 
 Transition decide_behind_jump(const SwitchingContext& s, const ModeState& before, double t, const double* x,
-                              double time_scale, const std::vector<int>& held, const RestingSurfaces& resting) {
+                              double time_scale, const std::vector<int>& held, const RestingSurfaces& resting,
+                              const std::vector<int>& slid) {
   Transition transition;
   if (s.kernel.switching_functions() == 0) {  // nothing to decide
     transition.beside.assign(x, x + s.kernel.states());
     return transition;
   }
-  auto [switching_point, state] = read_point(s, t, x, time_scale, held, resting);
+  auto [switching_point, state] = read_point(s, t, x, time_scale, {held, slid}, resting);
   // Selections of the sliding motion before are where a search for the new ones starts.
-  for (const int j : held) {
-    const bool rests = std::binary_search(state.resting.begin(), state.resting.end(), j);
-    if (!rests) state.alpha[at(j)] = before.alpha[at(j)];
+  for (const auto* list : {&held, &slid}) {
+    for (const int j : *list) {
+      const bool rests = std::binary_search(state.resting.begin(), state.resting.end(), j);
+      if (!rests && state.mode[at(j)] == 0) state.alpha[at(j)] = before.alpha[at(j)];
+    }
   }
   if (!finite_at_start(s, t, x, state, transition)) return transition;
   if (signs_say_it_all(s, switching_point)) {

@@ -22,11 +22,11 @@ struct Start {
                                  const RestingSurfaces& resting);
 
 /// Decides the mode behind a jump of the model or of the state at (t, x): as at a start, but surfaces of `held`
-/// (located here, or sliding, and still at zero) are at zero whatever is left of their psi. Those of `resting` are not
-/// decided.
+/// (located here, or sliding, and still at zero) are at zero whatever is left of their psi. Those of `slid`, whose psi
+/// may have jumped, are where no more than a few roundings are left. Those of `resting` are not decided.
 [[nodiscard]] Transition decide_behind_jump(const SwitchingContext& switching_context, const ModeState& before,
                                             double t, const double* x, double time_scale, const std::vector<int>& held,
-                                            const RestingSurfaces& resting = {});
+                                            const RestingSurfaces& resting = {}, const std::vector<int>& slid = {});
 
 /// Returns the selections read pointwise at (t, x), inner functions first; those at zero keep what they have in
 /// `alpha`, functions of discrete states have what is written.

@@ -74,6 +74,18 @@ bool Run::begin_field(const ModeChange& change, double t, std::vector<double>& x
   return is_finite(here_.slope);
 }
 
+/// The state that a projection onto the surfaces of the mode has moved farther than errors of steps do, from where it
+/// was met; -1 if there is none. Behind a jump of a surface nothing is projected.
+int Run::state_moved_from(const std::vector<double>& met) const {
+  const auto& [rtol, atol] = options_.tolerances;
+  const double many = std::min(1e4, 0.1 / rtol);
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    const double size = std::max(std::abs(met[i]), std::abs(here_.x[i]));
+    if (std::abs(here_.x[i] - met[i]) > many * (atol + rtol * size)) return static_cast<int>(i);
+  }
+  return -1;
+}
+
 bool Run::enter(const Transition& transition) {
   const ModeChange change = transition.from(event_.before);
   here_.change_mode(change);
@@ -83,6 +95,7 @@ bool Run::enter(const Transition& transition) {
   tolerances_.lift(StepTolerances::Reason::local);
   if (nested_.begin_mode()) tolerances_.lift(StepTolerances::Reason::zeros);
   steps_.begin_mode();
+  const std::vector<double> met = here_.x;
   if (!begin_field(change, here_.t, here_.x) && !transition.beside.empty()) {
     // The field is undefined on the far side of its own surface, where rounding has put the state.
     here_.move_to(here_.t, transition.beside.data());
@@ -94,6 +107,15 @@ bool Run::enter(const Transition& transition) {
         fmt::format("the right-hand side of {} is not finite at {}; change the initial values, or guard the expression "
                     "with if(…)",
                     undefined_states(switching_context_.system, here_.slope), where()));
+    return false;
+  }
+  if (const int moved = state_moved_from(met); moved >= 0) {
+    const double there = std::exchange(here_.x, met)[at(moved)];
+    fail(
+        Termination::outside_class,
+        fmt::format("sliding on from {} would need {} to jump from {:.6g} to {:.6g}: a switching function that is slid "
+                    "on jumps there, and the continuation is not decided",
+                    where(), switching_context_.system.state_names[at(moved)], met[at(moved)], there));
     return false;
   }
   search_.begin(change, here_);

@@ -34,22 +34,28 @@ Located Run::breaks_here() {
   return here;
 }
 
+/// Switching functions that hold constants of a cell that moved last, or selections of such functions.
+std::vector<bool> Run::functions_in_moved_cells() const {
+  std::vector<bool> moved(at(kernel_.switching_functions()));
+  for (int j = 0; j < kernel_.switching_functions(); ++j) {
+    const auto& inner = kernel_.inner(j);  // of smaller indices
+    moved[at(j)] = cells_.moved_in(j) || std::any_of(inner.begin(), inner.end(), [&](int i) { return moved[at(i)]; });
+  }
+  return moved;
+}
+
 /// Values jump: the mode is decided as at a start, but what slides and is still at zero goes on sliding if it can.
 bool Run::jump_with_cells() {
   const ModeState& before = event_.before;
-  std::vector<double> values(at(kernel_.event_functions())), magnitude(values.size()), slope(values.size());
-  kernel_.functions(here_.t, here_.x.data(), before.alpha.data(), values.data());
-  kernel_.scales(here_.t, here_.x.data(), before.alpha.data(), magnitude.data(), slope.data());
-  std::vector<int> held;
-  for (const int j : before.sliding) {
-    // The projection leaves a few roundings of psi; a jump leaves something of its size.
-    if (!cells_.moved_in(j) || std::abs(values[at(j)]) <= 64.0 * rounding_unit * magnitude[at(j)]) held.push_back(j);
-  }
+  std::vector<int> held, slid;
+  const auto moved = functions_in_moved_cells();
+  for (const int j : before.sliding) (moved[at(j)] ? slid : held).push_back(j);
   held.insert(held.end(), event_.freed.begin(), event_.freed.end());
   RestingSurfaces resting;
   if (!find_resting(resting)) return false;
   Transition& transition = event_.transition;
-  transition = decide_behind_jump(switching_context_, before, here_.t, here_.x.data(), here_.time_scale, held, resting);
+  transition =
+      decide_behind_jump(switching_context_, before, here_.t, here_.x.data(), here_.time_scale, held, resting, slid);
   if (transition.termination == Termination::completed && transition.state.mode != before.mode) {
     transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the " +
                         (event_.cell_change == CellChange::jump ? "jump of " : "kink of ") +

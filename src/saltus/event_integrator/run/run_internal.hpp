@@ -131,10 +131,12 @@ class Run {
   Located breaks_here();
   bool change_resting_with_cells();
   bool leaves_resting_with_cells();
+  [[nodiscard]] std::vector<bool> functions_in_moved_cells() const;
   bool jump_with_cells();
   bool find_undefined_cells();
   bool go_on();
   bool begin_field(const ModeChange& change, double t, std::vector<double>& x);
+  [[nodiscard]] int state_moved_from(const std::vector<double>& met) const;
   bool enter(const Transition& transition);
   void begin_spiral();
   void leave_root();

@@ -288,6 +288,9 @@ const Located* Locator::locate(const StepStart& start, const ode::DenseStep& den
   // A shorter step than the accepted one can only be worse where the field is singular (a selection that is 0/0).
   if (trial_.h > 0.0 && !(stepper_.error_norm() <= 2.0)) return nullptr;
   located_.t = start_.t + trial_.h;
+  // Steps that begin before 0 end beside it to the rounding of their beginning. What is to happen at 0 would come again
+  // there.
+  if (std::abs(located_.t) <= time_resolution()) located_.t = 0.0;
   std::copy(trial_.x.begin(), trial_.x.end(), located_.x.begin());
   located_.short_of = trial_.values[place_] * hit.sign > search_.noise(hit.function);
   find_vanishing_with(hit.function);

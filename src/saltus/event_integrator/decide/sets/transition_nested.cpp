@@ -1,4 +1,5 @@
 // Functions around surfaces that change: they are read anew, jump away from zero, or have a kink there.
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -12,17 +13,49 @@
 namespace saltus::event_integrator {
 namespace {
 
-/// Crosses the touched surfaces inside function j, which is at zero: whether j is not, behind them, but jumps away.
-bool jumps_away(const SwitchingContext& s, const SwitchingPoint& switching_point, int j, ModeState& state) {
-  const auto& inner = s.kernel.inner(j);
-  ModeState behind = state;
-  bool crosses = false;
-  for (const int i : switching_point.touched) {
-    if (i == j || !contains(inner, i) || state.mode[at(i)] == 0) continue;
-    set_surface(behind, i, -state.mode[at(i)], state.mode[at(i)] > 0 ? 0.0 : 1.0);
-    crosses = true;
+/// The functions inside function j, and those inside of these.
+std::vector<bool> all_inside(const evaluation::ModelKernel& kernel, int j) {
+  std::vector<bool> inside(at(kernel.switching_functions()));
+  for (int i = j; i >= 0; --i) {  // inner functions have smaller indices
+    if (i != j && !inside[at(i)]) continue;
+    for (const int inner : kernel.inner(i)) inside[at(inner)] = true;
   }
-  if (!crosses) return false;
+  return inside;
+}
+
+void take_side(ModeState& state, int j, double psi) {
+  set_surface(state, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
+}
+
+/// The mode behind the touched surfaces inside function j, where they are crossed: those between them and j are read
+/// anew. Returns whether j holds a selection that changes.
+bool cross_inside(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point, int j,
+                  ModeState& behind) {
+  std::vector<double> values(at(s.kernel.event_functions()));
+  const ProjectedFields fields(s.kernel, switching_point);
+  const auto inside = all_inside(s.kernel, j);
+  const auto has_changed = [&](int i) { return behind.mode[at(i)] != before.mode[at(i)]; };
+  const auto is_around_change = [&](int i) {
+    const auto& inner = s.kernel.inner(i);
+    return std::any_of(inner.begin(), inner.end(), has_changed);
+  };
+  for (int i = 0; i < j; ++i) {
+    if (!inside[at(i)] || before.mode[at(i)] == 0 || has_changed(i)) continue;
+    if (contains(switching_point.touched, i)) {
+      take_side(behind, i, -before.mode[at(i)]);
+    } else if (is_around_change(i) && !contains(switching_point.at_zero, i)) {
+      s.kernel.functions(switching_point.t, switching_point.x, behind.alpha.data(), values.data());
+      if (std::abs(values[at(i)]) > fields.noise(i)) take_side(behind, i, values[at(i)]);
+    }
+  }
+  return is_around_change(j);
+}
+
+/// Crosses the touched surfaces inside function j, which is at zero: whether j is not, behind them, but jumps away.
+bool jumps_away(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point, int j,
+                ModeState& state) {
+  ModeState behind = state;
+  if (!cross_inside(s, before, switching_point, j, behind)) return false;
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(switching_point.t, switching_point.x, behind.alpha.data(), values.data());
   const double psi = values[at(j)];
@@ -30,7 +63,7 @@ bool jumps_away(const SwitchingContext& s, const SwitchingPoint& switching_point
       size_of(s.kernel, j, switching_point.t, switching_point.x, behind.alpha.data(), switching_point.time_scale);
   // Four digits above rounding, as for jumps on sliding surfaces: a kink leaves rounding, a jump something of size.
   if (!(std::abs(psi) > smallest_jump(size))) return false;
-  set_surface(behind, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
+  take_side(behind, j, psi);
   state = std::move(behind);
   return true;
 }
@@ -48,7 +81,7 @@ bool Decider::read_nested_anew() {
     s_.kernel.functions(switching_point_.t, switching_point_.x, state.alpha.data(), values.data());
     const double psi = values[at(j)];
     if (!(std::abs(psi) > fields_.noise(j)) || (psi > 0.0) == (state.mode[at(j)] > 0)) continue;
-    set_surface(state, j, psi > 0.0 ? 1 : -1, psi > 0.0 ? 1.0 : 0.0);
+    take_side(state, j, psi);
     flipped = true;
   }
   return flipped;
@@ -71,32 +104,22 @@ Transition Decider::run_crossing(int jumping) {
 
 std::optional<Transition> cross_with_jump(const SwitchingContext& s, const ModeState& before,
                                           const SwitchingPoint& switching_point) {
-  std::optional<ModeState> behind;
-  SwitchingPoint rest;
+  ModeState behind = before;
+  SwitchingPoint rest = switching_point;
   int jumping = -1;
   for (const int j : switching_point.at_zero) {
-    if (s.kernel.inner(j).empty()) continue;
-    ModeState own = before;
-    if (!jumps_away(s, switching_point, j, own)) continue;
+    if (s.kernel.inner(j).empty() || !jumps_away(s, before, switching_point, j, behind)) continue;
     jumping = j;
-    if (!behind) {
-      behind = before;
-      rest = switching_point;
-    }
     for (auto* surfaces : {&rest.at_zero, &rest.touched, &rest.exit_below, &rest.exit_above}) std::erase(*surfaces, j);
-    for (std::size_t k = 0; k < own.mode.size(); ++k) {
-      if (own.mode[k] != before.mode[k]) set_surface(*behind, static_cast<int>(k), own.mode[k], own.alpha[k]);
-    }
   }
-  if (!behind) return std::nullopt;
-  Transition crossed = Decider(s, *behind, rest).run_crossing(jumping);
-  // What was slid on together with the function that jumps may be moved by its selection only: it is left then.
-  const bool lost = crossed.termination == result::Termination::evaluation_failed && !behind->sliding.empty();
-  if (lost && before.sliding.size() > behind->sliding.size()) {
-    rest.touched = behind->sliding;
-    Transition left = Decider(s, *behind, rest).run();
+  if (jumping < 0) return std::nullopt;
+  Transition crossed = Decider(s, behind, rest).run_crossing(jumping);
+  // What was slid on may have been held by the fields before only: it is left then, too.
+  if (crossed.termination != result::Termination::completed && !behind.sliding.empty()) {
+    rest.touched = behind.sliding;
+    Transition left = Decider(s, behind, rest).run();
     if (left.termination == result::Termination::completed) {
-      left.reason = crossed.reason + "; " + left.reason;
+      left.reason = crossed.reason + (left.reason.empty() ? "" : "; " + left.reason);
       return left;
     }
   }
