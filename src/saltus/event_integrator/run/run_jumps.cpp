@@ -103,8 +103,8 @@ std::vector<std::size_t> Run::with_kinks_here(const std::vector<int>& touched) c
   return found;
 }
 
-/// What was located passes nothing where the mode behind keeps it at zero, or leads it back: conditions that compare
-/// what is slid on from here are at equality, and a function with a kink at its zero takes the side of the mode behind.
+/// What was located passes nothing where the mode behind keeps it at zero, or leads it back. Conditions that compare
+/// what is slid on from here are at equality. A function with a kink at its zero takes the side of the mode behind.
 void Run::turn_by_mode_behind(const Located& located) {
   const auto& functions = search_.functions();
   SwitchingPoint point;
