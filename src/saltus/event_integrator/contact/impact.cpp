@@ -192,8 +192,8 @@ class Process {
     return true;
   }
 
-  [[nodiscard]] bool admits(std::vector<Branch>& branches) {
-    if (!rates(branches)) return false;
+  /// Whether what is held is held by impulses that contacts can have.
+  [[nodiscard]] bool has_possible_impulses(const std::vector<Branch>& branches) const {
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const double normal = rate_(i), largest = friction(i) * normal + share_rounding;
@@ -201,6 +201,11 @@ class Process {
       if (held && !(normal >= -share_rounding && normal <= 1.0 + share_rounding)) return false;
       if (branches[k].sticks && point_.along(rate_, i).norm() > largest) return false;
     }
+    return true;
+  }
+
+  [[nodiscard]] bool admits(std::vector<Branch>& branches) {
+    if (!rates(branches) || !has_possible_impulses(branches)) return false;
     find_change();
     const double slow = share_rounding * strength_;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
