@@ -55,8 +55,8 @@ void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x)
   }
 }
 
-/// The direction settles within |v| over the push of friction, which is three explicit steps. Where a growing force
-/// breaks a contact away the speed grows like t^2. Each time it doubles takes as many of these steps as 1/t.
+/// The direction settles within |v| over the push of friction, which limits explicit steps. Where a growing force
+/// breaks a contact away the speed grows like t^2: each time it doubles takes as many of them as 1/t.
 bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>& x) {
   const auto [modes, closed] = modes_at(x);
   if (std::find(modes.begin(), modes.end(), ContactMode::slip) == modes.end()) return false;
