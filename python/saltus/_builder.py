@@ -10,7 +10,7 @@ import numpy as np
 from . import _array
 from ._checks import one_of, points
 from ._errors import ModelError
-from ._expression import Expression, Operand, number, refuse
+from ._expression import Expression, Operand, called, number, refuse
 from ._model import Model
 from ._result import Result
 from ._settings import states_the_problem
@@ -170,7 +170,9 @@ class Builder(Structure):
         def value(argument: Operand) -> typing.Any:
             if isinstance(argument, np.ndarray) and argument.ndim > 0:
                 return _array.own(np.frompyfunc(value, 1, 1)(argument))
-            return Expression(f"{name}({self._own(number(argument)).text})", owner=self)
+            made = called(name, self._own(number(argument)))
+            made.owner = self
+            return made
 
         return value
 

@@ -6,6 +6,7 @@ An expression is its text, with the parentheses that are needed: what is built f
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import numbers
 import typing
@@ -36,7 +37,7 @@ class Expression:
     x>0 and not v<=x
     """
 
-    __slots__ = ("text", "level", "is_condition", "owner")
+    __slots__ = ("text", "level", "is_condition", "owner", "height", "reach", "depth", "parts", "_part")
     __array_priority__ = 1000
 
     def __init__(self, text: str, level: int = PRIMARY, is_condition: bool = False, owner: Owner = None) -> None:
@@ -44,6 +45,10 @@ class Expression:
         self.level = level
         self.is_condition = is_condition
         self.owner = owner
+        #: Nodes on the longest way down, in this text and with its parts; what nests; expressions named in the text.
+        self.height, self.reach, self.depth = 1, 1, 0
+        self.parts: dict[str, Expression] = {}
+        self._part: Expression | None = None
 
     def __repr__(self) -> str:
         return self.text
@@ -103,10 +108,10 @@ class Expression:
         return call("floor", other / self)
 
     def __neg__(self) -> Expression:
-        return make("-" + _inside(number(self), SIGN), SIGN, False, self)
+        return _signed("-", self)
 
     def __pos__(self) -> Expression:
-        return make("+" + _inside(number(self), SIGN), SIGN, False, self)
+        return _signed("+", self)
 
     def __abs__(self) -> typing.Any:
         return call("abs", self)
@@ -145,7 +150,7 @@ class Expression:
 
     def __invert__(self) -> Expression:
         _condition(self, "~")
-        return make("not " + _inside(self, NOT), NOT, True, self)
+        return make("not " + _inside(self, NOT), NOT, True, 1 + _depth(self, NOT), self)
 
     # What Python must not decide -----------------------------------------------------------------------------------
 
@@ -216,7 +221,23 @@ def number(value: Operand) -> Expression:
     made = expression(value)
     if made.is_condition:
         raise refuse(f"{made.text} is a condition, not a number", f"write saltus.if_({made.text}, 1, 0)")
-    return made
+    return _part_of(made) if made.height >= HIGHEST or made.depth >= DEEPEST or len(made.text) >= LONG else made
+
+
+#: What is larger has a name of its own in the text of the model: of a sum so many terms, so many calls and parentheses
+#: inside of each other (the language has 1000 and 200 of them), so many characters.
+HIGHEST, DEEPEST, LONG = 1000, 190, 30_000
+#: Parts included: what goes through all of it does so by recursion.
+FARTHEST = 5000
+_numbers = itertools.count(1)
+
+
+def _part_of(whole: Expression) -> Expression:
+    """A name for an expression; the builder that writes it down defines it, and chooses the name."""
+    if whole._part is None:
+        whole._part = Expression(f"§{next(_numbers)}§", owner=whole.owner)
+        whole._part.parts, whole._part.reach = {whole._part.text: whole}, whole.reach
+    return whole._part
 
 
 def owner_of(*operands: Operand) -> Owner:
@@ -238,13 +259,27 @@ def _inside(operand: Expression, level: int) -> str:
 LONGEST = 5_000_000
 
 
-def make(text: str, level: int, is_condition: bool, *operands: Expression) -> Expression:
+def _depth(operand: Expression, level: int) -> int:
+    return operand.depth + (operand.level < level)
+
+
+def make(text: str, level: int, is_condition: bool, depth: int, *operands: Expression) -> Expression:
     if len(text) > LONGEST:
         raise refuse(
             f"an expression of more than {LONGEST} characters, {text[:40]}…",
             'name what occurs in it again and again: part = m.define("part", …)',
         )
-    return Expression(text, level, is_condition, owner_of(*operands))
+    made = Expression(text, level, is_condition, owner_of(*operands))
+    made.height, made.depth = 1 + max(operand.height for operand in operands), depth
+    made.reach = 1 + max(operand.reach for operand in operands)
+    if made.reach > FARTHEST:
+        raise refuse(
+            f"a chain, or nest, of more than {FARTHEST} operations: {text[:40]}…",
+            "add groups of its terms, each by itself, and then these: sum(sum(group) for group in groups)",
+        )
+    parts = [operand.parts for operand in operands if operand.parts]
+    made.parts = parts[0] if len(parts) == 1 else {key: part for some in parts for key, part in some.items()}
+    return made
 
 
 Made = typing.TypeVar("Made", bound=typing.Callable[..., typing.Any])
@@ -273,19 +308,27 @@ def _one(operand: Operand) -> np.ndarray[typing.Any, typing.Any]:
 @entry_by_entry
 def _binary(sign: str, left: Operand, right: Operand, level: int) -> Expression:
     a, b = number(left), number(right)
-    return make(_inside(a, level) + sign + _inside(b, level + 1), level, False, a, b)
+    depth = max(_depth(a, level), _depth(b, level + 1))
+    return make(_inside(a, level) + sign + _inside(b, level + 1), level, False, depth, a, b)
+
+
+def _signed(sign: str, operand: Expression) -> Expression:
+    a = number(operand)
+    return make(sign + _inside(a, SIGN), SIGN, False, 1 + _depth(a, SIGN), a)
 
 
 @entry_by_entry
 def _power(base: Operand, exponent: Operand) -> Expression:
     a, b = number(base), number(exponent)
-    return make(f"{_inside(a, PRIMARY)}^{_inside(b, SIGN)}", POWER, False, a, b)
+    depth = max(_depth(a, PRIMARY), 1 + _depth(b, SIGN))
+    return make(f"{_inside(a, PRIMARY)}^{_inside(b, SIGN)}", POWER, False, depth, a, b)
 
 
 @entry_by_entry
 def _comparison(sign: str, left: Operand, right: Operand) -> Expression:
     a, b = number(left), number(right)
-    return make(_inside(a, SUM) + sign + _inside(b, SUM), COMPARISON, True, a, b)
+    depth = max(_depth(a, SUM), _depth(b, SUM))
+    return make(_inside(a, SUM) + sign + _inside(b, SUM), COMPARISON, True, depth, a, b)
 
 
 def condition(value: Operand, message: str, remedy: str) -> Expression:
@@ -304,11 +347,18 @@ def _condition(value: Operand, sign: str) -> Expression:
 @entry_by_entry
 def _logical(word: str, left: Operand, right: Operand, level: int) -> Expression:
     a, b = _condition(left, word.strip()), _condition(right, word.strip())
-    return make(_inside(a, level) + word + _inside(b, level + 1), level, True, a, b)
+    depth = max(_depth(a, level), _depth(b, level + 1))
+    return make(_inside(a, level) + word + _inside(b, level + 1), level, True, depth, a, b)
 
 
 @entry_by_entry
 def call(function: str, *arguments: Operand) -> typing.Any:
     """A function of the language; of arrays entry by entry."""
     made = [number(argument) for argument in arguments]
-    return make(f"{function}({','.join(argument.text for argument in made)})", PRIMARY, False, *made)
+    return called(function, *made)
+
+
+def called(function: str, *made: Expression) -> Expression:
+    """A call with these arguments, of which one may be a condition."""
+    depth = 1 + max(argument.depth for argument in made)
+    return make(f"{function}({','.join(argument.text for argument in made)})", PRIMARY, False, depth, *made)

@@ -6,7 +6,7 @@ import functools
 import typing
 
 from . import _array
-from ._expression import PRIMARY, Expression, Operand, call, entry_by_entry, make, number, refuse
+from ._expression import Expression, Operand, call, called, entry_by_entry, number, refuse
 from ._expression import condition as as_condition
 
 
@@ -66,8 +66,7 @@ def if_(condition: Operand, a: Operand, b: Operand) -> Expression:
     if(x>1,-x,2)
     """
     holds = as_condition(condition, "if_ needs a condition", "compare: saltus.if_(x > 0, a, b)")
-    made = [holds, number(a), number(b)]
-    return make(f"if({','.join(part.text for part in made)})", PRIMARY, False, *made)
+    return called("if", holds, number(a), number(b))
 
 
 t = Expression("t")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import json
 import re
 import typing
@@ -11,6 +12,8 @@ import numpy as np
 
 from ._expression import Expression, Operand, expression, number, owner_of, refuse
 
+#: The name of a part of an expression until it is written down.
+_PART = re.compile(r"§\d+§")
 Rates = typing.Mapping[typing.Any, Operand]
 Entries = dict[str, typing.Any]
 #: Names that the language has already.
@@ -34,6 +37,7 @@ class Statement:
         self._lists: dict[str, list[Entries]] = {
             part: [] for part in ("contacts", "hysteresis", "modes", "jumps", "events")
         }
+        self._pieces: dict[str, Expression] = {}  # of expressions that are too large
         self._inputs: Entries = {}
         self._simulate: Entries = {}
         self._mechanics: Entries = {}
@@ -71,7 +75,24 @@ class Statement:
             ("[optimize]", self._optimize),
             ("[time_freezing]", self._time_freezing),
         ]
-        return "\n".join(f"{head}\n{_lines(entries)}" for head, entries in parts if entries)
+        return self._with_parts(parts)
+
+    def _with_parts(self, tables: list[tuple[str, Entries]]) -> str:
+        """The text, with a definition for every part of an expression that is too large for one."""
+        lines = [(head, _lines(entries)) for head, entries in tables]
+        wanted, found = _PART.findall("".join(text for _, text in lines)), set()
+        while wanted:
+            key = wanted.pop()
+            if key not in found and key in self._pieces:
+                found.add(key)
+                wanted += _PART.findall(self._pieces[key].text)
+        free = (name for i in itertools.count(1) if (name := f"part{i}") not in self._taken)
+        # Older ones are in newer ones.
+        names = dict(zip(sorted(found, key=lambda key: int(key[1:-1])), free))
+        defined = _lines({names[key]: self._pieces[key] for key in names})
+        named = [(head, defined + text if head == "[definitions]" else text) for head, text in lines]
+        text = "\n".join(f"{head}\n{entries}" for head, entries in named if entries)
+        return _PART.sub(lambda match: names.get(match[0], match[0]), text) if names else text
 
     @contextlib.contextmanager
     def _all_or_nothing(self) -> typing.Iterator[None]:
@@ -103,7 +124,15 @@ class Statement:
     def _own(self, value: Operand) -> Expression:
         made = expression(value)
         owner_of(Expression("", owner=self), made)
+        self._note_parts(made)
         return made
+
+    def _note_parts(self, made: Expression) -> None:
+        new = [(key, part) for key, part in made.parts.items() if key not in self._pieces]
+        while new:
+            key, part = new.pop()
+            self._pieces[key] = part
+            new += [(key, part) for key, part in part.parts.items() if key not in self._pieces]
 
     def _own_or_none(self, value: Operand) -> Expression | None:
         return None if value is None else self._own(value)

@@ -1,5 +1,6 @@
 """Models stated in Python: the same text, the same bits, and what is wrong with them."""
 
+import functools
 import math
 
 import numpy as np
@@ -343,7 +344,9 @@ def test_vectors_and_long_sums_of_casadi():
     assert m.simulate(until=0.1).status.done
     for _ in range(60):
         v = casadi.sin(v) * v
-    refused(lambda: m.output("y", v), "characters", "m.define")
+    # What occurs in itself twice, sixty times, has names.
+    m.output("y", v)
+    assert len(m.to_toml()) < 1_000_000 and m.simulate(until=0.1).final["y"] == 0
 
 
 def test_keys_and_truths_are_those_of_toml():
@@ -447,3 +450,44 @@ def test_a_call_that_fails_leaves_the_builder_as_it_was():
     m.rate(x, -x)
     for name in "h", "c", "f", "x1":
         m.parameter(name, 1)
+
+
+def grown(n, grow):
+    m = saltus.Builder("m")
+    x = m.state("x", 0.5)
+    made = grow(x, n)
+    m.output("y", made)
+    m.parameter("part1", 1)
+    m.rate(x, 0 * made)
+    return m
+
+
+@pytest.mark.filterwarnings("ignore::saltus.ModelWarning")
+@pytest.mark.parametrize(
+    ("n", "grow", "value"),
+    [
+        (2500, lambda x, n: sum(saltus.sin(i * x) for i in range(n)), sum(np.sin(i * 0.5) for i in range(2500))),
+        (2500, lambda x, n: (saltus.array([x] * n) * np.arange(n)).mean(), 0.5 * 2499 / 2),
+        (1500, lambda x, n: functools.reduce(lambda e, i: saltus.sin(i * x) + e, range(n), 0), sum(np.sin(i * 0.5) for i in range(1500))),
+        (1200, lambda x, n: functools.reduce(lambda e, i: saltus.cos(e), range(n), x), 0.7390851332151607),
+        (1500, lambda x, n: functools.reduce(lambda e, i: e * (1 + 0.001 * x), range(n), 1), 1.0005**1500),
+        (400, lambda x, n: functools.reduce(lambda e, i: -(1 - e / 2), range(n), x), -2.0),
+    ],
+    ids=["sum", "mean", "from the right", "nest", "product", "signs"],
+)
+def test_large_expressions_get_names_of_parts(n, grow, value):
+    m = grown(n, grow)
+    text = m.to_toml()
+    assert "[definitions]\npart2 = " in text and "§" not in text and text == grown(n, grow).to_toml()
+    r = m.simulate(until=0.1)
+    assert r["y"][0] == pytest.approx(value, rel=1e-9)
+    assert saltus.Model.from_text(text).simulate(until=0.1)["y"].tolist() == r["y"].tolist()
+
+
+def test_small_expressions_get_no_names():
+    assert "[definitions]" not in grown(900, lambda x, n: sum(i * x for i in range(n))).to_toml()
+
+
+def test_what_is_too_large_is_refused_where_it_is_made():
+    refused(lambda: grown(6000, lambda x, n: sum(i * x for i in range(n))), "more than 5000 operations", "groups")
+    grown(6000, lambda x, n: sum(sum(i * x for i in range(k, k + 100)) for k in range(0, n, 100))).model()
