@@ -97,6 +97,85 @@ TEST(Coupled, SurfacesThatCoincideAreSlidOnTogether) {
   }
 }
 
+/// x' = y' = drive - sign(x) - 3 sign(y - y0): both are at 0 together, held by the weighted sum of both selections
+/// only.
+TEST(Coupled, SurfacesThatMoveAlikeAreHeldByTheirSumUntilTheDriveIsLarger) {
+  const double starts[] = {0.0, 0.5};
+  for (const double y_0 : starts) {
+    for (const double direction : {1.0, -1.0}) {
+      for (const auto method : testing::every_method) {
+        Builder b("alike");
+        const SX x = b.state("x", {1});
+        const SX y = b.state("y", {1 + y_0});
+        const SX rate = direction * b.time() - b.sign(x) - 3 * b.sign(y - y_0);
+        b.dynamics("x", rate);
+        b.dynamics("y", rate);
+        IntegrationOptions options;
+        options.method = method;
+        options.tolerances = {1e-10, 1e-12};
+        options.until = 6;
+        const auto result = testing::run_model(b, options);
+        ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+        // 1 - 4 t + direction t^2/2 = 0
+        const double stop = direction > 0.0 ? 4.0 - std::sqrt(14.0) : std::sqrt(18.0) - 4.0;
+        ASSERT_EQ(result.events.size(), 2U);
+        EXPECT_NEAR(result.events[0].t, stop, 1e-10);
+        EXPECT_EQ(result.events[0].kind, result::EventKind::enter_sliding);
+        EXPECT_EQ(result.events[0].unique, true);
+        EXPECT_EQ(*result.events[0].mode_after, (result::Mode{0, 0}));
+        for (const double alpha : *result.events[0].alpha_after) EXPECT_TRUE(std::isnan(alpha));
+        EXPECT_NEAR(result.events[1].t, 4.0, 1e-10);
+        EXPECT_EQ(result.events[1].kind, result::EventKind::leave_sliding);
+        const int side = direction > 0.0 ? 1 : -1;
+        EXPECT_EQ(*result.events[1].mode_after, (result::Mode{side, side}));
+        EXPECT_NEAR(result.final.x[0], 2.0 * direction, 1e-9);
+        EXPECT_NEAR(result.final.x[1], 2.0 * direction + y_0, 1e-9);
+      }
+    }
+  }
+}
+
+/// z' = -2 sign(z) - sign(x)/2 beside x' = y'/2 = -sign(x) - 3 sign(y) - sign(z)/4 + drive: two conditions for three
+/// selections. At rest |sign(z)| <= 1 leaves all the room that the others want: x and y part from 0 as 4 < t, but for
+/// what sign(z) = -1/4 then adds.
+TEST(Coupled, OfThreeSurfacesTwoMoveAlike) {
+  Builder b("three");
+  const SX x = b.state("x", {1});
+  const SX y = b.state("y", {2});
+  const SX z = b.state("z", {0.125});
+  const SX rate = b.time() - b.sign(x) - 3 * b.sign(y) - 0.25 * b.sign(z);
+  b.dynamics("x", rate);
+  b.dynamics("y", 2 * rate);
+  b.dynamics("z", -2 * b.sign(z) - 0.5 * b.sign(x));
+  const auto result = run_coupled(b, 6);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  ASSERT_EQ(result.events.size(), 3U);
+  EXPECT_NEAR(result.events[0].t, 0.05, 1e-10);
+  // From there sign(z) is -1/4: x' = t - 4 + 1/16.
+  const double left = 1.0 + 0.05 * (0.025 - 4.25), rate_0 = 0.05 - 4.0 + 0.0625;
+  EXPECT_NEAR(result.events[1].t, 0.05 - rate_0 - std::sqrt(rate_0 * rate_0 - 2.0 * left), 1e-9);
+  EXPECT_EQ(*result.events[1].mode_after, (result::Mode{0, 0, 0}));
+  EXPECT_NEAR(result.events[2].t, 3.9375, 1e-9);
+  EXPECT_EQ(*result.events[2].mode_after, (result::Mode{1, 1, 0}));
+  EXPECT_NEAR((*result.events[2].alpha_after)[2], 0.375, 1e-9);
+  EXPECT_NEAR(result.final.x[0], 0.5 * (6.0 - 3.9375) * (6.0 - 3.9375), 1e-8);
+  EXPECT_NEAR(result.final.x[1], 2.0 * result.final.x[0], 1e-8);
+}
+
+/// x and y touch 0 with one velocity at t = 1/4, and y - x = 0.1 (t - 1/4)^2: y stays alone.
+TEST(Coupled, SurfacesThatMoveAlikeForAnInstantAreNotHeld) {
+  Builder b("instant");
+  const SX x = b.state("x", {1});
+  const SX y = b.state("y", {1.00625});
+  const SX rate = -b.sign(x) - 3 * b.sign(y);
+  b.dynamics("x", rate);
+  b.dynamics("y", rate + 0.2 * (b.time() - 0.25));
+  const auto result = run_coupled(b, 1);
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_EQ(result.final.mode, (result::Mode{-1, 0}));
+  EXPECT_NEAR(result.final.x[0], -0.05625, 1e-9);
+}
+
 TEST(Coupled, SlidingOfSecondOrderIsNotTakenForACrossing) {
   // Sliding on both ends with alpha_x = 1, where y' = z for either alpha_y, and z' = 1 - 1.3 alpha_y turns y back.
   Builder b("second order");

@@ -30,15 +30,16 @@ class DependentSearch {
 
   std::optional<HigherOrderSet> run() {
     choose_independent();
-    if (set_.functions.size() == sliding_.size()) return std::nullopt;
+    if (dependent_.empty() && !velocities_depend()) return std::nullopt;
     static_cast<void>(functions_.project(t_, x_.data()));
     if (!stay_dependent()) return std::nullopt;
-    if (!fields()) return std::nullopt;
-    if (!make_balances()) return std::nullopt;
+    if (!fields(t_, x_)) return std::nullopt;
+    if (!make_balances() || !others_follow(t_, x_)) return std::nullopt;
     return checked();
   }
 
-  [[nodiscard]] std::string take_problem() { return std::move(problem_); }
+  /// What else may hold surfaces whose gradients are independent has its own problems.
+  [[nodiscard]] std::string take_problem() { return dependent_.empty() ? std::string() : std::move(problem_); }
 
  private:
   bool reject(std::string why) {
@@ -61,6 +62,23 @@ class DependentSearch {
       }
     }
     functions_.set(set_.functions, alpha_);
+  }
+
+  /// Whether selections move all of the functions, but not each by itself: blocks that press on each other stop
+  /// together.
+  bool velocities_depend() {
+    functions_.differentiate(t_, x_.data());
+    if (!fields(t_, x_)) return false;
+    const Eigen::MatrixXd effects = effects_on(functions_.rows());
+    const bool all_move = (effects.cwiseAbs().rowwise().maxCoeff().array() > 0.0).all();
+    return all_move && switching::independent_rows(effects).size() < sliding_.size();
+  }
+
+  /// What each selection adds to the velocities of functions, without what is rounding.
+  [[nodiscard]] Eigen::MatrixXd effects_on(const Eigen::MatrixXd& rows) const {
+    const Eigen::MatrixXd terms = switching::field_accuracy * (rows.cwiseAbs() * jumps_.cwiseAbs());
+    const Eigen::MatrixXd effects = rows * jumps_;
+    return (effects.cwiseAbs().array() > terms.array()).select(effects, 0.0);
   }
 
   /// The functions that were not chosen vanish with the others, now, near by on the set, and as time goes.
@@ -91,39 +109,90 @@ class DependentSearch {
   }
 
   /// What each of the selections adds to f.
-  bool fields() {
-    std::vector<double> trial = alpha_, f(x_.size());
+  bool fields(double t, const std::vector<double>& x) {
+    std::vector<double> trial = alpha_, f(x.size());
     const auto field = [&](const std::vector<double>& selections, Eigen::VectorXd& value) {
       for (std::size_t i = 0; i < sliding_.size(); ++i) trial[at(sliding_[i])] = selections[i];
-      s_.kernel.field(t_, x_.data(), trial.data(), f.data());
+      s_.kernel.field(t, x.data(), trial.data(), f.data());
       value = Eigen::Map<const Eigen::VectorXd>(f.data(), index(f.size()));
     };
     auto map = switching::additive_map(sliding_.size(), field);
     if (!map) return reject("their selections multiply each other");
     if (!map->constant.allFinite() || !map->effects.allFinite()) return reject("a field is not finite on the surfaces");
     jumps_ = std::move(map->effects);
+    base_.assign(map->constant.begin(), map->constant.end());
     return true;
   }
 
-  /// Functions that share selections are balanced together.
+  /// Functions that share selections are balanced together, as far as these move them independently.
   bool make_balances() {
     functions_.differentiate(t_, x_.data());
-    const auto found =
-        switching::balances_of(functions_.rows() * jumps_, functions_.rows().cwiseAbs() * jumps_.cwiseAbs());
+    const Eigen::MatrixXd effects = functions_.rows() * jumps_;
+    auto found = switching::balances_of(effects, functions_.rows().cwiseAbs() * jumps_.cwiseAbs());
     for (const std::size_t i : found.unused) {
       if (jumps_.col(index(i)).cwiseAbs().maxCoeff() > 0.0) {
         return reject("the motion depends on a selection that nothing determines");
       }
       set_.undetermined.push_back(sliding_[i]);
     }
-    for (const auto& balance : found.all) {
-      if (balance.rows.size() < balance.functions.size()) return reject("no selection moves some of the surfaces");
-      if (balance.rows.size() == balance.functions.size()) continue;
-      for (const std::size_t i : balance.rows) set_.undetermined.push_back(sliding_[i]);
+    for (auto& balance : found.all) {
+      if (balance.rows.empty()) return reject("no selection moves some of the surfaces");
+      Followers own{{}, balance.functions};
+      Eigen::MatrixXd part(index(own.functions.size()), effects.cols());
+      for (std::size_t k = 0; k < own.functions.size(); ++k) part.row(index(k)) = effects.row(index(own.functions[k]));
+      for (const std::size_t k : switching::independent_rows(part)) own.leaders.push_back(own.functions[k]);
+      balance.functions = own.leaders;
+      std::erase_if(own.functions,
+                    [&](std::size_t f) { return std::binary_search(own.leaders.begin(), own.leaders.end(), f); });
+      if (balance.rows.size() > balance.functions.size()) {
+        for (const std::size_t i : balance.rows) set_.undetermined.push_back(sliding_[i]);
+      }
+      if (!own.functions.empty()) followers_.push_back(std::move(own));
     }
     set_.balances = found.all;
     std::sort(set_.undetermined.begin(), set_.undetermined.end());
     return true;
+  }
+
+  /// Whether functions that are in no balance rest at a point while those in theirs do.
+  bool others_follow(double t, const std::vector<double>& x) {
+    if (followers_.empty()) return true;
+    functions_.differentiate(t, x.data());
+    if (!fields(t, x)) return false;
+    const bool follow = std::all_of(followers_.begin(), followers_.end(), [&](const Followers& f) {
+      return std::all_of(f.functions.begin(), f.functions.end(), [&](auto i) { return follows(i, f.leaders); });
+    });
+    return follow || reject("no selection moves some of the surfaces, which do not stay by themselves");
+  }
+
+  /// The same a little later along the motion: two that move alike for an instant part.
+  bool others_follow_ahead(const std::vector<double>& motion) {
+    const double step = 0x1p-10 * (1.0 + std::abs(t_));
+    std::vector<double> x = x_;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += step * motion[i];
+    static_cast<void>(functions_.project(t_ + step, x.data()));
+    return others_follow(t_ + step, x);
+  }
+
+  /// Whether the velocity of a function is a combination of those of others, for all selections.
+  bool follows(std::size_t function, const std::vector<std::size_t>& leaders) {
+    const auto velocity_at_0 = [&](std::size_t i) { return functions_.velocity(i, base_); };
+    const auto terms_of = [&](std::size_t i) {
+      return functions_.velocity_terms(i, base_) +
+             functions_.rows().row(index(i)).cwiseAbs().dot(jumps_.cwiseAbs().rowwise().sum());
+    };
+    const Eigen::MatrixXd effects = functions_.rows() * jumps_;
+    Eigen::MatrixXd leading(effects.cols(), index(leaders.size()));
+    for (std::size_t k = 0; k < leaders.size(); ++k) leading.col(index(k)) = effects.row(index(leaders[k]));
+    const Eigen::VectorXd own = effects.row(index(function));
+    const Eigen::VectorXd shares = leading.completeOrthogonalDecomposition().solve(own);
+    double velocity = velocity_at_0(function), terms = terms_of(function);
+    for (std::size_t k = 0; k < leaders.size(); ++k) {
+      velocity -= shares[index(k)] * velocity_at_0(leaders[k]);
+      terms += std::abs(shares[index(k)]) * terms_of(leaders[k]);
+    }
+    const double rest = std::max(std::abs(velocity), (own - leading * shares).cwiseAbs().maxCoeff());
+    return rest <= switching::field_accuracy * terms;
   }
 
   std::optional<HigherOrderSet> checked() {
@@ -141,8 +210,14 @@ class DependentSearch {
                                                 : "the motion depends on selections that are not determined"));
       return std::nullopt;
     }
+    if (!others_follow_ahead(field.motion())) return std::nullopt;
     return std::move(set_);
   }
+
+  /// Functions whose velocities are combinations of those of others, the leaders.
+  struct Followers {
+    std::vector<std::size_t> leaders, functions;
+  };
 
   const SwitchingContext& s_;
   const std::vector<int>& sliding_;
@@ -150,7 +225,9 @@ class DependentSearch {
   std::vector<double>& x_;
   std::vector<double> alpha_;
   std::vector<int> dependent_;
-  Eigen::MatrixXd jumps_;  ///< n_x x q
+  std::vector<Followers> followers_;
+  Eigen::MatrixXd jumps_;     ///< n_x x q
+  std::vector<double> base_;  ///< f with all selections at 0
   HeldFunctions functions_;
   HigherOrderSet set_;
   std::string problem_;
