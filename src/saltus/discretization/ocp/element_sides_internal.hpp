@@ -44,8 +44,17 @@ class ElementSides {
   }
   /// Gives others the modes of element `from` in element `to`.
   void copy(std::size_t from, std::size_t to, Sides& changed) const {
+    write(modes(from), to, changed);
+  }
+  /// Returns one side per selection of an element.
+  [[nodiscard]] Sides modes(std::size_t element) const {
+    Sides modes;
+    for (std::size_t k = 0; k < selections_; ++k) modes.push_back(of(element, k));
+    return modes;
+  }
+  void write(const Sides& modes, std::size_t to, Sides& changed) const {
     for (std::size_t k = 0; k < selections_; ++k) {
-      std::fill_n(changed.begin() + static_cast<std::ptrdiff_t>(first(to, k)), per_selection_, of(from, k));
+      std::fill_n(changed.begin() + static_cast<std::ptrdiff_t>(first(to, k)), per_selection_, modes[k]);
     }
   }
   [[nodiscard]] const Sides& all() const { return sides_; }

@@ -7,6 +7,7 @@
 #include "saltus/discretization/element_expressions_internal.hpp"
 #include "saltus/discretization/ocp/element_sides_internal.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
+#include "saltus/discretization/ocp/surface_states_internal.hpp"
 
 namespace saltus::discretization {
 namespace {
@@ -238,6 +239,14 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
     if (w[before.length] < vanished) moves.push_back({modes.copied(e, e - 1), w});
   }
   add_moved_standstills(made, modes, w, moves);
+  const auto functions = [&](const Eigen::VectorXd& point) {
+    Eigen::VectorXd c(rows());
+    implementation_->functions(point, c);
+    return c;
+  };
+  add_void_sides(made, modes, w, functions, moves);
+  add_touched_sides(made, modes, w, moves);
+  add_reached_regions(made, modes, w, moves);
   return moves;
 }
 

@@ -71,6 +71,7 @@ void take_sizes(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation
   kernel.states = static_cast<int>(dcs.x.numel());
   kernel.selections = static_cast<int>(dcs.selection.numel());
   kernel.pairs = selection_pairs(dcs);
+  kernel.parts = dcs.parts;
   kernel.moves = kernel.options.cross_complementarity != CrossComplementarity::same_stage;
   for (std::size_t i = 0; i < ocp.free_parameters.size(); ++i) {
     if (ocp.free_parameters[i])

@@ -45,6 +45,7 @@ struct OcpKernel::Implementation {
   int states = 0, selections = 0, simplices = 0;
   int clock = -1;  ///< state that is physical time; -1: none
   std::vector<SelectionPair> pairs;
+  std::vector<reformulation::DcsPart> parts;
   std::vector<ClosingGap> closing_gaps;
   std::vector<std::pair<int, int>> simplex_parts;  ///< first selection and count
   SharedSizes shared;

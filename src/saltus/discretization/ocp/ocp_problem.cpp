@@ -135,8 +135,10 @@ void OcpProblem::objective_gradient(ConstVectorView w, VectorView gradient) {
   }
 }
 
-void OcpProblem::functions(ConstVectorView w, VectorView c) {
-  auto& made = *implementation_->structure;
+void OcpProblem::functions(ConstVectorView w, VectorView c) { implementation_->functions(w, c); }
+
+void OcpProblem::Implementation::functions(ConstVectorView w, VectorView c) const {
+  const auto& made = *structure;
   for (const auto& placed : made.functions) {
     if (placed.function->equations() + placed.function->pairs() == 0) continue;
     placed.placed->rows(w, made.constants, made.local_parameters, c);

@@ -29,6 +29,7 @@ struct OcpProblem::Implementation {
 
   Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp);
   void find_patterns();
+  void functions(mpcc::ConstVectorView w, mpcc::VectorView c) const;
   /// Returns factor of a function's objective: 1, or that of the method.
   [[nodiscard]] double factor(const Placed& placed) const { return placed.term == Term::method ? method_scale : 1.0; }
   [[nodiscard]] double term(Term wanted, mpcc::ConstVectorView w);

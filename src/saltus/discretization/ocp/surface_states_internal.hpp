@@ -1,0 +1,63 @@
+// On which side of each surface an element is, in either form.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "saltus/discretization/ocp/element_sides_internal.hpp"
+
+namespace saltus::discretization {
+
+/// Reads and writes the sides of surfaces in the modes of elements. Regions by indicators of the user have no surfaces.
+class SurfaceStates {
+ public:
+  using Modes = ElementSides::Sides;
+  explicit SurfaceStates(const OcpStructure& made);
+
+  [[nodiscard]] std::size_t count() const { return surfaces_.size(); }
+  /// Returns -1 or 1, or 0 where the surface is slid on.
+  [[nodiscard]] int of(const Modes& modes, std::size_t surface) const;
+  [[nodiscard]] Modes with(Modes modes, std::size_t surface, int state) const;
+  /// Gives the selections of an element their values on one side of a surface.
+  void select(std::size_t element, std::size_t surface, int state, mpcc::VectorView w) const;
+  /// Returns whether both sides of the surface are the same point at the right end of an element.
+  [[nodiscard]] bool is_reached(std::size_t element, std::size_t surface, mpcc::ConstVectorView w) const;
+  /// Returns whether they are in the whole element.
+  [[nodiscard]] bool is_held(std::size_t element, std::size_t surface, mpcc::ConstVectorView w) const;
+
+ private:
+  struct Surface {
+    const reformulation::DcsPart* part = nullptr;
+    int column = 0;
+    int first_pair = 0;  ///< step: of the selection; else of the part
+  };
+  [[nodiscard]] static bool is_step(const Surface& surface) {
+    return surface.part->form == reformulation::Form::step;
+  }
+  /// @param lambda  places of all multipliers of a point
+  [[nodiscard]] bool is_on(std::size_t surface, const std::vector<int>& lambda, mpcc::ConstVectorView w) const;
+  /// Returns the region on the other side of the surface.
+  [[nodiscard]] static int mirrored(const Surface& surface, int region);
+
+  const OcpStructure& made_;
+  std::vector<Surface> surfaces_;
+};
+
+/// Adds moves of surfaces that elements are held on although nothing depends on their selections there: either side of
+/// them is the same point.
+/// @param functions  rows of the problem at a point
+void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
+                    const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& functions,
+                    std::vector<mpcc::BranchMove>& moves);
+
+/// Adds moves of surfaces that are reached and not crossed where an element ends, and of several crossed at once: an
+/// element between has their sides one by one.
+void add_touched_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
+                       std::vector<mpcc::BranchMove>& moves);
+
+/// Adds moves of regions by indicators that a state comes to at the end of the horizon, or is held at until then: it
+/// goes on through them, to the line between them and another one.
+void add_reached_regions(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
+                         std::vector<mpcc::BranchMove>& moves);
+
+}  // namespace saltus::discretization

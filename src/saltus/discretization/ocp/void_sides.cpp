@@ -1,0 +1,117 @@
+// Surfaces that are held although nothing depends on their selections.
+#include <algorithm>
+#include <cmath>
+
+#include "saltus/discretization/ocp/surface_states_internal.hpp"
+
+namespace saltus::discretization {
+namespace {
+
+using Functions = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+
+class VoidSides {
+ public:
+  VoidSides(const OcpStructure& made, const ElementSides& modes, const Eigen::VectorXd& w, const Functions& functions)
+      : made_(made), modes_(modes), w_(w), functions_(functions), states_(made), elements_(made.element.size()) {}
+
+  void add_to(std::vector<mpcc::BranchMove>& moves) const {
+    for (std::size_t surface = 0; surface < states_.count(); ++surface) {
+      const std::vector<bool> is_void = find_void(surface);
+      for (std::size_t e = 0; e < elements_; ++e) {
+        if (!is_void[e]) continue;
+        std::size_t end = e;
+        while (end < elements_ && is_void[end]) ++end;
+        add_run(surface, e, end, moves);
+        e = end;
+      }
+    }
+  }
+
+ private:
+  /// Elements that are on the surface throughout, and have the same equations on either side of it.
+  [[nodiscard]] std::vector<bool> find_void(std::size_t surface) const {
+    std::vector<bool> is_void(elements_);
+    for (std::size_t e = 0; e < elements_; ++e) is_void[e] = states_.is_held(e, surface, w_);
+    if (std::find(is_void.begin(), is_void.end(), true) == is_void.end()) return is_void;
+    for (const int state : {-1, 1}) {
+      const Eigen::VectorXd errors = errors_of(selected(surface, is_void, state));
+      for (std::size_t e = 0; e < elements_; ++e) is_void[e] = is_void[e] && errors[index(e)] <= 1e-7;
+    }
+    return is_void;
+  }
+
+  [[nodiscard]] Eigen::VectorXd selected(std::size_t surface, const std::vector<bool>& is_wanted, int state) const {
+    Eigen::VectorXd w = w_;
+    for (std::size_t e = 0; e < elements_; ++e) {
+      if (is_wanted[e]) states_.select(e, surface, state, w);
+    }
+    // Lifted variables are products of those before them.
+    for (int k = 0; k < made_.kernel.layout.lifted.size; ++k) lift(k, w);
+    return w;
+  }
+
+  [[nodiscard]] const Placed& equations() const {
+    return *std::find_if(made_.functions.begin(), made_.functions.end(),
+                         [&](const Placed& placed) { return placed.function == &made_.kernel.element; });
+  }
+
+  void lift(int k, Eigen::VectorXd& w) const {
+    const auto& kernel = made_.kernel;
+    const auto& layout = kernel.layout;
+    const Eigen::VectorXd c = functions_(w);
+    const int differential =
+        kernel.states * (layout.stages + layout.end_state.count) + layout.end_time.count * layout.end_time.size;
+    const int per_stage = kernel.selections + kernel.simplices + layout.lifted.size;
+    for (const auto& one : equations().copies) {
+      for (int m = 0; m < layout.stages; ++m) {
+        const int row = one.first_row + differential + (m + 1) * per_stage - layout.lifted.size + k;
+        w[made_.element[at(one.element)].variable(layout.lifted.at(m, k))] -= c[row];
+      }
+    }
+  }
+
+  /// The largest error of an equation of each element.
+  [[nodiscard]] Eigen::VectorXd errors_of(const Eigen::VectorXd& w) const {
+    const Eigen::VectorXd c = functions_(w);
+    Eigen::VectorXd errors = Eigen::VectorXd::Zero(index(elements_));
+    for (const auto& one : equations().copies) {
+      errors[one.element] = c.segment(one.first_row, equations().function->equations()).cwiseAbs().maxCoeff();
+    }
+    return errors;
+  }
+
+  /// One side up to each of its boundaries, the other one behind.
+  void add_run(std::size_t surface, std::size_t first, std::size_t end, std::vector<mpcc::BranchMove>& moves) const {
+    for (std::size_t cut = end; cut > first; --cut) {
+      for (const int state : {-1, 1}) {
+        mpcc::BranchMove move{modes_.all(), w_};
+        for (std::size_t e = first; e < end; ++e) {
+          const int side = e < cut ? state : -state;
+          modes_.write(states_.with(modes_.modes(e), surface, side), e, move.sides);
+          states_.select(e, surface, side, move.start);
+        }
+        for (int k = 0; k < made_.kernel.layout.lifted.size; ++k) lift(k, move.start);
+        moves.push_back(std::move(move));
+      }
+    }
+  }
+
+  [[nodiscard]] static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
+
+  const OcpStructure& made_;
+  const ElementSides& modes_;
+  const Eigen::VectorXd& w_;
+  const Functions& functions_;
+  SurfaceStates states_;
+  std::size_t elements_;
+};
+
+}  // namespace
+
+void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
+                    const Functions& functions, std::vector<mpcc::BranchMove>& moves) {
+  const Eigen::VectorXd here = w;
+  VoidSides(made, modes, here, functions).add_to(moves);
+}
+
+}  // namespace saltus::discretization
