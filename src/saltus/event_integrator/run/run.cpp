@@ -77,10 +77,10 @@ bool Run::begin_field(const ModeChange& change, double t, std::vector<double>& x
 /// was met; -1 if there is none. Behind a jump of a surface nothing is projected.
 int Run::state_moved_from(const std::vector<double>& met) const {
   const auto& [rtol, atol] = options_.tolerances;
-  const double many = std::min(1e4, 0.1 / rtol);
+  constexpr double many = 1e4;
   for (std::size_t i = 0; i < met.size(); ++i) {
     const double size = std::max(std::abs(met[i]), std::abs(here_.x[i]));
-    if (std::abs(here_.x[i] - met[i]) > many * (atol + rtol * size)) return static_cast<int>(i);
+    if (std::abs(here_.x[i] - met[i]) > many * atol + std::min(many * rtol, 0.1) * size) return static_cast<int>(i);
   }
   return -1;
 }
