@@ -78,12 +78,12 @@ bool Run::begin_field(const ModeChange& change, double t, std::vector<double>& x
 /// was met; -1 if there is none. Behind a jump of a surface nothing is projected.
 int Run::state_moved_from(const std::vector<double>& met) const {
   const auto& [rtol, atol] = options_.tolerances;
-  const double many = std::min(1e4, 0.1 / rtol);
-  constexpr double by_roots = 1e-5;  // of a state: what is located at a root is known to half of the digits
+  constexpr double many = 1e4;
+  // Of a state: what is located at a root is known to half of the digits.
+  const double share = std::clamp(many * rtol, 1e-5, 0.1);
   for (std::size_t i = 0; i < met.size(); ++i) {
     const double size = std::max(std::abs(met[i]), std::abs(here_.x[i]));
-    const double most = std::max(many * (atol + rtol * size), by_roots * size);
-    if (std::abs(here_.x[i] - met[i]) > most) return static_cast<int>(i);
+    if (std::abs(here_.x[i] - met[i]) > many * atol + share * size) return static_cast<int>(i);
   }
   return -1;
 }
