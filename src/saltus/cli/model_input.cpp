@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/cli/catalogue.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -170,7 +171,11 @@ std::string date() {
     const std::string_view text(epoch);
     long long given = 0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), given);
-    if (read.ec == std::errc() && read.ptr == text.data() + text.size()) now = static_cast<std::time_t>(given);
+    if (read.ec == std::errc() && read.ptr == text.data() + text.size()) {
+      now = static_cast<std::time_t>(given);
+    } else {
+      print_error(fmt::format("note: SOURCE_DATE_EPOCH = '{}' is no number of seconds: the date is now", text));
+    }
   }
   std::tm utc{};
   if (gmtime_r(&now, &utc) == nullptr) return {};
