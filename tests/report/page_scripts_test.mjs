@@ -743,3 +743,13 @@ test("frames of a strobe and ticks are round and within their ranges", () => {
   assert.deepEqual(saltus.roundTicks([-0.1, 1.05], 5), [0, 0.5, 1]);
   assert.deepEqual(saltus.roundTicks([0.13, 0.31], 4), [0.15, 0.2, 0.25, 0.3]);
 });
+
+test("small columns beside large ones move; what is below the tolerance is rounding", () => {
+  const moving = (options) => {
+    const trajectory = {t: [0, 1, 2], x: [[1e7, 2e7, 3e7], [1e-9, 0, -1e-9], [0, 1e-17, 0]], alpha: [], outputs: []};
+    const result = {states: ["p", "z", "rest"], controls: [], switching_functions: [], trajectory, options};
+    return saltus.movingOf(saltus.columns(result)).map(({name}) => name);
+  };
+  assert.deepEqual(moving([["simulate.atol", 1e-14]]), ["p", "z"]);
+  assert.deepEqual(moving([["simulate.atol", 1e-8]]), ["p"]);
+});

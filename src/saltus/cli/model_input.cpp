@@ -14,6 +14,7 @@
 #include "saltus/base/contains.hpp"
 #include "saltus/base/text.hpp"
 #include "saltus/cli/catalogue.hpp"
+#include "saltus/cli/text/terminal.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/check/model_overview.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
@@ -169,7 +170,11 @@ namespace {
 std::string date() {
   std::time_t now = std::time(nullptr);
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    if (const auto given = whole_text_as<long long>(epoch)) now = static_cast<std::time_t>(*given);
+    if (const auto given = whole_text_as<long long>(epoch)) {
+      now = static_cast<std::time_t>(*given);
+    } else {
+      print_error(fmt::format("note: SOURCE_DATE_EPOCH = '{}' is no number of seconds: the date is now", epoch));
+    }
   }
   std::tm utc{};
   if (gmtime_r(&now, &utc) == nullptr) return {};

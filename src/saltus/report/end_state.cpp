@@ -72,9 +72,10 @@ struct Values {
   const std::vector<double>& values;
   const result::Captions& captions;
 
+  /// Without the sign of zero.
   [[nodiscard]] std::string number(std::size_t i, const char* form = "{:.12g}") const {
     const auto unit = caption_of(captions, names[i]).unit;
-    return fmt::format("{}{}{}", fmt::format(fmt::runtime(form), values[i]), unit.empty() ? "" : " ", unit);
+    return fmt::format("{}{}{}", fmt::format(fmt::runtime(form), values[i] + 0.0), unit.empty() ? "" : " ", unit);
   }
   /// "q = 0.5 m"
   [[nodiscard]] std::string piece(std::size_t i) const { return fmt::format("{} = {}", names[i], number(i)); }

@@ -83,7 +83,7 @@ Row event_row(std::size_t number, const result::Event& event, const result::Resu
           std::string(name(event.kind)),  shortened(what(event, result), 24),
           with_modes ? modes(event) : "", shortened(regions(event), 64),
           remark(event, result)};
-  for (const std::size_t state : states) row.push_back(fmt::format("{:.9g}", event.x_after[state]));
+  for (const std::size_t state : states) row.push_back(fmt::format("{:.9g}", event.x_after[state] + 0.0));
   return row;
 }
 
@@ -105,6 +105,8 @@ std::string event_table(const result::Result& result, std::size_t shown_at_each_
     }
   }
   if (all) return fmt::format("events      {}\n", count_of_all) + aligned(rows);
+  if (shown_at_each_end == 0)
+    return fmt::format("events      {}\n", count_of_all) + paragraph("of kinds", kinds_of(result));
   return fmt::format("events      {}, the first and the last {}\n", count_of_all, shown_at_each_end) +
          paragraph("of kinds", kinds_of(result)) + aligned(rows);
 }

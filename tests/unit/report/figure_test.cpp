@@ -54,6 +54,74 @@ TEST(Figure, SaysWhatItsLinesMean) {
   }
 }
 
+TEST(Figure, EventsCloserThanLinesAreAreasUpToTheLast) {
+  auto result = report_samples::stick_slip(40, 50);
+  const double end = result.trajectory.t.back();
+  result::Event event = result.events[0];
+  result.events = {};
+  constexpr int count = 2000;
+  for (int i = 0; i <= count; ++i) {
+    event.t = end * (0.5 + 0.5 * i / count);
+    event.unique = true;
+    result.events.push_back(event);
+  }
+  const auto svg = to_svg(result);
+  ASSERT_TRUE(svg);
+  EXPECT_EQ(occurrences(*svg, ">events closer than lines<"), 1U);
+  EXPECT_EQ(occurrences(*svg, ">event<"), 0U) << "none stands alone";
+  const auto area = svg->find("fill=\"#e9ecf0\"");
+  ASSERT_NE(area, std::string::npos);
+  const auto begin = svg->rfind("width=\"", area) + 7;
+  EXPECT_GT(std::stod(svg->substr(begin)), 350.0) << "half the time";
+}
+
+TEST(Figure, ChatteringIsInItsLegend) {
+  auto result = report_samples::stick_slip(40, 50);
+  result.trajectory = {};
+  constexpr int rows = 20000;
+  for (int i = 0; i < rows; ++i) {
+    result.trajectory.t.push_back(static_cast<double>(i) / rows);
+    result.trajectory.x.push_back({1.0, 1.0});
+    result.trajectory.mode.push_back(result::Mode{i % 2 == 0 ? 1 : -1});
+  }
+  const auto svg = to_svg(result);
+  ASSERT_TRUE(svg);
+  EXPECT_EQ(occurrences(*svg, ">chattering<"), 1U);
+  EXPECT_EQ(occurrences(*svg, ">sliding<"), 0U) << "there is none";
+}
+
+TEST(Figure, LongNamesOfModelsAreShortenedInTheTitle) {
+  auto result = report_samples::stick_slip(40, 50);
+  result.model.name = std::string(300, 'm');
+  for (const auto& svg : {to_svg(result), to_svg(result, PhaseAxes{"q", "v"})}) {
+    ASSERT_TRUE(svg);
+    EXPECT_EQ(occurrences(*svg, result.model.name), 1U) << "the element title has all of it";
+    EXPECT_EQ(occurrences(*svg, "mm…: "), 1U);
+  }
+}
+
+TEST(Figure, SmallColumnsBesideLargeOnesMove) {
+  auto result = report_samples::decay();
+  result.states = {"p", "z", "rest"};
+  result.trajectory.x = {};
+  for (std::size_t i = 0; i < result.trajectory.t.size(); ++i) {
+    const auto step = static_cast<double>(i);
+    result.trajectory.x.push_back({1e7 + step, 1e-9 * std::cos(step), 1e-17 * step});
+  }
+  result.options = {{"simulate.atol", 1e-14}};
+  const auto svg = to_svg(result);
+  ASSERT_TRUE(svg);
+  EXPECT_EQ(occurrences(*svg, ">z<"), 1U);
+  EXPECT_EQ(occurrences(*svg, ">rest<"), 0U) << "below the tolerance";
+}
+
+TEST(Figure, AllOfSeveralResultsAreInTheLegend) {
+  const auto result = report_samples::stick_slip(40, 50);
+  const auto svg = to_svg(result, std::nullopt, {}, {{"b.json", result}});
+  ASSERT_TRUE(svg);
+  for (const char* name : {">first result<", ">b.json<"}) EXPECT_EQ(occurrences(*svg, name), 1U) << name;
+}
+
 TEST(Figure, BreaksCurvesAtEventsWithoutRows) {
   const auto broken = [](result::Result result) {
     result.trajectory.t = {0.0, 1.0, 2.0};

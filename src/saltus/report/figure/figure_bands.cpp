@@ -54,7 +54,7 @@ std::vector<std::size_t> banded(const result::Result& result) {
 }
 
 double draw_bands(Svg& svg, const result::Result& result, const std::vector<std::size_t>& bands, const Plot& time,
-                  double top) {
+                  double top, DrawnModes& drawn) {
   constexpr double height = 16.0, gap = 2.0, lane = height / 2 - gap;
   for (const std::size_t j : bands) {
     const double middle = top + height / 2;
@@ -62,6 +62,8 @@ double draw_bands(Svg& svg, const result::Result& result, const std::vector<std:
       const double wide = cell.to - cell.from;
       if (!(wide > 0.0)) continue;
       const double minus = lane * cell.share[0] / wide, plus = lane * cell.share[2] / wide;
+      drawn.minus |= minus > 0.0, drawn.sliding |= cell.share[1] > 0.0, drawn.plus |= plus > 0.0;
+      drawn.chattering |= cell.count > 1;
       if (cell.count > 1) svg.rectangle({cell.from, middle - gap}, wide, 2.0 * gap, hatched);
       if (minus > 0.0) svg.rectangle({cell.from, middle + gap}, wide, minus, paper::minus);
       if (plus > 0.0) svg.rectangle({cell.from, middle - gap - plus}, wide, plus, paper::plus);

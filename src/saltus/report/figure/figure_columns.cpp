@@ -10,6 +10,7 @@
 #include "saltus/base/function_ref.hpp"
 #include "saltus/report/axis_title.hpp"
 #include "saltus/report/figure/figure_columns_internal.hpp"
+#include "saltus/report/text_columns_internal.hpp"
 
 namespace saltus::report {
 namespace {
@@ -108,6 +109,12 @@ const FigureColumn* FigureOverlay::like(const FigureColumn& column) const {
 
 std::string heading_of(const result::Result& result) {
   return result.model.name.empty() ? "simulation" : result.model.name;
+}
+
+std::string title_line(const result::Result& result, const std::string& rest) {
+  constexpr std::size_t letters = 115, fewest = 20;
+  return shortened(shortened(heading_of(result), std::max(fewest, letters - std::min(letters, width(rest)))) + rest,
+                   letters);
 }
 
 Range range_of(const std::vector<double>& values) {

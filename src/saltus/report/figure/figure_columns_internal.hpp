@@ -101,17 +101,24 @@ void round_corners(CurvePieces& pieces);
 /// Returns the range of them all.
 [[nodiscard]] Range time_range(const result::Result& result, const FigureOverlays& overlays);
 [[nodiscard]] std::string heading_of(const result::Result& result);
+/// Returns the name of the model and what follows it, the name shortened to what the width of the picture has room for.
+[[nodiscard]] std::string title_line(const result::Result& result, const std::string& rest);
 
 /// Panels, and bands, of a figure at most: a sheet of paper is no longer. Letters of a line beside them.
 inline constexpr std::size_t most_panels = 24, letters_beside = 18;
 
 /// Returns the switching functions that have a band: all if they are few, else those whose mode changes.
 [[nodiscard]] std::vector<std::size_t> banded(const result::Result& result);
+/// Says what can be seen in bands.
+struct DrawnModes {
+  bool minus = false, sliding = false, plus = false, chattering = false;
+};
 /// Draws bands of switching functions: below their middle psi < 0, above it psi > 0, all of them sliding; where they
 /// chatter each half is as full as its part of the time, and the middle is hatched.
+/// @param drawn  gets what is among them
 /// @return where the next thing can stand
 double draw_bands(Svg& svg, const result::Result& result, const std::vector<std::size_t>& bands, const Plot& time,
-                  double top);
+                  double top, DrawnModes& drawn);
 
 /// Draws these columns over time, one below the other; of none those that move, as the page draws them.
 [[nodiscard]] std::string draw_over_time(const result::Result& result, const std::vector<FigureColumn>& columns,

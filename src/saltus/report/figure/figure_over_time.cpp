@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,7 @@ constexpr std::size_t most_curves = 48, single_panels = 6, most_in_a_panel = 4;
 
 /// Of events. Jumps are pale and not dotted: the dots of a curve that jumps there would fill the gaps.
 constexpr Pen event_line{paper::mark, 0.6}, jump_line{"#b6d5da", 0.6}, alarm_line{paper::alarm, 1.5, "5 3"};
+constexpr std::string_view crowd = "#e9ecf0";
 
 using Curves = std::vector<FigureColumn>;
 
@@ -39,29 +41,40 @@ double span_of(const FigureColumn& column) {
   return range.to - range.from;
 }
 
+/// That of the run; the default one where its method has none.
+double absolute_tolerance(const result::Result& result) {
+  for (const auto& [name, value] : result.options) {
+    if (name != "simulate.atol") continue;
+    if (const auto* atol = std::get_if<double>(&value)) return *atol;
+  }
+  return 1e-10;
+}
+
 Curves of_sort(const Curves& all, ColumnSort sort) {
   Curves columns;
   std::copy_if(all.begin(), all.end(), std::back_inserter(columns), [&](const auto& one) { return one.sort == sort; });
   return columns;
 }
 
-/// Those of a sort that move: by more than their own rounding, and than a rounding of the largest among them.
-Curves moving_of(const Curves& columns) {
+/// Those of a sort that move by more than their own rounding. What is below the tolerance of the run counts as that of
+/// others, too: it is rounding if it is that of the largest among them.
+Curves moving_of(const result::Result& result, const Curves& columns) {
   double largest = 0.0;
   for (const auto& column : columns) {
     const Range range = range_of(column.values);
     largest = std::max({largest, std::abs(range.from), std::abs(range.to)});
   }
+  const double rounding = std::min(absolute_tolerance(result), 1e-15 * largest);
   Curves moving;
   std::copy_if(columns.begin(), columns.end(), std::back_inserter(moving),
-               [&](const auto& one) { return moves(one.values) && span_of(one) > 1e-15 * largest; });
+               [&](const auto& one) { return moves(one.values) && span_of(one) > rounding; });
   return moving;
 }
 
 /// Columns of a sort that move, all if none does; of very many those that move most.
-Curves moving_first(const Curves& all, ColumnSort sort) {
+Curves moving_first(const result::Result& result, const Curves& all, ColumnSort sort) {
   Curves columns = of_sort(all, sort);
-  if (auto moving = moving_of(columns); !moving.empty()) columns = std::move(moving);
+  if (auto moving = moving_of(result, columns); !moving.empty()) columns = std::move(moving);
   const std::size_t most = sort == ColumnSort::alpha || sort == ColumnSort::theta ? most_panels : most_curves;
   if (columns.size() <= most) return columns;
   std::vector<double> spans;
@@ -110,7 +123,7 @@ std::vector<Curves> first_panels(const result::Result& result) {
   std::vector<Curves> panels;
   Curves steps;
   for (const auto sort : drawn_sorts) {
-    auto columns = moving_first(all, sort);
+    auto columns = moving_first(result, all, sort);
     std::copy_if(columns.begin(), columns.end(), std::back_inserter(steps),
                  [&](const auto& one) { return is_step(result, one); });
     std::erase_if(columns, [&](const auto& one) { return is_step(result, one); });
@@ -130,42 +143,58 @@ std::size_t count_of(const std::vector<Curves>& panels) {
 std::size_t count_of_moving(const result::Result& result) {
   const auto all = figure_columns(result);
   std::size_t count = 0;
-  for (const auto sort : drawn_sorts) count += moving_of(of_sort(all, sort)).size();
+  for (const auto sort : drawn_sorts) count += moving_of(result, of_sort(all, sort)).size();
   return count;
 }
 
-/// Events as thin lines from the top to the bottom; those that are not unique always, of many only those that stand
-/// alone: one for some pixels would look like a slower switching.
-void draw_events(Svg& svg, const result::Result& result, const Plot& time, double top, double bottom) {
+/// What is seen of events, and of the bands.
+struct Shown {
+  bool events = false, jumps = false, crowds = false, not_unique = false;
+  DrawnModes modes;
+};
+
+/// Events as thin lines from the top to the bottom, those that are not unique always. Of many those that are close
+/// together are grey areas: one line for some pixels would look like a slower switching.
+void draw_events(Svg& svg, const result::Result& result, const Plot& time, double top, double bottom, Shown& shown) {
   const double apart = result.events.size() > 200 ? 6.0 : 0.0;
   std::vector<double> places;
-  for (const auto& event : result.events) places.push_back(time.place(event.t, 0.0).x);
+  for (std::size_t i = 0; i < result.events.size(); ++i) places.push_back(time.place(result.events.t(i), 0.0).x);
+  const auto line = [&](std::size_t i, const Pen& pen) { svg.path({{places[i], top}, {places[i], bottom}}, pen); };
+  for (std::size_t i = 0, last = 0; i < places.size(); i = last + 1) {
+    for (last = i; last + 1 < places.size() && places[last + 1] - places[last] < apart;) ++last;
+    if (last > i) {
+      svg.rectangle({places[i], top}, std::max(1.0, places[last] - places[i]), bottom - top, crowd);
+      shown.crowds = true;
+    } else if (result.events.unique(i) != false) {
+      const bool jump = is_jump(result.events.kind(i));
+      line(i, jump ? jump_line : event_line);
+      (jump ? shown.jumps : shown.events) = true;
+    }
+  }
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const auto& event = result.events[i];
-    const bool alarming = event.unique == false;
-    const bool crowded =
-        (i > 0 && places[i] - places[i - 1] < apart) || (i + 1 < places.size() && places[i + 1] - places[i] < apart);
-    if (crowded && !alarming) continue;
-    svg.path({{places[i], top}, {places[i], bottom}}, alarming              ? alarm_line
-                                                      : is_jump(event.kind) ? jump_line
-                                                                            : event_line);
+    if (result.events.unique(i) != false) continue;
+    line(i, alarm_line);
+    shown.not_unique = true;
   }
 }
 
-/// Of other results, the bands and the lines of events.
-std::vector<LegendEntry> legend_over_time(const result::Result& result, const FigureOverlays& overlays,
-                                          bool with_bands) {
+/// Of results, the bands and the lines of events.
+std::vector<LegendEntry> legend_over_time(const FigureOverlays& overlays, const Shown& shown) {
   std::vector<LegendEntry> entries;
+  if (!overlays.empty()) entries.push_back({"first result", {paper::curves[0], 1.6}});
   for (const auto& overlay : overlays) entries.push_back({overlay.label, overlay.pen});
-  if (with_bands) {
-    entries.push_back({"psi < 0", {paper::minus}, LegendEntry::Mark::box});
-    entries.push_back({"sliding", {paper::sliding}, LegendEntry::Mark::box});
-    entries.push_back({"psi > 0", {paper::plus}, LegendEntry::Mark::box});
-  }
-  const auto sorts = sorts_of(result.events);
-  if (sorts.switches) entries.push_back({"event", {event_line.color, 1.0}});
-  if (sorts.jumps) entries.push_back({"jump", {jump_line.color, 1.0}});
-  if (sorts.not_unique) entries.push_back({"not unique", alarm_line});
+  const auto add = [&](bool wanted, std::string_view name, const Pen& pen, LegendEntry::Mark mark) {
+    if (wanted) entries.push_back({std::string(name), pen, mark});
+  };
+  using enum LegendEntry::Mark;
+  add(shown.modes.minus, "psi < 0", {paper::minus}, box);
+  add(shown.modes.sliding, "sliding", {paper::sliding}, box);
+  add(shown.modes.plus, "psi > 0", {paper::plus}, box);
+  add(shown.modes.chattering, "chattering", {hatched}, box);
+  add(shown.events, "event", {event_line.color, 1.0}, line);
+  add(shown.jumps, "jump", {jump_line.color, 1.0}, line);
+  add(shown.crowds, "events closer than lines", {crowd}, box);
+  add(shown.not_unique, "not unique", alarm_line, line);
   return entries;
 }
 
@@ -304,15 +333,17 @@ std::string draw_over_time(const result::Result& result, const std::vector<Figur
   const double wide = paper::width - paper::left - room_beside(result, panels);
   Plot plot{{paper::left, 40.0}, wide, high, time_range(result, overlays), {0.0, 1.0}};
   svg.text({paper::left, 22.0},
-           fmt::format("{}: {} to t = {:.6g}{}", heading_of(result), result::name(result.status.termination),
-                       result.status.time_reached, left_out > 0 ? fmt::format(", {} more columns", left_out) : ""),
+           title_line(result, fmt::format(": {} to t = {:.6g}{}", result::name(result.status.termination),
+                                          result.status.time_reached,
+                                          left_out > 0 ? fmt::format(", {} more columns", left_out) : "")),
            "start", paper::text);
-  plot.corner.y = draw_bands(svg, result, bands, plot, 40.0);
-  draw_events(svg, result, plot, 32.0, height - 56.0);
+  Shown shown;
+  draw_events(svg, result, plot, 32.0, height - 56.0, shown);
+  plot.corner.y = draw_bands(svg, result, bands, plot, 40.0, shown.modes);
   for (std::size_t i = 0; i < panels.size(); ++i, plot.corner.y += high + gap)
     draw_panel(svg, result, panels[i], overlays, plot, i + 1 == panels.size());
   svg.text({paper::left + plot.width / 2, height - 14.0}, "t", "middle", paper::text);
-  draw_legend(svg, legend_over_time(result, overlays, !bands.empty()), paper::left, paper::width - 20.0, height + 2.0);
+  draw_legend(svg, legend_over_time(overlays, shown), paper::left, paper::width - 20.0, height + 2.0);
   return svg.document(heading_of(result));
 }
 

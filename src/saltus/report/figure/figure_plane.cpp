@@ -201,8 +201,7 @@ std::string draw_in_a_plane(const result::Result& result, const FigureColumn& x,
                   height - 100.0,
                   axis_range(x, overlays),
                   axis_range(y, overlays)};
-  svg.text({paper::left, 22.0}, fmt::format("{}: {} over {}", heading_of(result), y.name, x.name), "start",
-           paper::text);
+  svg.text({paper::left, 22.0}, title_line(result, fmt::format(": {} over {}", y.name, x.name)), "start", paper::text);
   draw_axes(svg, plot, true);
   svg.clip(plot.corner, plot.width, plot.height);
   const bool with_field = draw_field(svg, result, plot, x, y);

@@ -54,6 +54,7 @@ saltus.columns = (result) => {
   const held = saltus.columnsOf.get(result);
   if (held !== undefined) return held;
   const {trajectory} = result;
+  const tolerance = saltus.absoluteTolerance(result);
   const names = {
     state: result.states,
     output: result.output_names,
@@ -66,6 +67,7 @@ saltus.columns = (result) => {
     const column = {
       name,
       ...place,
+      tolerance,
       caption: ["state", "output", "input"].includes(sort) ? saltus.captionOf(result, name) : null,
       stepwise: sort === "input" && saltus.isStepwiseColumn(trajectory, place),
       discrete: sort === "state" && saltus.isDiscreteColumn(trajectory, place),
@@ -88,10 +90,20 @@ saltus.axes = (result) =>
 saltus.firstCurves = (columns) => (columns.length > 200 ? 16 : 48);
 saltus.firstBands = (columns) => (columns.length > 200 ? 8 : 24);
 
-/** Columns of a sort that move: by more than their own rounding, and than a rounding of the largest among them. */
+/** The absolute tolerance of the run; the default one where its method has none. */
+saltus.absoluteTolerance = (result) => {
+  const found = (result.options ?? []).find(([name]) => name === "simulate.atol");
+  return typeof found?.[1] === "number" ? found[1] : 1e-10;
+};
+
+/**
+ * Columns of a sort that move by more than their own rounding. What is below the tolerance of the run counts as that of
+ * others, too: it is rounding if it is that of the largest among them.
+ */
 saltus.movingOf = (columns) => {
   const largest = columns.reduce((most, {range}) => Math.max(most, Math.abs(range[0]), Math.abs(range[1])), 0);
-  return columns.filter(({range}) => saltus.isWide(range) && range[1] - range[0] > 1e-15 * largest);
+  return columns.filter(
+      ({range, tolerance}) => saltus.isWide(range) && range[1] - range[0] > Math.min(tolerance, 1e-15 * largest));
 };
 
 /** Columns of a sort that move, all if none does; of very many those that move most; discrete ones last. */

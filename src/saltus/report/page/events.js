@@ -52,7 +52,7 @@ saltus.eventColumns = (result) => {
     {title: "kind", cell: (event) => saltus.kindLabel(event.kind)},
     ...(result.optimization ? [] : [{title: "unique", cell: unique}]),
     {title: "surfaces", cell: saltus.eventPlace, class: "fill"},
-    ...(result.switching_functions.length > 0 || result.regions.length === 0 ?
+    ...(result.switching_functions.length > 0 ?
             [{title: "mode", cell: (event) => saltus.modeChange(event, "changed")}] :
             []),
     ...(result.regions.length > 0 ?

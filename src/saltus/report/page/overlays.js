@@ -104,10 +104,15 @@ saltus.overlayCard = (result, palette) => {
       String(overlay.events), ends, far.part === 0 ? "none" : `${saltus.brief(far.part, 3)} of the range of ${far.name}`
     ];
   });
+  const own = saltus.element("i", {class: "overlay-line", style: `color: ${palette.curves[0]}`});
+  rows.unshift([
+    saltus.element("span", {}, own, " the first one"), result.method, "", String(result.events.length),
+    `${result.status.termination.replaceAll("_", " ")} at t = ${saltus.brief(result.status.time_reached, 6)}`, ""
+  ]);
   const head = ["result", "method", "other values", "events", "ends", "largest difference"];
   return saltus.element(
       "section", {class: "card comparison overlays"}, saltus.element("h2", {}, "Results laid over this one"),
-      saltus.plainTable(head, rows.map((row) => row)));
+      saltus.plainTable(head, rows));
 };
 
 /** The differences over time, one column at a time. */

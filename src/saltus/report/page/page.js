@@ -4,8 +4,10 @@
 saltus.legend = (result, holder, timeline, chooser) => {
   const swatch = (kind, text) => saltus.element("span", {class: "swatch"}, saltus.element("i", {class: kind}), text);
   const modes = result.switching_functions.length === 0 ? [] : [
-    saltus.element("span", {class: "quiet"}, "mode"), swatch("mode mode-minus", "− ψ<0"),
-    swatch("mode mode-sliding", "0 sliding"), swatch("mode mode-plus", "+ ψ>0"),
+    saltus.element("span", {class: "quiet"}, "mode"),
+    ...[[-1, "mode mode-minus", "− ψ<0"], [0, "mode mode-sliding", "0 sliding"], [1, "mode mode-plus", "+ ψ>0"]]
+        .filter(([mode]) => result.trajectory.modes.some(({values}) => values.includes(mode)))
+        .map(([, kind, text]) => swatch(kind, text)),
     ...(saltus.chatters(result) ? [swatch("mode mode-chattering", "chattering")] : [])
   ];
   const regions = result.regions.length === 0 ? [] : [
