@@ -283,10 +283,10 @@ class Model:
                 kept: typing.Any = getattr(stopped, "result", None)
                 if isinstance(kept, tuple):
                     kept = with_results(kept, self, arguments, all_runs=False) if executor is None else kept
-                    stopped.result = Sweep(kept, shape, len(sample or {}))  # type: ignore[attr-defined]
+                    stopped.result = Sweep(kept, shape, len(sample or {}), (self, arguments))  # type: ignore[attr-defined]
                 raise
         warn_of_runs(warned)
-        return Sweep(found, shape, len(sample or {}))
+        return Sweep(found, shape, len(sample or {}), (self, arguments))
 
     def _swept(self, over: Settings, set: Settings | None, options: dict[str, Value]) -> dict[str, Value]:
         """All that is swept, by the names of settings; keywords that have several values leave the options."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import os
+import shlex
 import typing
 
 import numpy as np
@@ -139,8 +140,11 @@ class Sweep:
     <saltus.Result 'stick-slip': completed at t = 5, events not kept; 2 happened>
     """
 
-    def __init__(self, found: Found, shape: tuple[int, ...], sampled: int = 0) -> None:
-        """`sampled` is how many of the names, the last ones, had random values."""
+    def __init__(
+        self, found: Found, shape: tuple[int, ...], sampled: int, of: tuple[typing.Any, SweepArguments]
+    ) -> None:
+        """`sampled` is how many of the names, the last ones, had random values; `of` the model and what it was asked."""
+        self._of = of
         self._columns, results, names = found
         self.results: typing.Sequence[Result] = results
         self.names: list[str] = names
@@ -272,6 +276,26 @@ class Sweep:
             _data.write_arrays(name, self.table)
         else:
             raise refuse(f"{name}: the name must end in .csv or .npz", 's.save("s.csv")')
+
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Writes the page of ``saltus sweep --report``: lines or maps of the table, which works offline.
+
+        >>> import tempfile, pathlib
+        >>> page = pathlib.Path(tempfile.mkdtemp()) / "s.html"
+        >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5).report(page)
+        >>> "<svg" in page.read_text() or "createElementNS" in page.read_text()
+        True
+        """
+        columns: list[tuple[str, list[str], list[float]]] = []
+        for name, values in self._columns.items():
+            listed = np.asarray(values).tolist()
+            words = bool(listed) and isinstance(listed[0], str)
+            columns.append((name, listed if words else [], [] if words else listed))
+        model, (settings, options, _, paired, samples, *_) = self._of
+        values_of_all = [*settings, *(f"{key}={value}" for key, value, _ in options)]
+        command = shlex.join(["saltus", "simulate", model.path, *(f"--set={value}" for value in values_of_all)])
+        page = model._core.sweep_page(columns, self.names, command, not paired and not samples)
+        _core.write_file(os.fspath(path), page)
 
     def _repr_html_(self) -> str:
         return _card.sweep_card(self)

@@ -1,7 +1,9 @@
 """Single runs of a sweep: what they say of what was not kept, and that they can be asked like any other run."""
 
 import concurrent.futures
+import json
 import pickle
+import re
 import subprocess
 
 import numpy as np
@@ -222,3 +224,15 @@ def test_tables_are_written_as_the_tool_writes_them(slip, tool, tmp_path, keep):
             assert stored[name].tolist() == column.tolist() or np.isnan(column.astype(float)).any()
     with pytest.raises(saltus.ModelError, match=r"must end in \.csv or \.npz"):
         s.save(tmp_path / "s.json")
+
+
+def test_the_page_of_a_sweep_is_that_of_the_tool(slip, tool, tmp_path):
+    over = ["--over", "belt=0.1,0.2", "--over", "simulate.event.integrator=dopri5,dop853"]
+    subprocess.run([tool, "sweep", "stick-slip", *over, "--until", "5", "--report", "t.html"],
+                   cwd=tmp_path, check=True, capture_output=True)
+    slip.sweep(belt=[0.1, 0.2], integrator=["dopri5", "dop853"], until=5).report(tmp_path / "s.html")
+    pages = [(tmp_path / name).read_text() for name in ("s.html", "t.html")]
+    commands = [json.loads(re.search(r'id="sweep">(.*)</script>', page).group(1))["command"] for page in pages]
+    assert commands[0].startswith("saltus simulate ") and commands[0].endswith("stick-slip.toml --set=simulate.until=5")
+    same = [page.replace(json.dumps(command), "") for page, command in zip(pages, commands)]
+    assert same[0] == same[1]

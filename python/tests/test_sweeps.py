@@ -474,7 +474,7 @@ def test_names_of_the_model_come_before_options():
         with pytest.raises(saltus.ModelError, match=r'rho=3 may be two things.*\n.*set={"rho": …}.*set={"simulate.fesd.rho": …}'):
             run()
     r = m.simulate(until=1, method="fesd", steps=4, set={"rho": 2, "simulate.fesd.stages": 3})
-    assert r.final["x"] == pytest.approx(np.exp(-2), rel=1e-4) and r.to_dict()["options"]["fesd.stages"] == 3
+    assert r.final["x"] == pytest.approx(np.exp(-2), rel=1e-4) and r.options["simulate.fesd.stages"] == 3
 
 
 @pytest.mark.parametrize(
