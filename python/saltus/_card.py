@@ -13,6 +13,7 @@ if typing.TYPE_CHECKING:
     from ._events import Event
     from ._model import Model
     from ._result import Result
+    from ._sweep import Sweep
 
 #: Of a picture, and of a panel of it, with room above for its caption.
 WIDTH, HEIGHT, LEFT, ABOVE = 520, 56, 46, 18
@@ -22,6 +23,7 @@ MOST_POINTS = 600
 LEAST_DISTANCE = 3
 MOST_EVENTS = 8
 MOST_EQUATIONS = 40
+MOST_COLUMNS = 12
 
 
 def card(r: Result) -> str:
@@ -33,6 +35,31 @@ def card(r: Result) -> str:
         f"<b>{html.escape(r.model)}</b> &nbsp; {html.escape(r.method)} &nbsp; "
         f"<span style='color:{colour}'>{html.escape(str(r.status))}</span> at t = {r.status.time_reached:.6g} &nbsp; "
         f"{r._counts}{message}{_picture(r)}{_events(r)}</div>"
+    )
+
+
+def table_card(title: str, text: str) -> str:
+    """What the tool prints, below a title."""
+    return (
+        "<div style='font:13px/1.45 system-ui,sans-serif;max-width:900px'>"
+        f"<b>{html.escape(title)}</b><pre style='overflow-x:auto'>{html.escape(text.rstrip())}</pre></div>"
+    )
+
+
+def sweep_card(s: Sweep) -> str:
+    """How the runs ended, and the first rows of the table."""
+    names = list(s.table)[:MOST_COLUMNS]
+    columns = [s.table[name][:MOST_EVENTS].tolist() for name in names]
+    head = "".join(f"<th>{html.escape(name)}</th>" for name in names) + "<th>…</th>" * (len(s.table) > len(names))
+    body = "".join(
+        "<tr>" + "".join(f"<td>{_short(value if isinstance(value, str) else f'{value:.6g}')}</td>" for value in row) + "</tr>"
+        for row in zip(*columns)
+    )
+    more = len(s.table[names[0]]) - MOST_EVENTS
+    rest = f"<div>and {more} more row{'s' * (more > 1)}: s.frame(), s.plot()</div>" if more > 0 else ""
+    return (
+        "<div style='font:13px/1.45 system-ui,sans-serif;max-width:900px;overflow-x:auto'>"
+        f"<b>{html.escape(repr(s).strip('<>'))}</b><table><tr>{head}</tr>{body}</table>{rest}</div>"
     )
 
 

@@ -8,7 +8,7 @@ import sys
 import typing
 
 from . import _core
-from ._card import model_card
+from ._card import model_card, table_card
 from ._errors import warn
 from ._expression import refuse
 from ._progress import progress_line, progress_of_runs
@@ -35,7 +35,8 @@ from ._settings import (
     simulate_options,
     sweep_name,
 )
-from ._sweep import Sweep, SweepArguments, Warned, sweep_by, warn_of_runs, with_results
+from ._shares import sweep_by
+from ._sweep import Sweep, SweepArguments, Warned, warn_of_runs, with_results
 
 Settings = typing.Mapping[str, Value]
 
@@ -242,7 +243,7 @@ class Model:
         (``{"simulate.fesd.rho": [1, 2]}``).
 
         `executor` is one of concurrent.futures, or of a library that has its interface (mpi4py.futures,
-        dask.distributed, Ray): it gets shares of the runs, each with `jobs` threads (one without it).
+        dask.distributed, Ray): it gets shares of the runs, each with `jobs` threads (one without it). Ctrl-C raises KeyboardInterrupt, whose ``result`` has the runs that began.
 
         >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2, 0.3], until=5)
         >>> len(s), s.done, s["belt"].tolist()
@@ -271,19 +272,21 @@ class Model:
             keep,
             yes,
         )
-        if executor is not None:
-            return Sweep(sweep_by(executor, self, arguments, jobs or 1), shape, len(sample or {}))
         warned: list[Warned] = []
-        with progress_of_runs(self.name, progress) as tell:
+        with progress_of_runs(self.name, progress, "runs" if executor is None else "shares") as tell:
             try:
-                found = self._core.sweep(*arguments, jobs or 0, (1, 1), tell, warned)
+                if executor is None:
+                    found = with_results(self._core.sweep(*arguments, jobs or 0, (1, 1), tell, warned), self, arguments)
+                else:
+                    found = sweep_by(executor, self, arguments, jobs or 1, tell)
             except BaseException as stopped:
-                if isinstance(getattr(stopped, "result", None), tuple):
-                    kept = with_results(stopped.result, self, arguments)  # type: ignore[attr-defined]
-                    stopped.result = Sweep(kept, shape, len(sample or {}))  # type: ignore[attr-defined]
+                kept: typing.Any = getattr(stopped, "result", None)
+                if isinstance(kept, tuple):
+                    kept = with_results(kept, self, arguments, all_runs=False) if executor is None else kept
+                    stopped.result = Sweep(kept, shape, len(sample or {}), (self, arguments))  # type: ignore[attr-defined]
                 raise
         warn_of_runs(warned)
-        return Sweep(with_results(found, self, arguments), shape, len(sample or {}))
+        return Sweep(found, shape, len(sample or {}), (self, arguments))
 
     def _swept(self, over: Settings, set: Settings | None, options: dict[str, Value]) -> dict[str, Value]:
         """All that is swept, by the names of settings; keywords that have several values leave the options."""
@@ -345,7 +348,7 @@ class Model:
         >>> "slip: " in saltus.catalogue("stick-slip").check()
         True
         """
-        return self._core.check(settings_of(set))
+        return _Lines(self._core.check(settings_of(set)))
 
     def _run(
         self,
@@ -377,6 +380,16 @@ class Model:
 
     def __repr__(self) -> str:
         return f"<saltus.Model {self.name!r}>"
+
+
+class _Lines(str):
+    """A text that a notebook shows as its lines."""
+
+    def __repr__(self) -> str:
+        return str(self).rstrip()
+
+    def _repr_html_(self) -> str:
+        return table_card("", self)
 
 
 class _started_at:

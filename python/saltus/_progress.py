@@ -31,22 +31,37 @@ def progress_line(name: str, wanted: bool) -> typing.Iterator[Tell | None]:
 
 
 @contextlib.contextmanager
-def progress_of_runs(name: str, wanted: bool) -> typing.Iterator[typing.Callable[[float, float], None] | None]:
-    """A function of (runs done, runs), or None if nothing is wanted."""
+def progress_of_runs(name: str, wanted: bool, what: str) -> typing.Iterator[typing.Callable[[float, float], None] | None]:
+    """A function of (done, all), counted in `what`; or None if nothing is wanted."""
     if not wanted:
         yield None
         return
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        yield from _plain_of_runs(name, what)
+        return
+    with tqdm(desc=name, unit=f" {what}") as bar:
 
+        def tell(done: float, total: float) -> None:
+            bar.total = int(total)
+            bar.update(int(done) - bar.n)
+
+        yield tell
+        # Not every run is told.
+        bar.update((bar.total or 0) - bar.n)
+
+
+def _plain_of_runs(name: str, what: str) -> typing.Iterator[typing.Callable[[float, float], None]]:
     runs = 0.0
 
     def tell(done: float, total: float) -> None:
         nonlocal runs
         runs = total
-        print(f"\r{name}: {done:.0f} of {total:.0f} runs", end="", file=sys.stderr, flush=True)
+        print(f"\r{name}: {done:.0f} of {total:.0f} {what}", end="", file=sys.stderr, flush=True)
 
     try:
         yield tell
-        # Not every run is told.
         if runs > 0:
             tell(runs, runs)
     finally:

@@ -390,12 +390,23 @@ class Result(Facts):
             raise AttributeError(f"a result has no attribute {name!r}")
 
     def _repr_html_(self) -> str:
+        if self._several:
+            return _card.table_card(f"{self.model}: {self._several}", self._run.table())
         return _card.card(self)
 
     def __repr__(self) -> str:
         if self._asked is not None:
             return f"<saltus.Result {self.model!r}: values at {len(self.t)} times>"
+        if self._several:
+            return f"<saltus.Result {self.model!r}: {self._several}; print(…) shows them>"
         return f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, {self._counts}>"
+
+    @property
+    def _several(self) -> str:
+        """What it is of, if not of one run."""
+        if self._run.command == "compare":
+            return f"comparison of {len((self.comparison or {}).get('runs', []))} runs"
+        return "errors of fixed steps" if self._run.command == "order" else ""
 
     @property
     def _counts(self) -> str:

@@ -51,7 +51,8 @@ def _patterns() -> list[tuple[re.Pattern[str], str]]:
     return [(re.compile(found), written) for found, written in _SPELLINGS]
 
 
-_DOTTED = re.compile(r"(?<![\w.])(?:simulate|optimize)\.(?:(?:event|output|fesd|timestepping|smoothed|mpcc)\.)?(?=[a-z])")
+#: Whole names are left where they are what is to be written: set={"simulate.rtol": …}.
+_DOTTED = re.compile(r"(?<![\w.])(?<!\{\")(?:simulate|optimize)\.(?:(?:event|output|fesd|timestepping|smoothed|mpcc)\.)?(?=[a-z])")
 
 
 def in_python(text: str) -> str:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import dataclasses
 import functools
 import os
+import shlex
 import typing
 
 import numpy as np
 
-from . import _core, _sweep_plot
+from . import _card, _core, _data, _sweep_plot
 from ._errors import warn
-from ._expression import Expression
+from ._expression import Expression, refuse
 from ._outcome import Kept, unknown
 from ._result import Again, Origin, Result, needed
 from ._settings import text_of
@@ -53,7 +54,7 @@ class Results(typing.Sequence[Result]):
     """The runs of a sweep as results that know how they can be run once more. Each is made when it is asked for."""
 
     def __init__(self, found: FoundRuns, model: typing.Any, arguments: SweepArguments, all_runs: bool = True) -> None:
-        """`all_runs` is false of a share, whose runs have other numbers in the sweep."""
+        """`all_runs` is false of a part, where the number of a run does not say which one it is."""
         self._columns, self.runs, self._names = found
         self._model, self._arguments, self._all_runs = model, arguments, all_runs
         self._made: dict[int, Result] = {}
@@ -100,9 +101,9 @@ class Results(typing.Sequence[Result]):
         return list, (list(self),)
 
 
-def with_results(found: FoundRuns, model: typing.Any, arguments: SweepArguments) -> Found:
+def with_results(found: FoundRuns, model: typing.Any, arguments: SweepArguments, all_runs: bool = True) -> Found:
     """What the library found, with its runs as results."""
-    return found[0], Results(found, model, arguments), found[2]
+    return found[0], Results(found, model, arguments, all_runs), found[2]
 
 
 def _again(model: typing.Any, arguments: SweepArguments, swept: list[tuple[str, typing.Any]], row: int) -> Again:
@@ -122,42 +123,6 @@ def warn_of_runs(warned: list[Warned]) -> None:
     warn(_core.Model.told_with_runs(warned))
 
 
-def share_of(
-    model: typing.Any, arguments: SweepArguments, jobs: int, share: tuple[int, int]
-) -> tuple[Found, list[Warned]]:
-    """One share of a sweep, in whatever process, and warnings. Results are made here: what they are made of stays."""
-    warned: list[Warned] = []
-    found = model._core.sweep(*arguments, jobs, share, None, warned)
-    return (found[0], list(Results(found, model, arguments, all_runs=False)), found[2]), warned
-
-
-def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments, jobs: int) -> Found:
-    """A sweep by an executor: a few shares for each of its workers, put together in their order."""
-    if not callable(getattr(executor, "submit", None)):
-        raise TypeError(
-            f"executor={type(executor).__name__}: expected one of concurrent.futures, with a method submit, "
-            "e.g. ProcessPoolExecutor()"
-        )
-    number = 4 * (getattr(executor, "_max_workers", None) or os.cpu_count() or 1)
-    futures = [executor.submit(share_of, model, arguments, jobs, (i + 1, number)) for i in range(number)]
-    try:
-        shares = [future.result() for future in futures]
-    except BaseException:
-        for future in futures:
-            future.cancel()
-        raise
-    warn_of_runs([warning for _, warned in shares for warning in warned])
-    found = [share for share, _ in shares]
-    columns = max((part[0] for part in found), key=len)
-    parts = [part for part in found if part[1]]
-    joined = {name: np.concatenate([np.asarray(part[0][name]) for part in parts]) for name in columns}
-    results = [result for part in parts for result in part[1]]
-    for i, result in enumerate(results):
-        if result._origin is None:
-            result._origin = RunWithoutRow(model, arguments, i, len(results))
-    return joined, results, found[0][2]
-
-
 class Sweep:
     """All runs of a sweep: ``results[i]``, and one table of them.
 
@@ -175,8 +140,11 @@ class Sweep:
     <saltus.Result 'stick-slip': completed at t = 5, events not kept; 2 happened>
     """
 
-    def __init__(self, found: Found, shape: tuple[int, ...], sampled: int = 0) -> None:
-        """`sampled` is how many of the names, the last ones, had random values."""
+    def __init__(
+        self, found: Found, shape: tuple[int, ...], sampled: int, of: tuple[typing.Any, SweepArguments]
+    ) -> None:
+        """`sampled` is how many of the names, the last ones, had random values; `of` the model and what it was asked."""
+        self._of = of
         self._columns, results, names = found
         self.results: typing.Sequence[Result] = results
         self.names: list[str] = names
@@ -291,6 +259,46 @@ class Sweep:
         'q at leave_sliding'
         """
         return _sweep_plot.bifurcation(self, name, event, after, over, axis)
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the table as the tool does: ``.csv``, or ``.npz`` with an array for every column.
+
+        >>> import tempfile, pathlib
+        >>> file = pathlib.Path(tempfile.mkdtemp()) / "s.csv"
+        >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5).save(file)
+        >>> file.read_text().splitlines()[0]
+        'run,belt,status,unique,t,q,v,events'
+        """
+        name = os.fspath(path)
+        if name.endswith(".csv"):
+            _core.write_file(name, _data.csv(self._columns))
+        elif name.endswith(".npz"):
+            _data.write_arrays(name, self.table)
+        else:
+            raise refuse(f"{name}: the name must end in .csv or .npz", 's.save("s.csv")')
+
+    def report(self, path: str | os.PathLike[str]) -> None:
+        """Writes the page of ``saltus sweep --report``: lines or maps of the table, which works offline.
+
+        >>> import tempfile, pathlib
+        >>> page = pathlib.Path(tempfile.mkdtemp()) / "s.html"
+        >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5).report(page)
+        >>> "<svg" in page.read_text() or "createElementNS" in page.read_text()
+        True
+        """
+        columns: list[tuple[str, list[str], list[float]]] = []
+        for name, values in self._columns.items():
+            listed = np.asarray(values).tolist()
+            words = bool(listed) and isinstance(listed[0], str)
+            columns.append((name, listed if words else [], [] if words else listed))
+        model, (settings, options, _, paired, samples, *_) = self._of
+        values_of_all = [*settings, *(f"{key}={value}" for key, value, _ in options)]
+        command = shlex.join(["saltus", "simulate", model.path, *(f"--set={value}" for value in values_of_all)])
+        page = model._core.sweep_page(columns, self.names, command, not paired and not samples)
+        _core.write_file(os.fspath(path), page)
+
+    def _repr_html_(self) -> str:
+        return _card.sweep_card(self)
 
     def __repr__(self) -> str:
         counts: dict[str, int] = {}

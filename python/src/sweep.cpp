@@ -4,14 +4,17 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 #include <optional>
 #include <thread>
+#include <tuple>
 
 #include "errors.hpp"
 #include "model.hpp"
 #include "parts.hpp"
 #include "result.hpp"
+#include "saltus/cli/sweep/page.hpp"
 #include "saltus/cli/sweep/share.hpp"
 #include "saltus/cli/sweep/sweep_input.hpp"
 #include "saltus/cli/sweep/sweep_table.hpp"
@@ -127,9 +130,26 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
   return found;
 }
 
+/// The page of a table that Python holds: columns are lists of numbers or of words.
+std::string sweep_page(const Model& model, const nb::list& columns, std::vector<std::string> names, std::string command,
+                       bool grid) {
+  std::vector<cli::TableColumn> table;
+  for (const auto column : columns) {
+    const auto [name, words, numbers] = nb::cast<std::tuple<std::string, std::vector<std::string>, std::vector<double>>>(column);
+    if (words.empty()) {
+      table.push_back({name, numbers});
+    } else {
+      table.push_back({name, words});
+    }
+  }
+  const auto& file = model.input().file;
+  return cli::sweep_page(table, {file.description.name, std::move(command), std::move(names), grid, file.captions});
+}
+
 }  // namespace
 
 void add_sweep(nb::class_<Model>& type) {
+  type.def("sweep_page", sweep_page, nb::arg("columns"), nb::arg("names"), nb::arg("command"), nb::arg("grid"));
   type.def_static("told_with_runs", told_with_runs, nb::arg("warnings"));
   type.def(
       "sweep",

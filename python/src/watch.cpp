@@ -31,6 +31,9 @@ void Watch::call(const nb::object& function, const std::string& line) {
 }
 
 void Watch::tell(const nb::object& function, double done, double total) {
+  const auto now = Clock::now();
+  if (now < next_telling_) return;
+  next_telling_ = now + 2 * interval;
   attempt([&] { function(done, total); });
 }
 

@@ -21,7 +21,7 @@ class Watch {
   [[nodiscard]] bool look(const pipeline::StepRecord* step = nullptr);
   /// Calls `function` with a line of text; what it raises ends the run.
   void call(const nanobind::object& function, const std::string& line);
-  /// Calls `function` with two numbers; likewise.
+  /// Calls `function` with two numbers, at most ten times a second; likewise.
   void tell(const nanobind::object& function, double done, double total);
   /// Raises that exception, with `result` as its attribute.
   void raise_what_came(const nanobind::object& result);
@@ -45,6 +45,7 @@ class Watch {
   nanobind::object progress_;
   std::optional<nanobind::python_error> came_;
   Clock::time_point next_ = Clock::now() + interval;
+  Clock::time_point next_telling_{};
 };
 
 }  // namespace saltus::python

@@ -422,3 +422,26 @@ def test_units_of_a_run_of_a_sweep():
     assert [axis.get_ylabel() for axis in of_sweep.plot()] == alone
     assert m.sweep(k=[1, 2]).plot("x").get_ylabel() == "position [m]"
     assert m.sweep(x=[1, 2]).plot("x").get_xlabel() == "position [m]"
+
+
+def test_cards_of_what_is_more_than_one_run():
+    m = saltus.catalogue("stick-slip")
+    compared, studied = m.compare(until=2), m.order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20])
+    for r, word in (compared, "timestepping"), (studied, "radau_iia"):
+        html = r._repr_html_()
+        xml.etree.ElementTree.fromstring(html)
+        assert word in html and "<pre" in html and "<svg" not in html
+    runs = len(compared.comparison["runs"])
+    assert repr(compared) == f"<saltus.Result 'stick-slip': comparison of {runs} runs; print(…) shows them>"
+    assert "errors of fixed steps" in repr(studied)
+    text = m.check()
+    assert repr(text) == str(text).rstrip() and "\n" in repr(text) and "<pre" in text._repr_html_()
+
+
+def test_the_card_of_a_sweep():
+    s = saltus.catalogue("stick-slip").sweep(belt=np.linspace(0.1, 0.3, 9), until=5)
+    table = xml.etree.ElementTree.fromstring(s._repr_html_()).find("table")
+    rows = [[cell.text for cell in row] for row in table.findall("tr")]
+    assert rows[0] == list(s.table) and len(rows) == 9
+    assert [float(row[5]) for row in rows[1:]] == pytest.approx(s["q"][:8], rel=1e-5)
+    assert "9 runs over belt: 9 completed" in s._repr_html_() and "and 1 more row:" in s._repr_html_()

@@ -183,3 +183,77 @@ def test_progress_and_what_it_raises():
     times = [what[0] for what in heard]
     assert times == sorted(times)
     assert saltus._core.Run is type(stopped.value.result)
+
+
+ENDLESS_SWEEP = """
+    import os, signal, sys, threading, time
+    import concurrent.futures as futures
+    import multiprocessing
+    import numpy as np
+    import saltus
+
+    if __name__ == "__main__":
+        m = saltus.catalogue("stick-slip")
+        make = {"processes": lambda: futures.ProcessPoolExecutor(2, mp_context=multiprocessing.get_context("spawn")),
+                "threads": lambda: futures.ThreadPoolExecutor(2)}[sys.argv[1]]
+        with make() as pool:
+            m.sweep(belt=[0.1, 0.2], until=1, executor=pool)
+            threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+            try:
+                m.sweep(belt=np.linspace(0.05, 0.3, 100_000), until=1000, executor=pool)
+            except KeyboardInterrupt as stopped:
+                s = stopped.result
+        assert 0 < len(s) < 100_000 and len(s["q"]) == len(s), len(s)
+        assert set(s["status"]) <= {"completed", "stopped_by_user"}, repr(s)
+        belts = np.linspace(0.05, 0.3, 100_000)
+        assert s["belt"].tolist() == belts[s["run"] - 1].tolist()
+        assert s.results[0].final["q"] == s["q"][0]
+        print(s)
+"""
+
+
+@pytest.mark.parametrize("kind", ["processes", "threads"])
+def test_who_stops_a_sweep_by_an_executor_gets_what_there_is(tmp_path, kind):
+    (tmp_path / "study.py").write_text(textwrap.dedent(ENDLESS_SWEEP))
+    done = subprocess.run([sys.executable, "study.py", kind], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("<saltus.Sweep of ")
+
+
+def test_progress_of_a_sweep(capsys, monkeypatch):
+    m = saltus.catalogue("stick-slip")
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    belts = [0.1 + 1e-6 * i for i in range(3000)]
+    begin = time.monotonic()
+    m.sweep(belt=belts, until=1, progress=True, jobs=1)
+    writes = capsys.readouterr().err.split("\r")
+    assert writes[-1] == "stick-slip: 3000 of 3000 runs\n"
+    assert len(writes) <= 3 + 10 * (time.monotonic() - begin)
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        m.sweep(belt=[0.1, 0.2], until=1, progress=True, executor=pool)
+    assert capsys.readouterr().err.endswith("stick-slip: 4 of 4 shares\n")
+
+
+def test_progress_of_a_sweep_by_tqdm(monkeypatch):
+    made = []
+
+    class Bar:
+        def __init__(self, **how):
+            self.how, self.n, self.total = how, 0, None
+            made.append(self)
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            pass
+
+        def update(self, more):
+            self.n += more
+
+    import types
+
+    monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
+    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
+    saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2, 0.3], until=1, progress=True)
+    assert [(bar.n, bar.total) for bar in made] == [(3, 3)]

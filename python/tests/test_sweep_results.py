@@ -1,7 +1,10 @@
 """Single runs of a sweep: what they say of what was not kept, and that they can be asked like any other run."""
 
 import concurrent.futures
+import json
 import pickle
+import re
+import subprocess
 
 import numpy as np
 import pytest
@@ -172,9 +175,16 @@ def test_states_called_like_columns_of_the_table():
     assert frame["status (model)"].tolist() == [2.0, 2.0]
 
 
-def test_trajectories_beyond_the_memory_are_refused_behind_the_first_run():
-    with pytest.raises(ValueError, match="need more than 4 GB"):
-        saltus.catalogue("stick-slip").sweep(belt=range(2_000_000), keep="trajectory", points=1000, until=1, jobs=1)
+def test_trajectories_beyond_the_memory_are_refused():
+    m = saltus.catalogue("stick-slip")
+    # Before the first run, where the number of rows is asked for: that run would take minutes.
+    with pytest.raises(ValueError, match="all 2000 runs need 48 GB or more; 4 GB are possible\n  keep events") as told:
+        m.sweep(belt=range(2000), keep="trajectory", points=1_000_000, until=1e9, max_steps=10**9, max_events=10**9, jobs=1)
+    assert "in run" not in str(told.value)
+    # Else behind it.
+    with pytest.raises(ValueError, match="all 2000000 runs need .* GB or more") as told:
+        m.sweep(belt=range(2_000_000), keep="trajectory", output="steps", until=200, jobs=1)
+    assert "in run" not in str(told.value)
 
 
 @pytest.fixture(scope="module")
@@ -196,3 +206,33 @@ def test_runs_that_stopped_early_are_gaps_with_crosses(failing):
     # What lies at the foot has no value that the axis must reach.
     assert axis.get_ylim()[0] > 1
     assert len(failing.sweep(a=[2, 3], until=0.1).plot("x").lines) == 1
+
+
+@pytest.mark.parametrize("keep", ["final", "events", "trajectory"])
+def test_tables_are_written_as_the_tool_writes_them(slip, tool, tmp_path, keep):
+    belts = [0.1, 0.2, 1e-7, 5]
+    s = slip.sweep(belt=belts, integrator=["dopri5"], until=5, keep=keep)
+    over = ["--over", "belt=" + ",".join(map(str, belts)), "--over", "simulate.event.integrator=dopri5"]
+    subprocess.run([tool, "sweep", "stick-slip", *over, "--until", "5", "--keep", keep, "--out", "t.csv"],
+                   cwd=tmp_path, check=True, capture_output=True)
+    s.save(tmp_path / "s.csv")
+    assert (tmp_path / "s.csv").read_bytes() == (tmp_path / "t.csv").read_bytes()
+    s.save(tmp_path / "s.npz")
+    with np.load(tmp_path / "s.npz") as stored:
+        assert list(stored) == list(s.table)
+        for name, column in s.table.items():
+            assert stored[name].tolist() == column.tolist() or np.isnan(column.astype(float)).any()
+    with pytest.raises(saltus.ModelError, match=r"must end in \.csv or \.npz"):
+        s.save(tmp_path / "s.json")
+
+
+def test_the_page_of_a_sweep_is_that_of_the_tool(slip, tool, tmp_path):
+    over = ["--over", "belt=0.1,0.2", "--over", "simulate.event.integrator=dopri5,dop853"]
+    subprocess.run([tool, "sweep", "stick-slip", *over, "--until", "5", "--report", "t.html"],
+                   cwd=tmp_path, check=True, capture_output=True)
+    slip.sweep(belt=[0.1, 0.2], integrator=["dopri5", "dop853"], until=5).report(tmp_path / "s.html")
+    pages = [(tmp_path / name).read_text() for name in ("s.html", "t.html")]
+    commands = [json.loads(re.search(r'id="sweep">(.*)</script>', page).group(1))["command"] for page in pages]
+    assert commands[0].startswith("saltus simulate ") and commands[0].endswith("stick-slip.toml --set=simulate.until=5")
+    same = [page.replace(json.dumps(command), "") for page, command in zip(pages, commands)]
+    assert same[0] == same[1]

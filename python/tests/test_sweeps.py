@@ -403,7 +403,7 @@ def test_runs_whose_solution_is_not_unique_are_told(tool, tmp_path, toggle, keep
         assert s.dataset()["unique"].values.tolist() == [1, 0, 1]
 
 
-def test_of_a_run_that_did_not_begin_nothing_is_decided():
+def test_runs_that_did_not_begin_have_no_rows():
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     endless = saltus.Model.from_text(
         '[model]\nname = "endless"\n[parameters]\na = 1\n[states]\nx = 0\nv = 2\n'
@@ -412,7 +412,7 @@ def test_of_a_run_that_did_not_begin_nothing_is_decided():
     with pytest.raises(KeyboardInterrupt) as stopped:
         endless.sweep(a=[1, 2], until=1e7, max_steps=10**9, max_events=10**9, jobs=1)
     signal.signal(signal.SIGINT, before)
-    assert stopped.value.result["unique"].tolist() == [1, -1]
+    assert stopped.value.result["run"].tolist() == [1] and stopped.value.result["status"].tolist() == ["stopped_by_user"]
 
 
 def test_a_sweep_follows_one_motion(tool, tmp_path, toggle):
@@ -474,7 +474,7 @@ def test_names_of_the_model_come_before_options():
         with pytest.raises(saltus.ModelError, match=r'rho=3 may be two things.*\n.*set={"rho": …}.*set={"simulate.fesd.rho": …}'):
             run()
     r = m.simulate(until=1, method="fesd", steps=4, set={"rho": 2, "simulate.fesd.stages": 3})
-    assert r.final["x"] == pytest.approx(np.exp(-2), rel=1e-4) and r.to_dict()["options"]["fesd.stages"] == 3
+    assert r.final["x"] == pytest.approx(np.exp(-2), rel=1e-4) and r.options["simulate.fesd.stages"] == 3
 
 
 @pytest.mark.parametrize(

@@ -140,10 +140,11 @@ std::string doubts(const std::vector<TableColumn>& table) {
   return parts.empty() ? "" : fmt::format("; {}", fmt::join(parts, ", "));
 }
 
-ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs) {
+ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs, std::size_t asked) {
+  if (runs.size() < asked) print_error(fmt::format("{} of {} runs began: the others have no rows", runs.size(), asked));
   const auto stopped = [](const auto& run) { return !is_done(run.result.status.termination); };
   const auto first = std::find_if(runs.begin(), runs.end(), stopped);
-  if (first == runs.end()) return ExitCode::done;
+  if (first == runs.end()) return runs.size() < asked ? ExitCode::stopped_early : ExitCode::done;
   const auto& status = first->result.status;
   print_error(fmt::format("{} of {} runs stopped early; run {}: {}{}{}",
                           std::count_if(runs.begin(), runs.end(), stopped), runs.size(), first - runs.begin() + 1,
@@ -227,7 +228,7 @@ ExitCode run_sweep(const SweepArguments& arguments) {
     print(fmt::format("{} runs: {}{}\n{}\n", runs.size(), statuses(runs), doubts(table),
                       arguments.out.empty() ? arguments.page : arguments.out));
   }
-  return report_stopped_runs(runs);
+  return report_stopped_runs(runs, count);
 }
 
 /// What MODEL and the files behind it are with --join: all are shares.

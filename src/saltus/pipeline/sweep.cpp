@@ -16,6 +16,7 @@
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/pipeline/options/option_fields.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -53,6 +54,27 @@ void leave_what_is_kept(SweepRun& run, Keep keep) {
   if (keep == Keep::final) run.result.events = {};
 }
 
+Error too_much_kept(std::size_t runs, double bytes) {
+  return {ErrorCode::invalid_option,
+          fmt::format("the trajectories of all {} runs need {:.0f} GB or more; {:.0f} GB are possible", runs, bytes / 1e9,
+                      most_kept_bytes / 1e9),
+          "keep events or final, or ask for fewer rows: simulate.output.points",
+          {},
+          {}};
+}
+
+/// The least that rows at asked times take in all runs, as far as the first one tells it.
+double least_kept_bytes(const SweepOptions& options, StateRun state) {
+  if (options.keep != Keep::trajectory) return 0.0;
+  const SymbolicLock lock;
+  const auto first = state(0);
+  if (!first || !first->options.until) return 0.0;
+  const auto& [system, asked] = *first;
+  const auto states = asked.kept.states ? 0 : system.state_names.size();
+  const double rows = number_of_rows(asked.output, asked.from, *asked.until);
+  return rows * static_cast<double>(8 * (1 + states) * options.runs);
+}
+
 /// What all threads work on.
 class Workshop {
  public:
@@ -64,20 +86,26 @@ class Workshop {
   /// Takes runs in their order until there are none: whatever comes before a failure has been begun.
   void work() {
     for (std::size_t i = next_++; i < runs_.size() && !failed_; i = next_++) {
-      if (interrupted()) {
-        runs_[i].result.status = {result::Termination::stopped_by_user, "not begun",
-                                  std::numeric_limits<double>::quiet_NaN()};
-      } else if (auto done = one(i); !done) {
-        fail(i, done.error());
-      }
+      // What is left may be a million runs.
+      if (interrupted()) return;
+      if (auto done = one(i); !done) fail(i, done.error());
       const std::lock_guard guard(mutex_);
+      begun_ = std::max(begun_, i + 1);
       ++done_;
       if (observers_.on_run) observers_.on_run(done_);
     }
   }
 
   [[nodiscard]] Expected<SweepOutcome> outcome() && {
+    for (std::size_t i = 0; i < begun_; ++i) {
+      if (!runs_[i].result.states.empty()) continue;
+      // Another thread had taken it when the interruption came, and has not begun it.
+      runs_[i].result.status = {result::Termination::stopped_by_user, "not begun",
+                                std::numeric_limits<double>::quiet_NaN()};
+    }
+    runs_.resize(begun_);
     if (!error_) return SweepOutcome{std::move(runs_), warnings()};
+    if (is_too_much_) return tl::unexpected(std::move(*error_));
     return tl::unexpected(
         with_context(std::move(*error_), fmt::format("in run {}", options_.before + failed_run_ + 1)));
   }
@@ -109,12 +137,9 @@ class Workshop {
     constexpr double far = 10.0;
     const bool hopeless = kept * static_cast<double>(options_.runs) > far * most_kept_bytes;
     if (kept > 0.0 && ((kept_bytes_ += kept) > most_kept_bytes || hopeless)) {
-      return tl::unexpected(
-          Error{ErrorCode::invalid_option,
-                fmt::format("the trajectories of all runs need more than {:.0f} GB", most_kept_bytes / 1e9),
-                "keep events or final, or ask for fewer rows: simulate.output.points",
-                {},
-                {}});
+      is_too_much_ = true;
+      const double all = hopeless ? kept * static_cast<double>(options_.runs) : kept_bytes_.load();
+      return tl::unexpected(too_much_kept(options_.runs, all));
     }
     return {};
   }
@@ -147,8 +172,10 @@ class Workshop {
   std::atomic<std::size_t> next_ = 0;
   std::atomic<bool> failed_ = false;
   std::atomic<double> kept_bytes_ = 0.0;
+  std::atomic<bool> is_too_much_ = false;  ///< no mistake of a run
   std::mutex mutex_;
   std::size_t done_ = 0;
+  std::size_t begun_ = 0;  ///< all before this one have been begun, but for an interruption
   std::optional<Error> error_;
   std::size_t failed_run_ = 0;
 };
@@ -168,6 +195,9 @@ Expected<SweepOutcome> sweep(const SweepOptions& options, StateRun state, const 
                           std::ceil(4.0 * needed / bytes_of_machine())),
               {},
               {}});
+  }
+  if (const double kept = least_kept_bytes(options, state); kept > most_kept_bytes) {
+    return tl::unexpected(too_much_kept(options.runs, kept));
   }
   Workshop workshop(options, state, observers);
   std::vector<std::thread> helpers;

@@ -60,15 +60,20 @@ class Table {
 /// What all tables begin with: the number of the run, its values, its status, whether its solution is unique.
 class Beginning {
  public:
-  Beginning(const SweepPlan& plan, const Result& first, std::size_t begin)
-      : plan_(plan), begin_(begin), is_number_(plan.names().size(), true) {
-    for (std::size_t i = 0; i < plan.runs(); ++i) {
-      values_.push_back(plan.values(i));
-      for (std::size_t k = 0; k < is_number_.size(); ++k) {
-        const auto value = whole_text_as<double>(values_[i][k]);
-        is_number_[k] = is_number_[k] && value;
-        numbers_.push_back(value.value_or(nothing));
-      }
+  Beginning(const SweepPlan& plan, const Result& first, std::size_t begin, std::size_t runs)
+      : begin_(begin), is_number_(plan.names().size(), true) {
+    const auto note_number = [&](std::size_t k, const std::string& text) {
+      const auto value = whole_text_as<double>(text);
+      is_number_[k] = is_number_[k] && value;
+      return value.value_or(nothing);
+    };
+    // A column of a share is what it is in the whole table.
+    for (std::size_t k = 0; k < is_number_.size(); ++k) {
+      for (const auto& text : plan.listed(k)) note_number(k, text);
+    }
+    for (std::size_t i = 0; i < runs; ++i) {
+      values_.push_back(plan.values(begin + i));
+      for (std::size_t k = 0; k < is_number_.size(); ++k) numbers_.push_back(note_number(k, values_[i][k]));
     }
     columns_.push_back(Table::numbers("run"));
     for (std::size_t k = 0; k < is_number_.size(); ++k) {
@@ -82,8 +87,7 @@ class Beginning {
   }
   [[nodiscard]] std::vector<TableColumn> columns() const { return columns_; }
   void write(Table& table, std::size_t i, const SweepRun& run) const {
-    i += begin_;
-    table << static_cast<double>(i + 1);
+    table << static_cast<double>(begin_ + i + 1);
     for (std::size_t k = 0; k < is_number_.size(); ++k) {
       if (is_number_[k]) {
         table << numbers_[i * is_number_.size() + k];
@@ -96,7 +100,6 @@ class Beginning {
   }
 
  private:
-  const SweepPlan& plan_;
   std::size_t begin_;
   std::vector<bool> is_number_;
   std::vector<std::vector<std::string>> values_;
@@ -188,7 +191,7 @@ std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<Sw
   const auto begun = std::find_if(runs.begin(), runs.end(), [](const auto& run) { return !run.result.states.empty(); });
   const Result none;
   const Result& first = begun == runs.end() ? none : begun->result;
-  const Beginning beginning(plan, first, begin);
+  const Beginning beginning(plan, first, begin, runs.size());
   switch (keep) {
     case Keep::final:
       return with_distinct_names(final_table(beginning, first, runs).columns());
