@@ -79,8 +79,8 @@ bool Run::begin_field(const ModeChange& change, double t, std::vector<double>& x
 int Run::state_moved_from(const std::vector<double>& met) const {
   const auto& [rtol, atol] = options_.tolerances;
   constexpr double many = 1e4;
-  // Of a state: what is located at a root is known to half of the digits.
-  const double share = std::clamp(many * rtol, 1e-5, 0.1);
+  // Of a state: what is located at roots, one inside the other, is known to a few digits.
+  const double share = std::clamp(many * rtol, 1e-2, 0.1);
   for (std::size_t i = 0; i < met.size(); ++i) {
     const double size = std::max(std::abs(met[i]), std::abs(here_.x[i]));
     if (std::abs(here_.x[i] - met[i]) > many * atol + share * size) return static_cast<int>(i);
