@@ -44,10 +44,6 @@ MONOPED = (
 
 
 class ContactOptima(time_freezing_test.FrozenTest):
-    def optimised(self, text):
-        self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
-        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
-
     def test_monoped_has_its_masses_and_forces(self):
         text = (tool.SOURCE / "examples/contacts/monoped.toml").read_text(encoding="utf-8")
         forces = tomllib.loads(text)["mechanics"]["force"]

@@ -74,6 +74,10 @@ class FrozenTest(tool.ToolTest):
                 self.assertAlmostEqual(a, b, delta=delta)
         return event, frozen
 
+    def optimised(self, text):
+        self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
+        return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+
 
 class TimeFreezing(FrozenTest):
     def test_events_do_not_depend_on_rows_at_their_times(self):

@@ -126,4 +126,27 @@ TEST(ContactsWithOpenForces, ATableStandsOnAllItsLegs) {
 }
 
 }  // namespace
+/// Two blocks that rub on the ground with 1 and 3, pressed on each other: they brake with 4 together. A drive of 3 t/2
+/// on the first one moves both once it is as large. Which part of it each friction bears is open until then.
+TEST(ContactsWithOpenForces, BlocksThatPressOnEachOtherStopAndLeaveTogether) {
+  model::Builder model("blocks");
+  const SX x = model.state("x", {0.0}), y = model.state("y", {1.0});
+  const SX vx = model.state("vx", {1.0}), vy = model.state("vy", {1.0});
+  const SX sign_x = model.sign(vx), sign_y = model.sign(vy);
+  model.mechanics({.positions = {"x", "y"},
+                   .velocities = {"vx", "vy"},
+                   .force = {{"vx", 1.5 * model.time() - sign_x}, {"vy", -3.0 * sign_y}}});
+  model.contact("touch", y - x - 1.0, {});
+  const auto run = run_tightly(model, 6.0);
+  ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+  ASSERT_EQ(run.events.size(), 2U);
+  // 1 - 2 t + 3 t^2/8 = 0
+  const double stop = (2.0 - std::sqrt(2.5)) / 0.75, leave = 8.0 / 3.0;
+  EXPECT_NEAR(run.events[0].t, stop, 1e-9);
+  EXPECT_EQ(*run.events[0].mode_after, (result::Mode{0, 0}));
+  EXPECT_NEAR(run.events[1].t, leave, 1e-9);
+  EXPECT_EQ(*run.events[1].mode_after, (result::Mode{1, 1}));
+  for (const std::size_t v : {2, 3}) EXPECT_NEAR(run.final.x[v], 0.375 * (6.0 - leave) * (6.0 - leave), 1e-8);
+}
+
 }  // namespace saltus::event_integrator::testing

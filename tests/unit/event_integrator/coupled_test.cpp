@@ -107,7 +107,8 @@ TEST(Coupled, SurfacesThatMoveAlikeAreHeldByTheirSumUntilTheDriveIsLarger) {
         Builder b("alike");
         const SX x = b.state("x", {1});
         const SX y = b.state("y", {1 + y_0});
-        const SX rate = direction * b.time() - b.sign(x) - 3 * b.sign(y - y_0);
+        const SX sign_x = b.sign(x);
+        const SX rate = direction * b.time() - sign_x - 3 * b.sign(y - y_0);
         b.dynamics("x", rate);
         b.dynamics("y", rate);
         IntegrationOptions options;
@@ -123,8 +124,8 @@ TEST(Coupled, SurfacesThatMoveAlikeAreHeldByTheirSumUntilTheDriveIsLarger) {
         EXPECT_EQ(result.events[0].kind, result::EventKind::enter_sliding);
         EXPECT_EQ(result.events[0].unique, true);
         EXPECT_EQ(*result.events[0].mode_after, (result::Mode{0, 0}));
-        const std::vector<double> alphas = result.events[0].alpha_after.value();
-        for (const double alpha : alphas) EXPECT_TRUE(std::isnan(alpha));
+        const auto selections = *result.events[0].alpha_after;
+        for (const double alpha : selections) EXPECT_TRUE(std::isnan(alpha)) << alpha;
         EXPECT_NEAR(result.events[1].t, 4.0, 1e-10);
         EXPECT_EQ(result.events[1].kind, result::EventKind::leave_sliding);
         const int side = direction > 0.0 ? 1 : -1;
@@ -144,10 +145,13 @@ TEST(Coupled, OfThreeSurfacesTwoMoveAlike) {
   const SX x = b.state("x", {1});
   const SX y = b.state("y", {2});
   const SX z = b.state("z", {0.125});
-  const SX rate = b.time() - b.sign(x) - 3 * b.sign(y) - 0.25 * b.sign(z);
+  const SX sign_x = b.sign(x);
+  const SX sign_y = b.sign(y);
+  const SX sign_z = b.sign(z);
+  const SX rate = b.time() - sign_x - 3 * sign_y - 0.25 * sign_z;
   b.dynamics("x", rate);
   b.dynamics("y", 2 * rate);
-  b.dynamics("z", -2 * b.sign(z) - 0.5 * b.sign(x));
+  b.dynamics("z", -2 * sign_z - 0.5 * sign_x);
   const auto result = run_coupled(b, 6);
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   ASSERT_EQ(result.events.size(), 3U);
@@ -168,7 +172,8 @@ TEST(Coupled, SurfacesThatMoveAlikeForAnInstantAreNotHeld) {
   Builder b("instant");
   const SX x = b.state("x", {1});
   const SX y = b.state("y", {1.00625});
-  const SX rate = -b.sign(x) - 3 * b.sign(y);
+  const SX sign_x = b.sign(x);
+  const SX rate = -sign_x - 3 * b.sign(y);
   b.dynamics("x", rate);
   b.dynamics("y", rate + 0.2 * (b.time() - 0.25));
   const auto result = run_coupled(b, 1);

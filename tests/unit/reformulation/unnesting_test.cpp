@@ -148,7 +148,7 @@ TEST(Unnesting, NamesOfTimeAreHeldAndInputsSeeThem) {
   EXPECT_EQ(dcs.held_symbols[0].kind, HeldSymbol::Kind::cell);
   const casadi::Function input("input", {dcs.t, dcs.held}, {dcs.input});
   for (const double held : {0.0, 1.0}) {
-    EXPECT_EQ(static_cast<double>(input(std::vector<casadi::DM>{0.0, std::vector<double>{0, 0.5, held}}).front()),
+    EXPECT_EQ(static_cast<double>(input(std::vector<casadi::DM>{0.0, std::vector<double>{0, held, 0.5}}).front()),
               held);
   }
 }

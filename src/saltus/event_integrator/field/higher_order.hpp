@@ -124,8 +124,9 @@ class HigherOrderField {
                                                                   std::string& problem);
 
 /// Does the same for surfaces whose gradients depend on each other all along the set where they vanish. An example is
-/// x1 - x2, x2 - x3, x1 - x3: selections enter additively, and all that hold the set give the same motion. nullopt with
-/// an empty `problem` if the gradients are independent.
+/// x1 - x2, x2 - x3, x1 - x3: selections enter additively, and all that hold the set give the same motion. Also for
+/// surfaces whose gradients are independent, but which all selections move alike: velocities of blocks that press on
+/// each other. nullopt with an empty `problem` if the gradients are independent, and it finds none.
 [[nodiscard]] std::optional<HigherOrderSet> find_dependent_set(const SwitchingContext& switching_context,
                                                                const ModeState& state, double t, std::vector<double>& x,
                                                                std::string& problem);

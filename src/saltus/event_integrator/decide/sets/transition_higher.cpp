@@ -308,7 +308,7 @@ std::optional<Transition> hold(const SwitchingContext& s, ModeState state, const
   transition.reason = fmt::format(
       "{}: {}", names(s.system, transition.state.sliding),
       dependent
-          ? "some selections in [0, 1] hold all of them, whose gradients depend on each other"
+          ? "some selections in [0, 1] hold all of them, which depend on each other"
           : "some selections in [0, 1] hold what is at zero together with its derivatives (higher-order sliding)");
   return transition;
 }
