@@ -116,6 +116,10 @@ class Expression:
     def __abs__(self) -> typing.Any:
         return call("abs", self)
 
+    if typing.TYPE_CHECKING:  # numpy calls functions of this package by their names; its annotations know this one only
+
+        def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: typing.Any, **how: typing.Any) -> typing.Any: ...
+
     # Conditions ----------------------------------------------------------------------------------------------------
 
     def __lt__(self, other: Operand) -> Expression:

@@ -259,9 +259,9 @@ def check_sweep(over: Value, sample: Value, runs: Value, seed: Value, jobs: Valu
 
 def whole(name: str, value: Value, least: int, most: int) -> None:
     """Refuses what is no whole number from `least` to `most`."""
-    if not isinstance(value, numbers.Integral) or value < least:
+    if not isinstance(value, numbers.Integral) or int(value) < least:
         raise refuse(f"{name}={value!r}: expected a whole number >= {least}", f"e.g. {name}={max(least, 1)}")
-    if value > most:
+    if int(value) > most:
         raise refuse(f"{name}={value!r}: expected a whole number <= {most}", f"e.g. {name}={max(least, 1)}")
 
 

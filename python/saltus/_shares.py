@@ -83,8 +83,9 @@ def _stopped(futures: list[typing.Any], stop: str) -> list[Share]:
 
 
 def _joined(shares: list[Share]) -> Found:
-    found = [share for share, _, _ in shares]
-    parts = [part for part in found if part[1]]
-    columns = max((part[0] for part in parts), key=len, default={"run": [], "unique": []})
-    joined = {name: np.concatenate([np.asarray(part[0][name]) for part in parts] or [[]]) for name in columns}
-    return joined, [result for part in parts for result in part[1]], max((part[2] for part in found), key=len, default=[])
+    parts = [share for share, _, _ in shares if share[1]]
+    if not parts:
+        return {"run": [], "unique": []}, [], []
+    columns = max((part[0] for part in parts), key=len)
+    joined = {name: np.concatenate([np.asarray(part[0][name]) for part in parts]) for name in columns}
+    return joined, [result for part in parts for result in part[1]], parts[0][2]

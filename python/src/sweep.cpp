@@ -135,7 +135,8 @@ std::string sweep_page(const Model& model, const nb::list& columns, std::vector<
                        bool grid) {
   std::vector<cli::TableColumn> table;
   for (const auto column : columns) {
-    const auto [name, words, numbers] = nb::cast<std::tuple<std::string, std::vector<std::string>, std::vector<double>>>(column);
+    const auto [name, words, numbers] =
+        nb::cast<std::tuple<std::string, std::vector<std::string>, std::vector<double>>>(column);
     if (words.empty()) {
       table.push_back({name, numbers});
     } else {

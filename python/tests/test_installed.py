@@ -18,7 +18,7 @@ PACKAGE = pathlib.Path(saltus.__file__).parent
 def test_it_is_what_is_installed():
     assert PACKAGE.is_relative_to(sys.prefix)
     assert {"py.typed", "_core.pyi", "share"} <= {path.name for path in PACKAGE.iterdir()}
-    assert (PACKAGE / "share" / "LICENSE").exists()
+    assert all((PACKAGE / "share" / name).exists() for name in ("LICENSE", "CITATION.cff"))
     assert importlib.metadata.version("saltus") == saltus.__version__
 
 

@@ -67,6 +67,20 @@ class Interrupt(tool.ToolTest):
         self.assertLess(result["final"]["t"], 1e9)
         self.assertEqual(result["trajectory"]["t"][-1], result["final"]["t"])
 
+    def test_a_sweep_writes_the_runs_that_began(self):
+        process = self.start(["sweep", "--over", "x=0:1:10000", "--set", "simulate.until=10000", "--out", "s.csv"],
+                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(3.0)
+        self.assertIsNone(process.poll(), "ended by itself")
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 3, err)
+        rows = (self.folder / "s.csv").read_text(encoding="utf-8").splitlines()[1:]
+        self.assertIn(f"{len(rows)} of 10000 runs began: the others have no rows", err)
+        self.assertIn(f"{len(rows)} runs: ", out)
+        self.assertTrue(0 < len(rows) < 10000)
+        self.assertEqual([row.split(",")[0] for row in rows], [str(i + 1) for i in range(len(rows))])
+
     def test_while_writing_nothing_is_left(self):
         self.write("m.toml", ENDLESS.replace("1e9\n", "1000\n").replace("points = 10", "points = 1000000"))
         self.write("r.json", "precious")

@@ -56,8 +56,8 @@ void leave_what_is_kept(SweepRun& run, Keep keep) {
 
 Error too_much_kept(std::size_t runs, double bytes) {
   return {ErrorCode::invalid_option,
-          fmt::format("the trajectories of all {} runs need {:.0f} GB or more; {:.0f} GB are possible", runs, bytes / 1e9,
-                      most_kept_bytes / 1e9),
+          fmt::format("the trajectories of all {} runs need {:.0f} GB or more; {:.0f} GB are possible", runs,
+                      bytes / 1e9, most_kept_bytes / 1e9),
           "keep events or final, or ask for fewer rows: simulate.output.points",
           {},
           {}};

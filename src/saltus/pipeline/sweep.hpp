@@ -62,8 +62,8 @@ inline constexpr double most_kept_bytes = 4e9;
 /// Simulates all runs. What is computed does not depend on the number of threads; kernels are compiled once per thread
 /// and structure.
 /// @return a run for each, whatever its numerics did; behind an interruption those up to the last one that was begun,
-///         where one that was not is stopped_by_user at its start. An Error for the first run that cannot be stated or started ("in run 17" in its context), or
-///         if what is kept is too much.
+///         where one that was not is stopped_by_user at its start. An Error for the first run that cannot be stated or
+///         started ("in run 17" in its context), or if what is kept is too much.
 [[nodiscard]] Expected<SweepOutcome> sweep(const SweepOptions& options, StateRun state,
                                            const SweepObservers& observers = {});
 

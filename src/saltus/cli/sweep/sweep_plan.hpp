@@ -38,8 +38,9 @@ class SweepPlan {
   /// Returns the flag by which names()[k] was given: "--over" or "--sample".
   [[nodiscard]] std::string flag(std::size_t k) const { return k < axes_.size() ? "--over" : "--sample"; }
   /// Returns all values of names()[k] that are listed; none of random samples.
-  [[nodiscard]] std::vector<std::string> listed(std::size_t k) const {
-    return k < axes_.size() ? axes_[k].values : std::vector<std::string>();
+  [[nodiscard]] const std::vector<std::string>& listed(std::size_t k) const {
+    static const std::vector<std::string> none;
+    return k < axes_.size() ? axes_[k].values : none;
   }
   /// Returns values as text, one per name; depends on seed and run only.
   [[nodiscard]] std::vector<std::string> values(std::size_t run) const;
