@@ -146,7 +146,7 @@ TEST(ContactsWithOpenForces, BlocksThatPressOnEachOtherStopAndLeaveTogether) {
   EXPECT_EQ(*run.events[0].mode_after, (result::Mode{0, 0}));
   EXPECT_NEAR(run.events[1].t, leave, 1e-9);
   EXPECT_EQ(*run.events[1].mode_after, (result::Mode{1, 1}));
-  for (const std::size_t v : {2, 3}) EXPECT_NEAR(run.final.x[v], 0.375 * (6.0 - leave) * (6.0 - leave), 1e-8);
+  for (const std::size_t v : {2U, 3U}) EXPECT_NEAR(run.final.x[v], 0.375 * (6.0 - leave) * (6.0 - leave), 1e-8);
 }
 
 }  // namespace saltus::event_integrator::testing
