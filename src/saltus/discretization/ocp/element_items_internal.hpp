@@ -8,7 +8,7 @@
 
 namespace saltus::discretization {
 
-/// An element whose variables another one takes, with modes and its length in parts of a control interval's.
+/// Holds an element whose variables another one takes, with modes and its length in parts of a control interval's.
 struct Item {
   std::size_t element = 0;
   double length = 0.0;
