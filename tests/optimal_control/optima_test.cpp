@@ -48,10 +48,11 @@ TEST(OcpOptima, StewartAnitescuWithoutSwitchDetectionStopsAtFalseOptima) {
   }
 }
 
-/// x slides at 0 until t = 1 and leaves tangentially: x(1.5) = 1/8, whatever the control. An optimiser that may choose where
-/// sliding ends leaves early, and finds 0.12 with a defect of 4 %.
+/// x slides at 0 until t = 1 and leaves tangentially: x(1.5) = 1/8, whatever the control. An optimiser that may choose
+/// where sliding ends leaves early, and finds 0.12 with a defect of 4 %.
 TEST(OcpOptima, SlidingEndsWhereItHasTo) {
-  for (const std::string form : {"scheme = \"radau_iia\"", "scheme = \"gauss_legendre\"", "reformulation = \"stewart\""}) {
+  for (const std::string form :
+       {"scheme = \"radau_iia\"", "scheme = \"gauss_legendre\"", "reformulation = \"stewart\""}) {
     const auto result = optimized(stated(R"toml(
 [model]
 name = "leaving"
@@ -74,6 +75,129 @@ terminal_cost = "x"
   }
 }
 
+/// A ball that comes nowhere near the ground: the rate of its gap says nothing, so that it may change its sign. By
+/// quadrature J = 1.0403050; an optimiser that holds the rate at 0 hovers, with J = 1.4224.
+TEST(OcpOptima, RatesOfOpenGapsAreNotHeld) {
+  for (const std::string form : {"", "reformulation = \"stewart\"\n", "elements = 4\n"}) {
+    const auto result = optimized(stated(R"toml(
+[model]
+name = "flying"
+[states]
+x = 0.3
+v = 0
+[controls]
+u = { lower = -15, upper = 15 }
+[mechanics]
+positions = ["x"]
+velocities = ["v"]
+force = { v = "u - 9.81" }
+[[contacts]]
+name = "ground"
+gap = "x"
+restitution = 0
+[optimize]
+horizon = 1
+control_intervals = 2
+running_cost = "0.01*u^2 + (x - 0.2)^2"
+terminal_cost = "5*(x - 0.6)^2 + v^2"
+stages = 2
+)toml" + form));
+    EXPECT_EQ(result.status.termination, Termination::completed) << form << ": " << result.status.message;
+    EXPECT_NEAR(result.optimization->objective, 1.0403050, 1e-4) << form;
+    EXPECT_NEAR(result.optimization->u[0][0], 10.90247, 1e-3) << form;
+    EXPECT_NEAR(result.optimization->u[1][0], 8.61512, 1e-3) << form;
+  }
+}
+
+/// A mass at rest: |v| v does not depend on which side of v = 0 it is. With SciPy J = 0.0473970; held at rest
+/// 0.0498775.
+TEST(OcpOptima, KinksAreNotHeld) {
+  const auto result = optimized(stated(R"toml(
+[model]
+name = "kink"
+[states]
+x = -0.08319974571377575
+v = 0
+[controls]
+u = { lower = -2, upper = 2 }
+[dynamics]
+x = "v"
+v = "u - 2*max(x, 0) - 0.5*abs(v)*v"
+[optimize]
+horizon = 3
+control_intervals = 3
+running_cost = "0.1*u^2"
+terminal_cost = "3*(x - 0.5)^2 + v^2"
+stages = 2
+reformulation = "stewart"
+scheme = "gauss_legendre"
+)toml"));
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.optimization->objective, 0.0473970, 2e-5);
+}
+
+/// A pusher that brakes until it only touches another body has an infinite slope towards a soft impact.
+TEST(OcpOptima, TouchingIsNoOptimumBesideAnImpact) {
+  const auto result = optimized(stated(R"toml(
+[model]
+name = "touching"
+[states]
+x1 = 0
+x2 = 0.3
+v1 = 0.5
+v2 = 0
+[controls]
+u = { lower = -4, upper = 4 }
+[mechanics]
+positions = ["x1", "x2"]
+velocities = ["v1", "v2"]
+force = { v1 = "u", v2 = "-0.319*v2" }
+[[contacts]]
+name = "c"
+gap = "x2 - x1 - 0.2"
+[optimize]
+horizon = 2
+control_intervals = 2
+running_cost = "0.02*u^2"
+terminal_cost = "5*(x2 - 1)^2 + x1^2"
+elements = 4
+stages = 2
+reformulation = "stewart"
+scheme = "gauss_legendre"
+)toml"));
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_LT(result.optimization->objective, 0.70);  // 2.74 where it touches
+}
+
+/// The input of a hysteresis comes to its threshold at t = 1.5 and is held there, with J = 1.349. Any more of u
+/// switches it, with J = 0.195 or less.
+TEST(OcpOptima, HysteresisIsNotHeldAtItsThreshold) {
+  const auto result = optimized(stated(R"toml(
+[model]
+name = "threshold"
+[states]
+x = 0.013106803383659299
+[controls]
+u = { lower = -1.5, upper = 1.5 }
+[dynamics]
+x = "-x + 0.821*hy + u"
+[[hysteresis]]
+name = "hy"
+input = "x"
+on = 0.5
+off = 0.1
+[optimize]
+horizon = 3
+control_intervals = 2
+running_cost = "0.1*u^2"
+terminal_cost = "5*(x - 1)^2"
+stages = 4
+reformulation = "stewart"
+)toml"));
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_LT(result.optimization->objective, 0.195);
+}
+
 TEST(OcpOptima, TurboCar) {
   const auto result = optimized(stated(turbo_car(20, 10)));
   EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
@@ -84,7 +208,8 @@ TEST(OcpOptima, TurboCar) {
 
 TEST(OcpOptima, TurboCarOnGrids) {
   // Programs for the switching times of the exact flow.
-  for (const auto& [intervals, optimum] : {std::pair{10, 12.0165871}, std::pair{20, 11.8151023}, std::pair{40, 11.8071442}}) {
+  for (const auto& [intervals, optimum] :
+       {std::pair{10, 12.0165871}, std::pair{20, 11.8151023}, std::pair{40, 11.8071442}}) {
     const auto result = optimized(stated(turbo_car(25, intervals)));
     EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
     EXPECT_NEAR(result.optimization->objective, optimum, 1e-6 * optimum);

@@ -89,6 +89,11 @@ class Descent {
     if (!visited_.insert(sides).second) return false;
     crossover::Branch next = run_.solve_branch(sides, from, iterations, message, branch().objective);
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
+    // A certified point is not given up for digits of its objective.
+    const double least = tolerance() * std::max(1.0, std::abs(branch().objective));
+    if (run_.solution.certificate.b_stationary.value_or(false) && branch().objective - next.objective < least) {
+      return false;
+    }
     run_.branch = std::move(next);
     return true;
   }

@@ -1,7 +1,7 @@
-#include "saltus/discretization/ocp/element_items_internal.hpp"
-
 #include <algorithm>
 #include <iterator>
+
+#include "saltus/discretization/ocp/element_items_internal.hpp"
 
 namespace saltus::discretization {
 
@@ -40,8 +40,7 @@ bool ElementItems::is_at_bound(const Item& item) const {
   return h >= 0 && w_[h] > made_.w_bounds.upper[h] - vanished;
 }
 
-void ElementItems::add(std::vector<std::pair<std::size_t, Items>> changes,
-                       std::vector<mpcc::BranchMove>& moves) const {
+void ElementItems::add(std::vector<std::pair<std::size_t, Items>> changes, std::vector<mpcc::BranchMove>& moves) const {
   mpcc::BranchMove move{modes_.all(), w_};
   for (auto& [k, items] : changes) {
     if (!fit(items, made_.interval[k].elements)) return;
@@ -54,8 +53,8 @@ void ElementItems::add(std::vector<std::pair<std::size_t, Items>> changes,
 /// Joins neighbours of equal modes, or halves the longest in which time goes on, until there are so many.
 bool ElementItems::fit(Items& items, int elements) const {
   while (items.size() > at(elements)) {
-    const auto pair = std::adjacent_find(items.begin(), items.end(),
-                                         [](const Item& a, const Item& b) { return a.modes == b.modes; });
+    const auto pair =
+        std::adjacent_find(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.modes == b.modes; });
     if (pair == items.end()) return false;
     std::next(pair)->length += pair->length;
     items.erase(pair);

@@ -43,9 +43,7 @@ class ElementSides {
     return changed;
   }
   /// Gives others the modes of element `from` in element `to`.
-  void copy(std::size_t from, std::size_t to, Sides& changed) const {
-    write(modes(from), to, changed);
-  }
+  void copy(std::size_t from, std::size_t to, Sides& changed) const { write(modes(from), to, changed); }
   /// Returns one side per selection of an element.
   [[nodiscard]] Sides modes(std::size_t element) const {
     Sides modes;

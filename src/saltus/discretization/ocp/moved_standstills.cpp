@@ -56,8 +56,12 @@ class MovedStandstills {
       items.insert(items.end(), rest.begin(), rest.end());
       return items;
     };
-    items_.add({{k, joined(before, still, {{after.front().element, small_share, after.front().modes}})}, {k + 1, after}}, moves);
-    items_.add({{k, before}, {k + 1, joined({{before.back().element, small_share, before.back().modes}}, still, after)}}, moves);
+    items_.add(
+        {{k, joined(before, still, {{after.front().element, small_share, after.front().modes}})}, {k + 1, after}},
+        moves);
+    items_.add(
+        {{k, before}, {k + 1, joined({{before.back().element, small_share, before.back().modes}}, still, after)}},
+        moves);
   }
 
   [[nodiscard]] static bool is_shorter(const Item& a, const Item& b) { return a.length < b.length; }

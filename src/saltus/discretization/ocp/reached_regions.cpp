@@ -24,7 +24,7 @@ class ReachedRegions {
     for (std::size_t e = elements; e-- > 0;) {
       const Regions before = active(e);
       const bool is_last = e + 1 == elements;
-      if (!is_last && !includes(active(e + 1), before)) return;
+      if (!is_last && !includes(active(e + 1), before)) break;
       for (int region = 0; region < count_; ++region) {
         if (before[at(region)] || !is_reached(e, region)) continue;
         if (!is_last && !active(e + 1)[at(region)]) continue;

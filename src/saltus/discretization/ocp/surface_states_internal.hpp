@@ -31,9 +31,7 @@ class SurfaceStates {
     int column = 0;
     int first_pair = 0;  ///< step: of the selection; else of the part
   };
-  [[nodiscard]] static bool is_step(const Surface& surface) {
-    return surface.part->form == reformulation::Form::step;
-  }
+  [[nodiscard]] static bool is_step(const Surface& surface) { return surface.part->form == reformulation::Form::step; }
   /// @param lambda  places of all multipliers of a point
   [[nodiscard]] bool is_on(std::size_t surface, const std::vector<int>& lambda, mpcc::ConstVectorView w) const;
   /// Returns the region on the other side of the surface.

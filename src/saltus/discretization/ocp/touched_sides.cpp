@@ -9,6 +9,9 @@ namespace {
 
 using Modes = ElementSides::Sides;
 
+/// Of an element that is inserted: it may not make the objective so much worse that the branch is given up.
+constexpr double inserted_share = 0.1 * small_share;
+
 class TouchedSides {
  public:
   TouchedSides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w)
@@ -48,11 +51,11 @@ class TouchedSides {
     Items items = items_.of_interval(k);
     const auto place = items.begin() + made_.element[e].number + 1;
     const bool is_last = place == items.end();
-    items.insert(place, {e, small_share, modes});
+    items.insert(place, {e, inserted_share, modes});
     items_.add({{k, items}}, moves);
     if (!is_last || k + 1 == made_.interval.size()) return;
     Items next = items_.of_interval(k + 1);
-    next.insert(next.begin(), {e, small_share, modes});
+    next.insert(next.begin(), {e, inserted_share, modes});
     items_.add({{k + 1, next}}, moves);
   }
 
