@@ -15,6 +15,7 @@
 #include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/io/check/model_overview.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
 
