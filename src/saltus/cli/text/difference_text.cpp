@@ -39,7 +39,8 @@ std::string difference_text(const result::Difference& difference, const result::
                            : fmt::format(" and, to 0.2 % of the range, at {} between rows", difference.between_times);
   return text + fmt::format("{} to rtol {:g}, {} (compared: {} events, states{} at {} common times{})\n",
                             difference.is_none() ? "the same" : "different", rtol, absolute,
-                            std::min(difference.events_a, difference.events_b), states, difference.common_times, between);
+                            std::min(difference.events_a, difference.events_b), states, difference.common_times,
+                            between);
 }
 
 }  // namespace saltus::cli
