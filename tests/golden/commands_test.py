@@ -7,6 +7,20 @@ import re
 import tool
 
 
+class SmallWords(tool.ToolTest):
+    def test_a_date_that_is_none_is_told(self):
+        err = self.run_tool("simulate", "stick-slip", "--out", "r.json", code=0, environment={"SOURCE_DATE_EPOCH": "abc"})[1]
+        self.assertIn("SOURCE_DATE_EPOCH = 'abc'", err)
+        err = self.run_tool("simulate", "stick-slip", "--out", "r.json", code=0, environment={"SOURCE_DATE_EPOCH": "5"})[1]
+        self.assertNotIn("SOURCE_DATE_EPOCH", err)
+
+    def test_of_no_events_shown_there_is_no_table(self):
+        text = self.run_tool("simulate", "stick-slip", "--events", "0", code=0)[0]
+        self.assertRegex(text, r"(?m)^events +9$")
+        self.assertNotIn("the first and the last", text)
+        self.assertNotIn("surfaces", text)
+
+
 class Diff(tool.ToolTest):
     def run_model(self, name, model, *arguments):
         self.run_tool("simulate", model, *arguments, "--out", name, "--quiet", code=0)

@@ -105,7 +105,7 @@ class KeptColumns(tool.ToolTest):
         for same in ("trajectory", "final", "events", "kept_columns"):
             self.assertEqual(some[same], again[same])
         out, _ = self.run_tool("diff", "some.json", "all.json", code=0)
-        self.assertIn("states (2 of 3)", out)
+        self.assertIn("2 of 3 states at", out)
         self.run_tool("simulate", "some.json", "--quiet", "--out", "other.json", "--set", "k=2.1", code=0)
         out, _ = self.run_tool("diff", "some.json", "other.json", code=1)
         self.assertIn("v ", out)  # at the end all states are compared

@@ -40,8 +40,10 @@ TEST(Figure, SaysWhatItsLinesMean) {
   auto result = report_samples::stick_slip(40, 50);
   const auto over_time = to_svg(result);
   ASSERT_TRUE(over_time);
-  for (const char* name : {">psi &lt; 0<", ">sliding<", ">event<"}) EXPECT_EQ(occurrences(*over_time, name), 1U) << name;
-  EXPECT_EQ(occurrences(*over_time, ">psi &gt; 0<"), 0U);  // no row is there
+  for (const char* name : {">psi &lt; 0<", ">sliding<", ">event<"}) {
+    EXPECT_EQ(occurrences(*over_time, name), 1U) << name;
+  }
+  EXPECT_EQ(occurrences(*over_time, ">psi &gt; 0<"), 0U) << "does not occur";
   result::Surface line{
       "slip", result::SurfaceRole::switching, {"v"}, false, result::AffineSurface{{1.0}, 0.0, -0.2}, {}, {}};
   result.surfaces = {line};

@@ -32,14 +32,15 @@ std::string difference_text(const result::Difference& difference, const result::
   const auto& [rtol, atol] = tolerances;
   const auto absolute = atol ? fmt::format("atol {:g}", *atol) : fmt::format("atol {:g} of each range", rtol);
   const auto states = difference.common_states == states_of_model
-                          ? ""
-                          : fmt::format(" ({} of {})", difference.common_states, states_of_model);
+                          ? "states"
+                          : fmt::format("{} of {} states", difference.common_states, states_of_model);
   const auto between = difference.between_times == 0
                            ? ""
                            : fmt::format(" and, to 0.2 % of the range, at {} between rows", difference.between_times);
-  return text + fmt::format("{} to rtol {:g}, {} (compared: {} events, states{} at {} common times{})\n",
+  return text + fmt::format("{} to rtol {:g}, {} (compared: {} events, {} at {} common times{})\n",
                             difference.is_none() ? "the same" : "different", rtol, absolute,
-                            std::min(difference.events_a, difference.events_b), states, difference.common_times, between);
+                            std::min(difference.events_a, difference.events_b), states, difference.common_times,
+                            between);
 }
 
 }  // namespace saltus::cli
