@@ -277,6 +277,8 @@ class Model:
             try:
                 if executor is None:
                     found = with_results(self._core.sweep(*arguments, jobs or 0, (1, 1), tell, warned), self, arguments)
+                    if tell is not None:  # not every run was told
+                        tell(len(found[1]), len(found[1]))
                 else:
                     found = sweep_by(executor, self, arguments, jobs or 1, tell)
             except BaseException as stopped:

@@ -48,22 +48,14 @@ def progress_of_runs(name: str, wanted: bool, what: str) -> typing.Iterator[typi
             bar.update(int(done) - bar.n)
 
         yield tell
-        # Not every run is told.
-        bar.update((bar.total or 0) - bar.n)
 
 
 def _plain_of_runs(name: str, what: str) -> typing.Iterator[typing.Callable[[float, float], None]]:
-    runs = 0.0
-
     def tell(done: float, total: float) -> None:
-        nonlocal runs
-        runs = total
         print(f"\r{name}: {done:.0f} of {total:.0f} {what}", end="", file=sys.stderr, flush=True)
 
     try:
         yield tell
-        if runs > 0:
-            tell(runs, runs)
     finally:
         print(file=sys.stderr)
 

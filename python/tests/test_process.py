@@ -198,7 +198,7 @@ ENDLESS_SWEEP = """
                 "threads": lambda: futures.ThreadPoolExecutor(2)}[sys.argv[1]]
         with make() as pool:
             m.sweep(belt=[0.1, 0.2], until=1, executor=pool)
-            threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+            threading.Timer(4.0, os.kill, (os.getpid(), signal.SIGINT)).start()
             try:
                 m.sweep(belt=np.linspace(0.05, 0.3, 100_000), until=1000, executor=pool)
             except KeyboardInterrupt as stopped:
