@@ -50,7 +50,7 @@ class ReachedRegions {
   }
   [[nodiscard]] bool is_reached(std::size_t e, int region) const {
     const auto lambda = made_.left_lambda(static_cast<int>(e) + 1);
-    return value_at(lambda[at(first_ + region)], w_, made_.constants) <= 1e-7;
+    return value_at(lambda[at(first_ + region)], w_, made_.constants) <= on_surface;
   }
   [[nodiscard]] Modes with(std::size_t e, int region, int other) const {
     Modes modes = modes_.modes(e);

@@ -87,9 +87,8 @@ bool SurfaceStates::is_held(std::size_t element, std::size_t number, mpcc::Const
 }
 
 bool SurfaceStates::is_on(std::size_t number, const std::vector<int>& lambda, mpcc::ConstVectorView w) const {
-  constexpr double zero = 1e-7;
   const Surface& surface = surfaces_[number];
-  const auto is_zero = [&](int pair) { return value_at(lambda[at(pair)], w, made_.constants) <= zero; };
+  const auto is_zero = [&](int pair) { return value_at(lambda[at(pair)], w, made_.constants) <= on_surface; };
   if (is_step(surface)) return is_zero(surface.first_pair) && is_zero(surface.first_pair + 1);
   for (int region = 0; region < surface.part->count; ++region) {
     if (is_zero(surface.first_pair + region) && is_zero(surface.first_pair + mirrored(surface, region))) return true;

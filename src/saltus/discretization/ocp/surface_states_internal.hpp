@@ -8,6 +8,9 @@
 
 namespace saltus::discretization {
 
+/// What is left of a multiplier, or of an equation, that is 0 in a certified point.
+inline constexpr double on_surface = 1e-7;
+
 /// Reads and writes the sides of surfaces in the modes of elements. Regions by indicators of the user have no surfaces.
 class SurfaceStates {
  public:

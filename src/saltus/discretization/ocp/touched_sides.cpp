@@ -1,6 +1,5 @@
 // Surfaces that are reached where an element ends, and not crossed; and several that are crossed at once.
-#include <algorithm>
-
+#include "saltus/base/contains.hpp"
 #include "saltus/discretization/ocp/element_items_internal.hpp"
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
@@ -30,7 +29,7 @@ class TouchedSides {
         if (states_.of(before, s) != states_.of(after, s)) differing.push_back(s);
       }
       for (std::size_t s = 0; s < states_.count(); ++s) {
-        if (std::find(differing.begin(), differing.end(), s) != differing.end()) continue;
+        if (contains(differing, s)) continue;
         add_touched(e, s, before, moves);
         if (!differing.empty()) add_touched(e, s, after, moves);
       }

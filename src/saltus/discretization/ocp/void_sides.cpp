@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
 namespace saltus::discretization {
@@ -32,10 +34,10 @@ class VoidSides {
   [[nodiscard]] std::vector<bool> find_void(std::size_t surface) const {
     std::vector<bool> is_void(elements_);
     for (std::size_t e = 0; e < elements_; ++e) is_void[e] = states_.is_held(e, surface, w_);
-    if (std::find(is_void.begin(), is_void.end(), true) == is_void.end()) return is_void;
+    if (!contains(is_void, true)) return is_void;
     for (const int state : {-1, 1}) {
       const Eigen::VectorXd errors = errors_of(selected(surface, is_void, state));
-      for (std::size_t e = 0; e < elements_; ++e) is_void[e] = is_void[e] && errors[index(e)] <= 1e-7;
+      for (std::size_t e = 0; e < elements_; ++e) is_void[e] = is_void[e] && errors[index(e)] <= on_surface;
     }
     return is_void;
   }
@@ -95,8 +97,6 @@ class VoidSides {
       }
     }
   }
-
-  [[nodiscard]] static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
   const OcpStructure& made_;
   const ElementSides& modes_;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -59,7 +60,7 @@ void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x)
 /// breaks a contact away the speed grows like t^2: each time it doubles takes as many of them as 1/t.
 bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>& x) {
   const auto [modes, closed] = modes_at(x);
-  if (std::find(modes.begin(), modes.end(), ContactMode::slip) == modes.end()) return false;
+  if (!contains(modes, ContactMode::slip)) return false;
   const ContactPoint point = point_at(moment.t, moment.alpha, x);
   ContactForces forces;
   if (!forces_in(point, closed, modes, forces)) return false;

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/mode/kept_by_sliding.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
@@ -119,10 +120,8 @@ void Run::turn_by_mode_behind(const Located& located) {
   }
   if (point.touched.empty() || search_.user_signs().empty()) return;
   auto turning = with_kinks_here(point.touched);
-  std::erase_if(turning, [&](std::size_t place) {
-    const auto& at_zero = located.functions;
-    return functions[place].sign != 0 && std::find(at_zero.begin(), at_zero.end(), place) == at_zero.end();
-  });
+  std::erase_if(turning,
+                [&](std::size_t place) { return functions[place].sign != 0 && !contains(located.functions, place); });
   if (compared.empty() && turning.empty()) return;
   std::sort(point.touched.begin(), point.touched.end());
   point.at_zero = here_.state.sliding;
