@@ -1,6 +1,7 @@
-// Method fesd in the comparison with nosnoc: MODEL FORM SCHEME STAGES STEPS UNTIL SECONDS, prints one line of JSON.
-// Time per simulation step is CPU time from the end of the first step to that of the last, the median of as many runs
-// as fit into SECONDS.
+// Method fesd in the comparison with nosnoc: MODEL FORM SCHEME STAGES STEPS UNTIL SECONDS [interpreted], prints one
+// line of JSON. Time per simulation step is CPU time from the end of the first step to that of the last, the median of
+// as many runs as fit into SECONDS. A model with contacts or hysteresis is frozen: steps and UNTIL are of numerical
+// time.
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -11,6 +12,7 @@
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/reformulation/dcs.hpp"
 #include "value_or_exit.hpp"
 
@@ -28,9 +30,10 @@ discretization::TableauFamily family_of(std::string_view scheme) {
   std::exit(2);
 }
 
-int compare_fesd(char** arguments) {
+int compare_fesd(char** arguments, saltus::evaluation::NativeCode native) {
   const auto file = value_or_exit(saltus::io::read_model(arguments[1]));
-  const auto system = value_or_exit(saltus::model::build(file.description));
+  const auto built = value_or_exit(saltus::model::build(file.description));
+  const auto system = built.frozen ? value_or_exit(built.frozen->system) : built;
   reformulation::ReformulationOptions form;
   form.reformulation =
       std::string_view(arguments[2]) == "step" ? reformulation::Form::step : reformulation::Form::stewart;
@@ -39,7 +42,7 @@ int compare_fesd(char** arguments) {
   options.tableau = value_or_exit(discretization::butcher_tableau(family_of(arguments[3]), std::atoi(arguments[4])));
   options.steps = std::atol(arguments[5]);
   options.until = std::atof(arguments[6]);
-  options.native = saltus::evaluation::NativeCode::on;
+  options.native = native;
   options.rows = fesd_integrator::IntegrationOptions::Rows::at_times;
 
   double begin = 0.0, first = 0.0, last = 0.0;
@@ -68,9 +71,11 @@ int compare_fesd(char** arguments) {
     return *middle;
   };
   std::printf(
-      "{\"status\":\"%s\",\"rejected\":%ld,\"runs\":%zu,\"build_seconds\":%.6g,\"seconds_per_step\":%.6g,\"x\":[",
+      "{\"status\":\"%s\",\"rejected\":%ld,\"elements\":%ld,\"events\":%zu,\"runs\":%zu,\"build_seconds\":%.6g,"
+      "\"seconds_per_step\":%.6g,\"x\":[",
       std::string(saltus::result::name(integration.status.termination)).c_str(),
-      static_cast<long>(integration.statistics.rejected), stepping.size(), median(building), median(stepping));
+      static_cast<long>(integration.statistics.rejected), static_cast<long>(integration.statistics.steps),
+      integration.events.size(), stepping.size(), median(building), median(stepping));
   for (std::size_t i = 0; i < integration.final.x.size(); ++i) {
     std::printf("%s%.17g", i == 0 ? "" : ",", integration.final.x[i]);
   }
@@ -82,7 +87,11 @@ int compare_fesd(char** arguments) {
 }  // namespace compare
 
 int main(int count, char** arguments) {
-  if (count == 8) return compare::compare_fesd(arguments);
-  std::fprintf(stderr, "usage: %s MODEL FORM SCHEME STAGES STEPS UNTIL SECONDS\n", arguments[0]);
+  using saltus::evaluation::NativeCode;
+  if (count == 8) return compare::compare_fesd(arguments, NativeCode::on);
+  if (count == 9 && std::string_view(arguments[8]) == "interpreted") {
+    return compare::compare_fesd(arguments, NativeCode::off);
+  }
+  std::fprintf(stderr, "usage: %s MODEL FORM SCHEME STAGES STEPS UNTIL SECONDS [interpreted]\n", arguments[0]);
   return 2;
 }

@@ -6,12 +6,14 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/base/without_repeats.hpp"
 #include "saltus/evaluation/field_split_internal.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 #include "saltus/evaluation/root_limits_internal.hpp"
 #include "saltus/evaluation/sparse/field_pattern_internal.hpp"
+#include "saltus/model/graph/ranges.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
@@ -110,6 +112,30 @@ SX CompiledModel::sizes_of_contact_guards(const model::System& system) const {
   return sizes;
 }
 
+/// Of event functions that are not affine, over t and the first `moving` states; 0 for the others.
+ModelFunction CompiledModel::range_function(casadi_int moving) const {
+  if (!functions.functions.program()) return {};
+  const std::vector<SX> arguments{t, x, p, alpha};
+  SX curved = SX::zeros(phi.numel(), 1);
+  for (std::size_t j = 0; j < affine.size(); ++j) {
+    if (!affine[j]) curved(static_cast<casadi_int>(j)) = phi(static_cast<casadi_int>(j));
+  }
+  const SX radii = SX::sym("radii", 1 + x.numel());
+  const std::vector<casadi::SXElem> radius = radii.nonzeros();
+  std::vector<std::vector<casadi::SXElem>> symbols;
+  for (const SX& argument : arguments) symbols.push_back(argument.nonzeros());
+  const auto found = model::ranges(casadi::Function("tape", arguments, {curved}), [&](casadi_int i, casadi_int k) {
+    const bool moves = i == 0 || (i == 1 && k < moving);
+    return model::Range{symbols[at(i)][at(k)], moves ? radius[at(i + k)] : casadi::SXElem(0.0)};
+  });
+  std::vector<casadi::SXElem> middle, width;
+  for (const auto& range : found) {
+    middle.push_back(range.middle);
+    width.push_back(range.radius);
+  }
+  return {"saltus_ranges", {t, x, p, alpha, radii}, {SX(middle), SX(width)}};
+}
+
 void CompiledModel::compile_functions(const model::System& system) {
   const std::vector<SX> arguments{t, x, p, alpha};
   compile_field(free, "saltus_field");
@@ -118,16 +144,19 @@ void CompiledModel::compile_functions(const model::System& system) {
   functions.input_function = ModelFunction("saltus_inputs", arguments, {input});
   functions.jumps = JumpFunctions(system, arguments, input, first_jump_guard);
   // Modes of contacts are exact: what has a rounding, and an error, are the states before them.
-  const SX moving = x(casadi::Slice(0, system.contacts.empty() ? x.numel() : system.contacts.first_hidden));
+  const casadi_int moved = system.contacts.empty() ? x.numel() : system.contacts.first_hidden;
+  const SX moving = x(casadi::Slice(0, moved));
   const SX slope = SX::jacobian(phi, moving);
   const SX rate = SX::jacobian(phi, t);
   const SX magnitude = SX::mtimes(fabs(slope), fabs(moving)) + fabs(rate * t) + sizes_of_contact_guards(system);
   functions.scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
   functions.affine_rows = AffineRowFunctions(phi, symbols(), affine);
+  if (contains(affine, false)) functions.ranges = range_function(moved);
   functions.gradients.resize(at(phi.numel()));
   compile_conditions(system);
   start.cells.compile(arguments, system, input);
   if (const auto& touching = system.contacts; !touching.empty()) {
+    contact_sizes = {touching.gap.numel(), touching.rows.size1(), touching.rows.size2()};
     const SX acceleration =
         system.u.numel() == 0 ? touching.acceleration : SX::substitute(touching.acceleration, system.u, input);
     functions.contact_function = ModelFunction("saltus_contacts", arguments,

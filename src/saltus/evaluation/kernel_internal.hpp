@@ -2,9 +2,11 @@
 // their own, and the context of a run.
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -89,6 +91,10 @@ struct KernelStructure {
   bool by_values = false;              ///< expressions may depend on their values
   std::vector<HeldGuard> jump_guards;  ///< by event function, from first_jump_guard on
   int first_jump_guard = 0;
+  struct ContactSizes {
+    casadi_int contacts = 0, rows = 0, velocities = 0;
+  };
+  ContactSizes contact_sizes;
 };
 
 /// Holds the functions that were made of the expressions.
@@ -98,6 +104,7 @@ struct KernelFunctions {
   JumpFunctions jumps;
   ModelFunction contact_function;  ///< null without contacts
   AffineRowFunctions affine_rows;
+  ModelFunction ranges;                  ///< of those that are not affine; null where all are
   std::vector<ModelFunction> gradients;  ///< d phi_j / d (x, t); null before they are first asked for
 };
 
@@ -143,6 +150,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   void compile_field(CompiledMotion& target, const std::string& name) const;
   [[nodiscard]] casadi::SX sizes_of_contact_guards(const model::System& system) const;
   void compile_functions(const model::System& system);
+  [[nodiscard]] ModelFunction range_function(casadi_int moving) const;
   void find_structure(const model::System& system);
   [[nodiscard]] std::vector<std::vector<int>> normal_dependencies(const casadi::SX& f) const;
   void compile_conditions(const model::System& system);
@@ -154,8 +162,18 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   std::map<std::pair<int, std::vector<double>>, LimitedFunction> limited_;
 };
 
+/// Holds the last scales: where something happens they are asked for again and again at the same point.
+struct LastScales {
+  std::array<std::vector<double>, 4> arguments;  ///< t, x, p, alpha; empty before the first call
+  std::vector<double> magnitude, slope;
+
+  /// Returns whether they are those of these arguments, bit by bit, and takes the arguments if they are not.
+  [[nodiscard]] bool are_at(const std::array<std::span<const double>, 4>& point);
+};
+
 /// Holds what the user of a kernel changes, and its work space.
 struct KernelContext : KernelValues {
+  LastScales last_scales;
   FieldConstants constants;   ///< work space of field()
   std::vector<double> slope;  ///< work space of rate()
   /// Of functions that are affine and do not hold selections gradients are constants: these rows, once known.

@@ -59,6 +59,7 @@ Expected<void> ModelKernel::Implementation::start_native() {
                                          &scales,     &output_function, &input_function};
   for (auto* function : jumps.functions()) all.push_back(function);
   if (!contact_function.is_null()) all.push_back(&contact_function);
+  if (!ranges.is_null()) all.push_back(&ranges);
   const bool has_nesting =
       std::any_of(compiled->inner.begin(), compiled->inner.end(), [](const auto& list) { return !list.empty(); });
   // Otherwise the rows are made once.

@@ -1,7 +1,10 @@
 // The functions of a kernel that need nothing but a call. Others: kernel_motion.cpp, kernel_derivatives.cpp.
 #include "saltus/evaluation/model_kernel.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstring>
+#include <limits>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -32,16 +35,47 @@ int ModelKernel::controls() const { return static_cast<int>(implementation_->com
 long ModelKernel::field_evaluations() const { return implementation_->field_use.evaluations; }
 const void* ModelKernel::motion() const { return implementation_->motion; }
 
+bool LastScales::are_at(const std::array<std::span<const double>, 4>& point) {
+  const auto is_kept = [&](std::size_t i) {
+    const auto& now = point[i];
+    return arguments[i].size() == now.size() &&
+           (now.empty() || std::memcmp(arguments[i].data(), now.data(), now.size_bytes()) == 0);
+  };
+  if (!arguments[0].empty() && is_kept(0) && is_kept(1) && is_kept(2) && is_kept(3)) return true;
+  for (std::size_t i = 0; i < point.size(); ++i) arguments[i].assign(point[i].begin(), point[i].end());
+  return false;
+}
+
 void ModelKernel::functions(double t, const double* x, const double* alpha, double* values) const {
   auto& self = *implementation_;
   self.count(self.functions);
   self.functions(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{values});
 }
 
+void ModelKernel::ranges(double t, const double* x, const double* alpha, const double* radii, double* middle,
+                         double* radius) const {
+  auto& self = *implementation_;
+  if (self.ranges.is_null()) {
+    std::fill_n(radius, event_functions(), std::numeric_limits<double>::infinity());
+    return;
+  }
+  self.count(self.ranges);
+  self.ranges(std::array<const double*, 5>{&t, x, self.parameters.data(), alpha, radii},
+              std::array<double*, 2>{middle, radius});
+}
+
 void ModelKernel::scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const {
   auto& self = *implementation_;
-  self.scales(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
-              std::array<double*, 2>{magnitude, slope});
+  auto& last = self.last_scales;
+  const auto& p = self.parameters;
+  if (!last.are_at({{{&t, 1}, {x, at(states())}, p, {alpha, at(switching_functions())}}})) {
+    last.magnitude.resize(at(event_functions()));
+    last.slope.resize(last.magnitude.size());
+    self.scales(std::array<const double*, 4>{&t, x, p.data(), alpha},
+                std::array<double*, 2>{last.magnitude.data(), last.slope.data()});
+  }
+  std::copy(last.magnitude.begin(), last.magnitude.end(), magnitude);
+  std::copy(last.slope.begin(), last.slope.end(), slope);
 }
 
 void ModelKernel::outputs(double t, const double* x, const double* alpha, double* values) const {
@@ -94,8 +128,7 @@ double ModelKernel::jump_delay(int jump, double t, const double* x, const double
 
 void ModelKernel::contacts(double t, const double* x, const double* alpha, ContactValues& values) const {
   auto& self = *implementation_;
-  const auto& function = self.contact_function.function();
-  const auto m = function.numel_out(0), r = function.size1_out(2), n = function.size2_out(2);
+  const auto& [m, r, n] = self.compiled->contact_sizes;
   values.gap.resize(m);
   values.velocity.resize(r);
   values.rows.resize(r, n);

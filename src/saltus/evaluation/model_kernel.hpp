@@ -161,6 +161,10 @@ class ModelKernel {
   [[nodiscard]] bool field_jacobian(double t, const double* x, const double* alpha, double* entries) const;
   /// Evaluates all event functions.
   void functions(double t, const double* x, const double* alpha, double* values) const;
+  /// Bounds event functions that are not affine: phi_j is within radius_j of middle_j, up to rounding, wherever t and x
+  /// differ from these by `radii` at most (1 + n_x: that of t first). Of functions that are affine both are 0.
+  void ranges(double t, const double* x, const double* alpha, const double* radii, double* middle,
+              double* radius) const;
   /// Evaluates magnitudes from which rounding and tolerances of event functions follow, each over all event functions:
   ///   magnitude_j = sum_i |d_i phi_j x_i| + |d_t phi_j t|,   slope_j = sum_i |d_i phi_j|.
   void scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const;

@@ -1,5 +1,6 @@
 #include "saltus/evaluation/model_kernel.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -86,6 +87,66 @@ TEST(ModelKernel, RowsHaveTheBitsOfTheField) {
       EXPECT_EQ(kernel->rate(j, 0.3, x.data(), alpha.data()), rate) << j;
     }
   }
+}
+
+/// Of every kind of operation; the last one is affine.
+model::System curved() {
+  model::System s = blank_system(0.75, 8);
+  const SX a = s.x(0), b = s.x(1);
+  int number = 0;
+  s.switching.clear();
+  for (const SX& psi : {SX(a * a + b * b - 1.0), SX(sin(3.0 * a) / (2.0 + cos(b))), SX(sqrt(a + 1.0) * exp(b) - s.t),
+                        SX(tanh(a * b) + fabs(b) * s.p), SX(1.0 / (a - 3.0)), SX(fmax(a, b) * fmin(a, 2.0 * b)),
+                        SX(atan(a) * sin(40.0 * b)), SX(a - 2.0 * b)}) {
+    s.switching.push_back(surface("s" + std::to_string(number++), psi));
+  }
+  s.f = s.f_as_written = SX::vertcat({b, -a});
+  return s;
+}
+
+TEST(ModelKernel, RangesHoldTheValuesOfAllPointsWithinBounds) {
+  const auto kernel = ModelKernel::compile(curved());
+  ASSERT_TRUE(kernel.has_value());
+  const std::vector<double> alpha(8, 1.0);
+  std::vector<double> middle(8), radius(8), values(8), least(8), largest(8);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> inside(-1.0, 1.0);
+  for (int box = 0; box < 200; ++box) {
+    const double t = inside(random), x[] = {0.9 * inside(random), inside(random)};
+    const double size = std::exp2(-1.0 - box / 10.0);
+    const double radii[] = {size, 0.2 * size, size};
+    kernel->ranges(t, x, alpha.data(), radii, middle.data(), radius.data());
+    least = largest = middle;
+    for (int point = 0; point < 50; ++point) {
+      const double moved[] = {x[0] + radii[1] * inside(random), x[1] + radii[2] * inside(random)};
+      kernel->functions(t + radii[0] * inside(random), moved, alpha.data(), values.data());
+      for (std::size_t j = 0; j + 1 < values.size(); ++j) {
+        if (std::isnan(radius[j])) continue;  // sqrt(a + 1) where a may be below -1
+        EXPECT_LE(std::abs(values[j] - middle[j]), radius[j] + 1e-14) << j;
+        least[j] = std::min(least[j], values[j]);
+        largest[j] = std::max(largest[j], values[j]);
+      }
+    }
+    for (const std::size_t j : {0U, 1U, 2U, 4U}) {
+      if (std::isnan(radius[j])) continue;
+      EXPECT_LE(radius[j], 0.1 * size + 5.0 * (largest[j] - least[j])) << j;
+    }
+    EXPECT_EQ(middle.back(), 0.0);
+    EXPECT_EQ(radius.back(), 0.0);
+  }
+}
+
+TEST(ModelKernel, RangesThatHoldAPoleAreNotFinite) {
+  const auto kernel = ModelKernel::compile(curved());
+  ASSERT_TRUE(kernel.has_value());
+  const std::vector<double> alpha(8, 1.0);
+  std::vector<double> middle(8), radius(8);
+  const double x[] = {3.1, 0.0}, near[] = {0.0, 0.05, 0.0}, beyond[] = {0.0, 0.2, 0.0};
+  kernel->ranges(0.0, x, alpha.data(), near, middle.data(), radius.data());
+  EXPECT_NEAR(middle[4], 10.0, 1e-12);
+  EXPECT_NEAR(radius[4], 10.0, 1e-12);  // 1/0.05 is 10 more
+  kernel->ranges(0.0, x, alpha.data(), beyond, middle.data(), radius.data());
+  EXPECT_FALSE(std::isfinite(radius[4]));
 }
 
 TEST(ModelKernel, NumbersFunctionsAndEvaluatesThem) {

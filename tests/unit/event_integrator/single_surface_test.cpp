@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "same_transition.hpp"
 #include "systems.hpp"
@@ -231,9 +232,9 @@ TEST(SingleSurface, LeavesWhatIsNotSimpleToTheGeneralDecision) {
 }
 
 /// x'' = -x, which crosses x = 0 and turns on something that does not matter.
-long evaluations_of_oscillator(ode::Method method, double threshold, std::size_t events, long& steps) {
+long evaluations_of_oscillator(ode::Method method, FunctionRef<SX(const SX&)> psi, std::size_t events, long& steps) {
   auto s = testing::blank(3, 1);
-  testing::add_surface(s, "s", s.x(0) - threshold);
+  testing::add_surface(s, "s", psi(s.x));
   testing::set_field(s, {s.x(1), -s.x(0), 0.001 * s.alpha(0)}, {0.5, 1.0, 0.0});
   auto kernel = evaluation::ModelKernel::compile(s);
   IntegrationOptions options;
@@ -247,14 +248,26 @@ long evaluations_of_oscillator(ode::Method method, double threshold, std::size_t
   return static_cast<long>(result.statistics.rhs_evaluations);
 }
 
+auto threshold(double value) {
+  return [value](const SX& x) { return x(0) - value; };
+}
+
+/// Along dop853's steps three more evaluations would make the dense output that is sampled.
+TEST(CostOfAnEvent, IsNoneOfACurvedSurfaceThatIsFar) {
+  long steps = 0;
+  const auto circle = [](const SX& x) { return x(0) * x(0) + x(1) * x(1) - 9.0; };
+  EXPECT_EQ(evaluations_of_oscillator(ode::Method::dop853, circle, 0, steps),
+            evaluations_of_oscillator(ode::Method::dop853, threshold(9.0), 0, steps));
+}
+
 TEST(CostOfAnEvent, IsLessThanThreeSteps) {
   for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor}) {
     long steps = 0;
     long steps_without = 0;
     const double pi = std::acos(-1.0);
     const auto events = static_cast<std::size_t>((100.0 + std::atan(0.5)) / pi);
-    const long with = evaluations_of_oscillator(method, 0.0, events, steps);
-    const long without = evaluations_of_oscillator(method, 2.0, 0, steps_without);
+    const long with = evaluations_of_oscillator(method, threshold(0.0), events, steps);
+    const long without = evaluations_of_oscillator(method, threshold(2.0), 0, steps_without);
     const double a_step = static_cast<double>(without) / static_cast<double>(steps_without);
     EXPECT_LT(static_cast<double>(with - without), 3.0 * a_step * static_cast<double>(events));
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "saltus/evaluation/contact_functions.hpp"
@@ -81,7 +82,7 @@ class Contacts {
   /// Says what is wrong where steps become ever smaller as a contact slips under a force that grows without bound.
   [[nodiscard]] std::optional<std::string> jam(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns whether a gap or a velocity is held at 0.
-  [[nodiscard]] bool hold(const std::vector<double>& x) const { return !none() && !held_rows(x).empty(); }
+  [[nodiscard]] bool hold(const std::vector<double>& x);
   enum class Slips { kept, free };
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
   /// @param slips  in a plane: kept as they are, or as free as all that is not held
@@ -140,7 +141,7 @@ class Contacts {
                          const std::vector<double>& x);
   [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
                                    const std::vector<double>& x) const;
-  void set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity, std::vector<double>& x) const;
+  void set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity, std::vector<double>& x);
   void start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction, std::vector<double>& x);
   void copy_impulses(const std::vector<double>& from, std::vector<double>& x) const;
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
@@ -167,17 +168,31 @@ class Contacts {
   void set_units(const ContactMoment& moment, const ContactPoint& point, int i, std::vector<double>& x) const;
   void enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
                   bool is_free, std::vector<double>& x);
-  void correct_positions(const std::vector<int>& touching, std::vector<double>& x) const;
-  void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x) const;
-  void correct_velocities(const Eigen::VectorXd& velocity, Slips slips, std::vector<double>& x) const;
+  [[nodiscard]] const Eigen::VectorXd& least_change(const std::vector<int>& rows, const Eigen::VectorXd& change);
+  bool correct_positions(const std::vector<int>& touching, std::vector<double>& x);
+  void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x);
+  void correct_velocities(Slips slips, std::vector<double>& x);
   void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;
-  [[nodiscard]] std::vector<int> held_rows(const std::vector<double>& x) const;
+  void find_held_rows(const std::vector<double>& x);
 
   const evaluation::ModelKernel& kernel_;
   const model::ContactSystem& system_;
   const std::vector<model::Contact>& contacts_;
   std::vector<bool> guards_;  ///< by event function; empty without contacts
   evaluation::ContactValues values_;
+  struct ProjectionStart {
+    std::vector<int> held;  ///< rows that the modes hold
+    std::vector<double> x;
+    Eigen::VectorXd velocity;  ///< of all rows
+  };
+  struct Projection {
+    ProjectionStart start;
+    std::vector<int> rows;
+    Eigen::VectorXd change, pushes, least;
+    Eigen::MatrixXd influence;
+    Eigen::LDLT<Eigen::MatrixXd> factors;
+  };
+  Projection projection_;  ///< work space: steps allocate nothing
   bool determined_ = true;
   std::vector<int> last_bounces_;
 };

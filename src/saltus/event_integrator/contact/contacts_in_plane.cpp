@@ -78,7 +78,7 @@ bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>
 
 /// Gives it a slip of this velocity, its gap as it is.
 void Contacts::set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity,
-                        std::vector<double>& x) const {
+                        std::vector<double>& x) {
   std::vector<int> rows{point.tangent_row(contact, 0), point.tangent_row(contact, 1)};
   VectorXd change = velocity;
   if (x[at(contacts_[at(contact)].active)] != 0.0) {

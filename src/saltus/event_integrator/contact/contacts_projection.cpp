@@ -14,27 +14,30 @@ namespace saltus::event_integrator {
 
 using Eigen::VectorXd;
 
-namespace {
-
 /// The smallest change of velocities that changes these rows by so much; they do not depend on each other.
-VectorXd least_change(const evaluation::ContactValues& values, const std::vector<int>& rows, const VectorXd& change) {
+const VectorXd& Contacts::least_change(const std::vector<int>& rows, const VectorXd& change) {
+  auto& work = projection_;
   const auto n = index(rows.size());
-  Eigen::MatrixXd influence(n, n);  // its lower half: the other one is not read
+  work.influence.resize(n, n);  // its lower half: the other one is not read
   for (Eigen::Index k = 0; k < n; ++k) {
-    const auto response = values.responses.col(rows[at(k)]);
-    for (Eigen::Index i = k; i < n; ++i) influence(i, k) = values.rows.row(rows[at(i)]).dot(response);
+    const auto response = values_.responses.col(rows[at(k)]);
+    for (Eigen::Index i = k; i < n; ++i) work.influence(i, k) = values_.rows.row(rows[at(i)]).dot(response);
   }
-  const bool one = n == 1 && influence(0, 0) > 0.0;
-  const VectorXd pushes = one ? VectorXd(change / influence(0, 0)) : VectorXd(influence.ldlt().solve(change));
-  VectorXd velocities = VectorXd::Zero(values.responses.rows());
-  for (Eigen::Index k = 0; k < n; ++k) velocities += pushes(k) * values.responses.col(rows[at(k)]);
-  return velocities;
+  work.pushes = change;
+  if (n == 1 && work.influence(0, 0) > 0.0) {
+    work.pushes /= work.influence(0, 0);
+  } else {
+    work.factors.compute(work.influence);
+    work.factors.solveInPlace(work.pushes);
+  }
+  work.least.setZero(values_.responses.rows());
+  for (Eigen::Index k = 0; k < n; ++k) work.least += work.pushes(k) * values_.responses.col(rows[at(k)]);
+  return work.least;
 }
 
-}  // namespace
-
-std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
-  std::vector<int> rows;
+void Contacts::find_held_rows(const std::vector<double>& x) {
+  auto& rows = projection_.start.held;
+  rows.clear();
   const auto m = static_cast<int>(contacts_.size());
   for (int i = 0; i < m; ++i) {
     if (x[at(contacts_[at(i)].active)] != 0.0) rows.push_back(i);
@@ -45,14 +48,20 @@ std::vector<int> Contacts::held_rows(const std::vector<double>& x) const {
       if (x[at(contact.stick + k)] != 0.0) rows.push_back(m * (1 + k) + i);
     }
   }
-  return rows;
+}
+
+bool Contacts::hold(const std::vector<double>& x) {
+  find_held_rows(x);
+  return !projection_.start.held.empty();
 }
 
 /// @param touching  what opens there does not begin below its gap: the correction of another one would leave it there,
 ///                  to their roundings, and its fall would have no sign to change
-void Contacts::correct_positions(const std::vector<int>& touching, std::vector<double>& x) const {
-  std::vector<int> rows;
-  for (const int row : held_rows(x)) {
+/// @return whether x changed
+bool Contacts::correct_positions(const std::vector<int>& touching, std::vector<double>& x) {
+  auto& rows = projection_.rows;
+  rows.clear();
+  for (const int row : projection_.start.held) {
     if (row < static_cast<int>(contacts_.size())) rows.push_back(row);
   }
   if (!touching.empty()) {
@@ -61,34 +70,40 @@ void Contacts::correct_positions(const std::vector<int>& touching, std::vector<d
     std::copy_if(touching.begin(), touching.end(), std::back_inserter(rows),
                  [&](int row) { return values_.gap(row) < 0.0 && basis.takes(row); });
   }
-  const VectorXd gap = values_.gap(rows);
-  if (gap.isZero(0.0)) return;
-  const VectorXd change = least_change(values_, rows, gap);
+  projection_.change = values_.gap(rows);
+  if (projection_.change.isZero(0.0)) return false;
+  const VectorXd& moved = least_change(rows, projection_.change);
+  bool changed = false;
   for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    x[at(system_.positions[k])] -= change(static_cast<Eigen::Index>(k));
+    double& position = x[at(system_.positions[k])];
+    const double next = position - moved(static_cast<Eigen::Index>(k));
+    changed = changed || next != position;
+    position = next;
   }
+  return changed;
 }
 
-void Contacts::change_velocities(const std::vector<int>& rows, const VectorXd& change, std::vector<double>& x) const {
-  const VectorXd velocities = least_change(values_, rows, change);
+void Contacts::change_velocities(const std::vector<int>& rows, const VectorXd& change, std::vector<double>& x) {
+  const VectorXd& velocities = least_change(rows, change);
   for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
     x[at(system_.velocities[k])] += velocities(static_cast<Eigen::Index>(k));
   }
 }
 
-/// @param velocity  before positions were corrected: slips in a plane stay what they were, if they are to be kept. The
-///                  smaller they are, the more would another velocity turn them, and forces with them.
-void Contacts::correct_velocities(const VectorXd& velocity, Slips slips, std::vector<double>& x) const {
-  auto rows = held_rows(x);
+/// Of what is held. Slips in a plane stay what they were before positions were corrected, if they are to be kept: the
+/// smaller they are, the more would another velocity turn them, and forces with them.
+void Contacts::correct_velocities(Slips slips, std::vector<double>& x) {
+  const auto& [held, before, velocity] = projection_.start;
+  auto& rows = projection_.rows;
+  auto& change = projection_.change;
+  rows = held;
   if (values_.velocity(rows).isZero(0.0) && values_.velocity == velocity) return;
-  const std::size_t held = rows.size();
   if (slips == Slips::kept) keep_slips(x, rows);
-  VectorXd change = -values_.velocity(rows);
-  for (std::size_t r = held; r < rows.size(); ++r) change(static_cast<Eigen::Index>(r)) += velocity(rows[r]);
-  const auto before = x;
+  change = -values_.velocity(rows);
+  for (std::size_t r = held.size(); r < rows.size(); ++r) change(index(r)) += velocity(rows[r]);
   change_velocities(rows, change, x);
   // A velocity that is held by itself is 0, not its rounding.
-  for (std::size_t r = 0; r < held; ++r) {
+  for (std::size_t r = 0; r < held.size(); ++r) {
     const auto row = values_.rows.row(rows[r]);
     if ((row.array() != 0.0).count() != 1) continue;
     Eigen::Index only = 0;
@@ -119,18 +134,15 @@ void Contacts::keep_slips(const std::vector<double>& x, std::vector<int>& rows) 
 bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<double>& x,
                        const std::vector<int>& touching, Slips slips) {
   if (!hold(x)) return false;
-  const auto before = x;
-  VectorXd velocity;
+  projection_.start.x = x;
   // The gap of a step is within its tolerances: two corrections leave rounding.
   for (int iteration = 0; iteration < 3; ++iteration) {
     kernel_.contacts(t, x.data(), alpha.data(), values_);
-    if (iteration == 0) velocity = values_.velocity;
-    const auto x_before = x;
-    correct_positions(touching, x);
-    if (x == x_before) break;
+    if (iteration == 0) projection_.start.velocity = values_.velocity;
+    if (!correct_positions(touching, x)) break;
   }
-  correct_velocities(velocity, slips, x);
-  return x != before;
+  correct_velocities(slips, x);
+  return x != projection_.start.x;
 }
 
 }  // namespace saltus::event_integrator

@@ -111,7 +111,9 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
   for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
   any_nesting_ = contains(nesting_, true);
   const auto n_phi = at(kernel.event_functions());
-  for (auto* vector : {&values_.phi, &values_.magnitude, &values_.slope}) vector->resize(n_phi);
+  for (auto* vector : {&values_.phi, &values_.magnitude, &values_.slope, &values_.middle, &values_.radius})
+    vector->resize(n_phi);
+  values_.radii.resize(1 + at(kernel.states()));
   x_.resize(at(kernel.states()));
   range_.resize(at(kernel.states()));
   mode_.kept_states.resize(at(kernel.switching_functions()));
@@ -254,11 +256,39 @@ bool EventSearch::specials_leave(const ode::Stepper& stepper) {
   });
 }
 
+/// Whether the range of a curved function over the step is on the side of its sign.
+bool EventSearch::stays_away(std::size_t i) const {
+  const auto& function = mode_.functions[i];
+  if (!uses_phi(function) || function.kind == FunctionKind::nested) return false;
+  if (function.sign == 0 || function.zero_order != 0 || function.offset != 0.0) return false;
+  return function.sign * values_.middle[at(function.index)] > values_.radius[at(function.index)];
+}
+
+/// The curved functions that may vanish within the bounds of the step; returns whether there are any.
+bool EventSearch::find_near() {
+  sampled_.clear();
+  if (mode_.curved.empty()) return false;
+  if (mode_.curved_parts.phi) {
+    const auto& [begin, end, low, high] = range_.bounds;
+    values_.radii[0] = 0.5 * std::abs(end - begin);
+    for (std::size_t k = 0; k < x_.size(); ++k) {
+      x_[k] = 0.5 * (low[k] + high[k]);
+      values_.radii[1 + k] = 0.5 * (high[k] - low[k]);
+    }
+    kernel_.ranges(0.5 * (begin + end), x_.data(), mode_.state.alpha.data(), values_.radii.data(),
+                   values_.middle.data(), values_.radius.data());
+  }
+  for (const std::size_t i : mode_.curved) {
+    if (!stays_away(i)) sampled_.push_back(i);
+  }
+  return !sampled_.empty();
+}
+
 bool EventSearch::may_vanish(const ode::Stepper& stepper) {
   range_.known = false;
   if (mode_.present == 0) return false;
-  if (!mode_.curved.empty() || !specials_leave(stepper)) return true;
-  return !range_.read(stepper) || mode_.forms.may_vanish(range_.bounds);
+  if (!specials_leave(stepper)) return true;
+  return !range_.read(stepper) || mode_.forms.may_vanish(range_.bounds) || find_near();
 }
 
 /// The functions that the exact search has to look at.
@@ -269,9 +299,9 @@ void EventSearch::find_suspects(const ode::DenseStep& step) {
   for (const std::size_t i : special_) {
     if (mode_.forms.has(i)) suspects_.push_back(i);
   }
-  if (!mode_.curved.empty()) {
-    if (five_nodes_suffice_) sample(step, 0.0, 1.0, mode_.curved, {0, 2});
-    for (const std::size_t i : mode_.curved) {
+  if (find_near()) {
+    if (five_nodes_suffice_) sample(step, 0.0, 1.0, sampled_, {0, 2});
+    for (const std::size_t i : sampled_) {
       if (!is_far(i)) suspects_.push_back(i);
     }
   }

@@ -37,7 +37,7 @@ enum class SearchOutcome {
 
 /// Searches one step after the other, in two stages. First bounds of the states over the step show that almost no
 /// function can vanish: those that are affine in (t, x), which includes the exits of sliding modes with affine fields.
-/// The exact search is left with the others, and with functions that are not affine.
+/// Of functions that are not affine their ranges over these bounds do. The exact search is left with the others.
 /// Owns the work space; allocates in enter() only.
 class EventSearch {
  public:
@@ -160,6 +160,8 @@ class EventSearch {
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
               const ode::BernsteinCoefficients& coefficients, double accuracy);
   [[nodiscard]] bool is_far(std::size_t i) const;
+  bool find_near();
+  [[nodiscard]] bool stays_away(std::size_t i) const;
   void find_suspects(const ode::DenseStep& step);
   /// Every so many from the first one on.
   struct Nodes {
@@ -188,11 +190,11 @@ class EventSearch {
   std::vector<double> samples_;  ///< node by node
   FunctionLevels levels_;
   StepRange range_;
-  std::vector<bool> nesting_;            ///< functions of the kernel that hold selections
-  evaluation::AffineRows rows_;          ///< at the selections of the mode
-  std::vector<std::size_t> special_;     ///< functions with an unknown sign, or a zero at the start of the next step
-  std::vector<std::size_t> suspects_;    ///< of this step, ascending
-  std::vector<std::size_t> sampled_;     ///< of the suspects those without a form
+  std::vector<bool> nesting_;          ///< functions of the kernel that hold selections
+  evaluation::AffineRows rows_;        ///< at the selections of the mode
+  std::vector<std::size_t> special_;   ///< functions with an unknown sign, or a zero at the start of the next step
+  std::vector<std::size_t> suspects_;  ///< of this step, ascending
+  std::vector<std::size_t> sampled_;   ///< functions without a form that may vanish in this step; of them the suspects
   std::vector<std::size_t> candidates_;  ///< of this step, ascending
   std::vector<std::size_t> inspected_;   ///< at the start of a mode: those whose values matter there
   TurnedSurfaces turned_;                ///< likewise

@@ -272,6 +272,7 @@ void EventSearch::size_work() {
   samples_.resize(mode_.functions.size() * ode::event_nodes);
   for (auto* list : {&suspects_, &sampled_, &candidates_, &special_, &mode_.curved, &inspected_})
     list->reserve(mode_.functions.size());
+  for (auto& checks : checks_) checks.reserve(mode_.functions.size());
 }
 
 void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x) {

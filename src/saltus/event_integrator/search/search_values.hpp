@@ -34,8 +34,10 @@ struct NestedCorner {
 /// Holds values and scales of all functions of the kernel, and their values in the regions of nested ones.
 struct KernelValues {
   std::vector<double> phi, magnitude, slope;
-  std::vector<double> pressure;       ///< on each guard that is held
-  std::vector<NestedCorner> corners;  ///< of the mode
+  std::vector<double> middle, radius;  ///< over a step, of those that are not affine
+  std::vector<double> radii;           ///< of t and the states over it
+  std::vector<double> pressure;        ///< on each guard that is held
+  std::vector<NestedCorner> corners;   ///< of the mode
 };
 
 /// Holds, for each function, its rounding, and what the tolerances leave of it, which is at least that.

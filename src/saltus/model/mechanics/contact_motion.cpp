@@ -3,6 +3,8 @@
 #include <limits>
 #include <utility>
 
+#include <casadi/core/dm.hpp>
+#include <casadi/core/function.hpp>
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
