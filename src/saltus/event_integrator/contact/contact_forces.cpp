@@ -64,8 +64,9 @@ double margin_of(const ContactPoint& point, const std::vector<int>& resting, con
   return least;
 }
 
-HeldRows held_rows(const ContactPoint& point, const std::vector<int>& resting, const ContactForces& result) {
-  HeldRows rows(point.velocity.size());
+void find_held_rows(const ContactPoint& point, const std::vector<int>& resting, const ContactForces& result,
+                    HeldRows& rows) {
+  rows.clear();
   for (const int i : resting) {
     const auto k = static_cast<std::size_t>(i);
     const auto mode = result.modes[k];
@@ -79,11 +80,18 @@ HeldRows held_rows(const ContactPoint& point, const std::vector<int>& resting, c
       if (mode == ContactMode::stick) rows.hold(row);
     }
   }
+}
+
+HeldRows held_rows(const ContactPoint& point, const std::vector<int>& resting, const ContactForces& result) {
+  HeldRows rows(point.velocity.size());
+  find_held_rows(point, resting, result, rows);
   return rows;
 }
 
-bool solve_forces(const ContactPoint& point, const std::vector<int>& resting, ContactForces& result) {
-  const auto solution = held_rows(point, resting, result).solve(point.influence, point.acceleration, result.forces);
+/// @param rows  work space
+bool solve_forces(const ContactPoint& point, const std::vector<int>& resting, HeldRows& rows, ContactForces& result) {
+  find_held_rows(point, resting, result, rows);
+  const auto solution = rows.solve(point.influence, point.acceleration, result.forces);
   if (solution == HeldRows::Solution::none) return false;
   result.is_open = solution == HeldRows::Solution::open;
   result.acceleration = point.acceleration + point.influence * result.forces;
@@ -112,7 +120,7 @@ bool is_kept(const ContactPoint& point, const std::vector<int>& held, const Cont
 }
 
 /// Where normal forces are open: without those of contacts that need none, so that the margin is the largest.
-void drop_idle(const ContactPoint& point, const std::vector<int>& resting, ContactForces& result) {
+void drop_idle(const ContactPoint& point, const std::vector<int>& resting, HeldRows& rows, ContactForces& result) {
   if (!result.is_open) return;
   std::optional<ContactForces> best;
   for (auto i = resting.rbegin(); i != resting.rend(); ++i) {
@@ -120,13 +128,13 @@ void drop_idle(const ContactPoint& point, const std::vector<int>& resting, Conta
     ContactForces without = result;
     without.idle.push_back(*i);
     if (!is_kept(point, held_rows(point, resting, without).held(), without, *i)) continue;
-    if (!solve_forces(point, resting, without)) continue;
+    if (!solve_forces(point, resting, rows, without)) continue;
     without.margin = margin_of(point, resting, without);
     if (!best || without.margin > best->margin) best = std::move(without);
   }
   if (!best) return;
   result = std::move(*best);
-  drop_idle(point, resting, result);
+  drop_idle(point, resting, rows, result);
 }
 
 /// Of forces that do not change the motion those that hold best: the margin is a concave function of them.
@@ -158,11 +166,11 @@ void take_best(const ContactPoint& point, const std::vector<int>& resting, Conta
 /// Against the forces that would keep these contacts from slipping; where others hold them, too, these forces are not
 /// one, and the way is that of a motion without friction.
 void guess_directions(const ContactPoint& point, const std::vector<int>& resting, const std::vector<int>& free,
-                      ContactForces& result) {
+                      HeldRows& rows, ContactForces& result) {
   ContactForces guess = result;
   for (const int i : free) guess.modes[static_cast<std::size_t>(i)] = ContactMode::stick;
-  const bool sticks = solve_forces(point, resting, guess) && !guess.is_open;
-  const bool moves = !sticks && solve_forces(point, resting, guess = result);
+  const bool sticks = solve_forces(point, resting, rows, guess) && !guess.is_open;
+  const bool moves = !sticks && solve_forces(point, resting, rows, guess = result);
   for (const int i : free) {
     const Vector2d needed = sticks  ? Vector2d(-point.along(guess.forces, i))
                             : moves ? point.along(guess.acceleration, i)
@@ -193,10 +201,9 @@ bool is_determined(const ContactPoint& point, const std::vector<int>& resting, c
   return true;
 }
 
-}  // namespace
-
-bool forces_in(const ContactPoint& point, const std::vector<int>& resting, const std::vector<ContactMode>& modes,
-               ContactForces& result) {
+/// @param rows  work space
+bool find_forces(const ContactPoint& point, const std::vector<int>& resting, const std::vector<ContactMode>& modes,
+                 HeldRows& rows, ContactForces& result) {
   result.modes = modes;
   result.directions.assign(modes.size(), Vector2d::Zero());
   result.idle.clear();
@@ -214,16 +221,24 @@ bool forces_in(const ContactPoint& point, const std::vector<int>& resting, const
       direction = velocity.normalized();
     }
   }
-  const auto solve = [&] { return solve_forces(point, resting, result); };
-  if (!free.empty()) guess_directions(point, resting, free, result);
+  const auto solve = [&] { return solve_forces(point, resting, rows, result); };
+  if (!free.empty()) guess_directions(point, resting, free, rows, result);
   const bool solved = free.empty()
                           ? solve()
                           : find_directions(point, free, result.directions, result.forces, result.acceleration, solve);
   if (!solved) return false;
   result.margin = margin_of(point, resting, result);
-  drop_idle(point, resting, result);
+  drop_idle(point, resting, rows, result);
   take_best(point, resting, result);
   return true;
+}
+
+}  // namespace
+
+bool forces_in(const ContactPoint& point, const std::vector<int>& resting, const std::vector<ContactMode>& modes,
+               ContactForces& result) {
+  HeldRows rows(point.velocity.size());
+  return find_forces(point, resting, modes, rows, result);
 }
 
 std::vector<ContactForces> admissible_forces(const ContactPoint& point, const std::vector<int>& resting,
@@ -239,12 +254,13 @@ std::vector<ContactForces> admissible_forces(const ContactPoint& point, const st
   std::vector<ContactForces> result;
   std::vector<std::size_t> number(all.size(), 0);
   std::vector<ContactMode> modes(point.friction.size(), ContactMode::open);
+  ContactForces found;
+  HeldRows rows(point.velocity.size());
   constexpr long most = 100000;
   for (long tried = 0; tried < most; ++tried) {
     for (std::size_t k = 0; k < all.size(); ++k) modes[static_cast<std::size_t>(resting[k])] = all[k][number[k]];
-    ContactForces found;
     // Rounding of solves, and of the place where a mode was found to end.
-    if (forces_in(point, resting, modes, found) && found.margin >= -1e-8) result.push_back(std::move(found));
+    if (find_forces(point, resting, modes, rows, found) && found.margin >= -1e-8) result.push_back(std::move(found));
     std::size_t k = 0;
     while (k < all.size() && ++number[k] == all[k].size()) number[k++] = 0;
     if (k == all.size()) break;

@@ -248,9 +248,11 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint
   double largest = -std::numeric_limits<double>::infinity();
   const double h = ahead_by * moment.time_scale;
   constexpr double clear = 1e-4;
+  const ContactPoint here = point_at(moment.t, moment.alpha, x);
+  const evaluation::ContactValues values = values_;
   for (std::size_t k = 0; k < found.size(); ++k) {
     auto ahead = x;
-    const ContactPoint here = point_at(moment.t, moment.alpha, x);
+    values_ = values;
     enter(moment, here, found[k], ahead);
     move_ahead(moment, h, ahead);
     ContactPoint later = point_at(moment.t + h, moment.alpha, ahead);

@@ -270,13 +270,15 @@ bool EventSearch::find_near() {
   if (mode_.curved.empty()) return false;
   if (mode_.curved_parts.phi) {
     const auto& [begin, end, low, high] = range_.bounds;
-    values_.radii[0] = 0.5 * std::abs(end - begin);
+    // What is within its rounding of zero, as the search knows it, may vanish.
+    const double middle = 0.5 * (begin + end);
+    values_.radii[0] = 0.5 * std::abs(end - begin) + rounding_of(std::abs(middle));
     for (std::size_t k = 0; k < x_.size(); ++k) {
       x_[k] = 0.5 * (low[k] + high[k]);
-      values_.radii[1 + k] = 0.5 * (high[k] - low[k]);
+      values_.radii[1 + k] = 0.5 * (high[k] - low[k]) + rounding_of(std::abs(x_[k]));
     }
-    kernel_.ranges(0.5 * (begin + end), x_.data(), mode_.state.alpha.data(), values_.radii.data(),
-                   values_.middle.data(), values_.radius.data());
+    kernel_.ranges(middle, x_.data(), mode_.state.alpha.data(), values_.radii.data(), values_.middle.data(),
+                   values_.radius.data());
   }
   for (const std::size_t i : mode_.curved) {
     if (!stays_away(i)) sampled_.push_back(i);
