@@ -30,10 +30,9 @@ Range operated_range(casadi_int operation, const Range& a, const Range& b) {
     case casadi::OP_FABS:
     case casadi::OP_ATAN:
     case casadi::OP_TANH:
-      return {middle, a.radius};
     case casadi::OP_SIN:
     case casadi::OP_COS:
-      return {middle, fmin(a.radius, 2.0)};
+      return {middle, a.radius};
     case casadi::OP_ADD:
     case casadi::OP_SUB:
     case casadi::OP_FMIN:
