@@ -15,10 +15,11 @@ struct TrackingScales {
   std::vector<double> states, controls;
 };
 
-/// Returns of each element the gain K = d u_k / d x at its start, none (0 x 0) where nothing is corrected. It says how
-/// the first `controls` variables that its interval k shares change with the first `states` there, from there to the
-/// end of the interval. The sides of all pairs and the horizon stay as they are. The gain of the first element is 0,
-/// whose start is given.
+/// Returns of each element the gain K = d u_k / d x at its start, none (0 x 0) where nothing is corrected.
+///
+/// It says how the first `controls` variables that interval k shares change with the first `states` there, until the
+/// interval ends. The sides of all pairs and the horizon stay as they are. The gain of the first element is 0, whose
+/// start is given.
 ///
 /// Without `scales` only the first elements of intervals have gains: everything from the node on then is optimal again
 /// to first order, with the same active constraints. With `scales` all elements have those of a controller that tracks
