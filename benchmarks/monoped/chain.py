@@ -1,14 +1,15 @@
 """The monoped over 3 m in 30 intervals: a short way is solved, and five of it are the start.
 
 python3 benchmarks/monoped/chain.py SALTUS [--by slide|hop] [--form step|stewart] [--finer 40 50 …] [--tracked 60 90 …]
-    [--keep FOLDER] [--stages KEY=VALUE,… …]
+    [--points 4 6] [--keep FOLDER] [--stages KEY=VALUE,… …]
 
 slide: 0.25 m in 6 intervals (0.6 s) with two stages, then three, then the goal moved on to 0.4 m.
 hop: 0.25 m with three stages at once, with a cost of a foot that moves near the ground, from a guess that lifts it.
 The stages of the long problem are those of run.py; each begins at the result of the one before, cut where intervals end, so that
 no element has length zero.
 --finer: other intervals begin at that result, cut where theirs end, each with the settings of FINER.
---tracked: likewise with four stages, planned with less friction than the simulated robot has, and a feedback that tracks the plan.
+--tracked: likewise with the stages of --points (each begins at the result of the one before), planned with less friction than the
+simulated robot has, and a feedback that tracks the plan.
 """
 
 import argparse
@@ -38,7 +39,7 @@ WAYS = {
 STAGES = {"slide": ["points=3,first=branch,sigma=0.001"],
           "hop": ["goal=1.25,points=3,first=branch,sigma=0.001,clear=5"]}
 FINER = "points=3,first=branch,sigma=0.001,clear=5,optimize.step_bounds=0.97"
-TRACKED = FINER.replace("points=3", "points=4") + ",friction=0.7,optimize.plant.mu=0.8,optimize.feedback=tracking"
+TRACKED = ",friction=0.7,optimize.plant.mu=0.8,optimize.feedback=tracking"
 
 
 def way(arguments, folder):
@@ -76,6 +77,7 @@ def main():
     parser.add_argument("--form", choices=["step", "stewart"], default="step")
     parser.add_argument("--finer", type=int, nargs="+", default=[])
     parser.add_argument("--tracked", type=int, nargs="+", default=[])
+    parser.add_argument("--points", type=int, nargs="+", default=[4])
     parser.add_argument("--seconds", default="400", help="of every problem")
     parser.add_argument("--keep", help="folder for models and results")
     parser.add_argument("--stages", nargs="+")
@@ -94,9 +96,12 @@ def main():
             cut(long, start, intervals)
             run(arguments, folder, intervals, start, FINER)
         for intervals in arguments.tracked:
-            cut(long, start, intervals)
-            subprocess.run([sys.executable, HERE / "hops.py", start, "--out", start, "--points", "4"], check=True)
-            run(arguments, folder, intervals, start, TRACKED)
+            before = long
+            for points in arguments.points:
+                cut(before, start, intervals)
+                subprocess.run([sys.executable, HERE / "hops.py", start, "--out", start, "--points", str(points)], check=True)
+                settings = FINER.replace("points=3", f"points={points}") + TRACKED
+                before = run(arguments, folder / f"tracked-{points}", intervals, start, settings)
 
 
 if __name__ == "__main__":

@@ -226,6 +226,7 @@ def with_regions(start):
 def joined(hops):
     """A result to start from."""
     start = json.loads(json.dumps(hops[0]))
+    start.pop("record_sha256", None)  # of the result that it was
     values = start["start_values"] = {**start["start_values"], "primal": [], "dual_rows": [], "dual_lower": [], "dual_upper": []}
     rows = {key: [] for key, column in start["trajectory"].items() if isinstance(column, list)}
     x = t = 0.0

@@ -1,5 +1,6 @@
 """saltus optimize from outside: help, bad input, files."""
 
+import itertools
 import json
 import math
 
@@ -102,6 +103,41 @@ verification_tolerance = 1
 """
 
 
+# Lands at 0.101 s, and would fall over: x grows with 10 1/s.
+LANDER = """
+[model]
+name = "lander"
+[parameters]
+push = 0
+[states]
+x = 0.01
+z = 0.05
+vx = 0
+vz = 0
+[controls]
+u = { lower = -2, upper = 2 }
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+mass = [[1, 0], [0, 1]]
+force = { vx = "100*x + push + u", vz = "-9.81" }
+[[contacts]]
+name = "foot"
+gap = "z"
+[time_freezing]
+a_n = 20
+[optimize]
+horizon = 0.6
+control_intervals = 2
+elements = 4
+stages = 4
+closed_loop = true
+running_cost = "u^2 + x^2"
+terminal_cost = "1000*(x^2 + vx^2)"
+plant = { push = 0.15 }
+"""
+
+
 class ClosedLoop(tool.ToolTest):
     def test_feedback_brings_it_there_where_the_open_loop_does_not(self):
         file = self.write("m.toml", UNSTABLE)
@@ -113,7 +149,7 @@ class ClosedLoop(tool.ToolTest):
         self.assertEqual(closed_loop["termination"], "completed")
         self.assertEqual(closed_loop["x"][0], [1.0])
         out, _ = self.run_tool("optimize", file, "--set", "optimize.closed_loop=true", code=0)
-        self.assertIn("With feedback from the states at the nodes", " ".join(out.split()))
+        self.assertIn("With feedback from the states", " ".join(out.split()))
 
     def optimised(self, *settings):
         arguments = [word for one in settings for word in ("--set", one)]
@@ -130,6 +166,37 @@ class ClosedLoop(tool.ToolTest):
         self.assertLess(ends["tracking"], 1e-3)
         _, err = self.run_tool("optimize", "m.toml", "--set", "optimize.feedback=none", code=2)
         self.assertIn("tracking", err)
+
+    def test_tracking_corrects_where_elements_start(self):
+        """Inside of intervals, too: at the node it would be too late for the controls that there are."""
+        self.write("m.toml", LANDER)
+        result = self.optimised("optimize.feedback=tracking")
+        rows, times, points = result["verification"]["closed_loop"], result["elements"]["t"], result["elements"]["points"]
+        self.assertLess(max(abs(x[0]) for x in rows["x"]), 0.02)
+        starts = sorted({round(t, 6) for t in times[::points]})
+        self.assertEqual(len(starts), 7)  # the landing takes no time
+        # x'' = 100 x + w with the w of each pair of rows: constant from start to start, and another one behind each.
+        pushes = {}
+        for (t1, t2), (before, behind) in zip(itertools.pairwise(rows["t"]), itertools.pairwise(rows["x"])):
+            if t2 - t1 < 1e-4:
+                continue
+            growth, rate = math.cosh(10 * (t2 - t1)), math.sinh(10 * (t2 - t1))
+            w = 10 * ((behind[2] - growth * before[2]) / rate - 10 * before[0])
+            pushes.setdefault(max(start for start in starts if start <= (t1 + t2) / 2), []).append(w)
+        self.assertEqual(sorted(pushes), starts)
+        means = [sum(values) / len(values) for _, values in sorted(pushes.items())]
+        for values, mean in zip((pushes[start] for start in starts), means):
+            self.assertLess(max(abs(value - mean) for value in values), 1e-4)
+        for mean, other in itertools.pairwise(means):
+            self.assertGreater(abs(mean - other), 1e-3)
+
+    def test_the_optimal_feedback_corrects_at_nodes(self):
+        """The push alone takes x + vx/10 to 0.15/100 (e^3 - 1) until then; more than 1.85/100 no control brings back."""
+        self.write("m.toml", LANDER)
+        rows = self.optimised("optimize.feedback=optimal")["verification"]["closed_loop"]
+        at_node = next(x for t, x in zip(rows["t"], rows["x"]) if t >= 0.3)
+        self.assertGreater(100 * at_node[0] + 10 * at_node[2], 1.85)
+        self.assertGreater(rows["x"][-1][0], 0.1)
 
     def test_the_plant_may_differ_from_the_model(self):
         text = UNSTABLE.replace("3*x + u", "a*x + u").replace("[states]", "[parameters]\na = 3\n[states]")
@@ -148,7 +215,7 @@ class ClosedLoop(tool.ToolTest):
         self.assertAlmostEqual(x2, (1.5 + w / 3.5) * math.exp(3.5 * t2) - w / 3.5, places=8)
         self.write("m.toml", text + "closed_loop = true\nplant = { a = 3.5 }\n")
         out, _ = self.run_tool("optimize", "m.toml", code=0)
-        self.assertIn("With feedback from the states at the nodes, a = 3.5", " ".join(out.split()))
+        self.assertIn("With feedback from the states, a = 3.5", " ".join(out.split()))
 
     def test_a_plant_that_cannot_be(self):
         self.write("m.toml", UNSTABLE.replace("x = 1\n", "x = { initial = 1, lower = 0, upper = 2, free = true }\n"))

@@ -136,7 +136,7 @@ Finding open_loop_finding(std::string text, const result::OpenLoop& open_loop) {
 }
 
 std::string feedback_words(const std::vector<std::pair<std::string, double>>& plant) {
-  std::string text = "With feedback from the states at the nodes";
+  std::string text = "With feedback from the states";
   for (const auto& [name, value] : plant) text += fmt::format(", {} = {}", name, value);
   return text + ": ";
 }

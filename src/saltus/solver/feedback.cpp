@@ -18,6 +18,7 @@ using Matrix = Eigen::SparseMatrix<double>;
 constexpr double diagonal_shift = 1e-9;
 /// Of the size of a bound: what is nearer is on it.
 constexpr double on_bound = 1e-7;
+constexpr int no_element = std::numeric_limits<int>::max();
 
 bool is_on(double value, double bound) {
   return std::isfinite(bound) && std::abs(value - bound) <= on_bound * std::max(1.0, std::abs(bound));
@@ -45,7 +46,8 @@ crossover::BranchProblem branch_of(mpcc::Problem& problem, const Solution& solut
   return {problem, crossover::reduce(problem, sides, jacobian_matrix(problem, solution.w), c)};
 }
 
-/// The optimality conditions of the branch problem, and the conditions of what is behind a node as a part of them.
+/// The optimality conditions of the branch problem, and the conditions of what is behind an element's start as a part
+/// of them.
 class Conditions {
  public:
   Conditions(mpcc::Problem& problem, const Solution& solution, const std::optional<TrackingScales>& scales)
@@ -54,22 +56,23 @@ class Conditions {
     Eigen::VectorXd values(branch_.jacobian_pattern().entries()), c(branch_.constraints());
     branch_.jacobian(v, values);
     rows_ = sparse<Eigen::RowMajor>(branch_.jacobian_pattern(), values, branch_.constraints(), branch_.variables());
-    find_intervals();
     if (scales) {
       is_active_ = equal_bounds(branch_.constraint_bounds());
       is_fixed_ = equal_bounds(branch_.variable_bounds());
       take_tracking(*scales);
+      find_elements();
       return;
     }
     branch_.functions(v, c);
     is_active_ = on_bounds(c, branch_.constraint_bounds());
     is_fixed_ = on_bounds(v, branch_.variable_bounds());
     take_hessian(v, multipliers(problem, solution.multipliers));
+    find_elements();
   }
 
-  /// d u_k / d x_k; 0 where the conditions cannot be factorised.
-  [[nodiscard]] Eigen::MatrixXd gain(int k, int controls, int states) {
-    mark(k, states);
+  /// d u_k / d x at the start of element e of interval k; 0 where the conditions cannot be factorised.
+  [[nodiscard]] Eigen::MatrixXd gain(int k, int e, int controls, int states) {
+    mark(k, e, states);
     Eigen::MatrixXd gain = Eigen::MatrixXd::Zero(controls, states);
     std::vector<Eigen::Triplet<double>> entries;
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(unknowns_ + rows_.rows(), states);
@@ -129,48 +132,71 @@ class Conditions {
     }
   }
 
-  /// Of each place the first interval that has a variable of it; -1 for what belongs to none.
-  void find_intervals() {
-    constexpr int none = std::numeric_limits<int>::max();
-    interval_.assign(at(branch_.variables()), none);
-    const auto note = [&](int variable, int k) {
-      if (place_[at(variable)] >= 0)
-        interval_[at(place_[at(variable)])] = std::min(interval_[at(place_[at(variable)])], k);
+  /// Of each place the first element that has a variable of it; -1 for what belongs to none. What an interval shares
+  /// belongs to the last element whose equations speak of it: controls and the speed of time to that of the interval,
+  /// a length to its own.
+  void find_elements() {
+    element_.assign(at(branch_.variables()), no_element);
+    is_shared_.assign(element_.size(), false);
+    const auto note = [&](int variable, int e) {
+      if (const int place = place_[at(variable)]; place >= 0) element_[at(place)] = std::min(element_[at(place)], e);
     };
     for (const auto& range : {chain_.border, chain_.start}) {
       for (int w = range.first; w < range.end(); ++w) note(w, -1);
     }
-    for (std::size_t k = 0; k < chain_.intervals.size(); ++k) {
-      const auto& [shared, first, elements] = chain_.intervals[k];
-      for (int w = shared.first; w < shared.end(); ++w) note(w, static_cast<int>(k));
+    for (const auto& [shared, first, elements] : chain_.intervals) {
+      for (int w = shared.first; w < shared.end(); ++w) {
+        note(w, first);
+        if (place_[at(w)] >= 0) is_shared_[at(place_[at(w)])] = true;
+      }
       for (int e = first; e < first + elements; ++e) {
         const auto& own = chain_.elements[at(e)].variables;
-        for (int w = own.first; w < own.end(); ++w) note(w, static_cast<int>(k));
+        for (int w = own.first; w < own.end(); ++w) note(w, e);
       }
+    }
+    row_element_.assign(at(rows_.rows()), no_element);
+    for (int row = 0; row < rows_.rows(); ++row) {
+      if (is_active_[at(row)]) find_element(row);
     }
   }
 
-  /// What is behind node k: numbers of unknowns, of the states of the node, and what is held.
-  void mark(int k, int states) {
-    const std::size_t n = interval_.size();
+  /// Of an equation the last element whose own variables it has.
+  void find_element(int row) {
+    int last = -1;
+    for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
+      const auto place = at(entry.col());
+      if (!is_shared_[place] && element_[place] != no_element) last = std::max(last, element_[place]);
+    }
+    if (last >= 0) row_element_[at(row)] = last;
+    for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
+      const auto place = at(entry.col());
+      if (is_shared_[place] && element_[place] >= 0) element_[place] = std::max(element_[place], last);
+    }
+  }
+
+  /// What is behind the start of element e: numbers of unknowns, of the states there, and what is held.
+  void mark(int k, int e, int states) {
+    first_element_ = chain_.intervals[at(k)].first_element;
+    next_element_ = e;
+    const std::size_t n = element_.size();
     unknown_.assign(n, -1);
     state_.assign(n, -1);
     is_held_.assign(n, false);
     unknowns_ = 0;
-    const auto& node = chain_.elements[at(chain_.intervals[at(k)].first_element - 1)];
-    for (std::size_t i = 0; i < node.link_state.size(); ++i) {
-      const int place = place_[at(node.link_state[i])];
+    const auto& left = chain_.elements[at(e - 1)];
+    for (std::size_t i = 0; i < left.link_state.size(); ++i) {
+      const int place = place_[at(left.link_state[i])];
       if (place < 0) continue;
       is_held_[at(place)] = true;
       if (static_cast<int>(i) < states) state_[at(place)] = static_cast<int>(i);
     }
-    for (const int variable : node.link_multipliers) {
+    for (const int variable : left.link_multipliers) {
       if (place_[at(variable)] >= 0) is_held_[at(place_[at(variable)])] = true;
     }
     for (std::size_t p = 0; p < n; ++p) {
-      if (interval_[p] >= k && !is_fixed_[p] && !is_held_[p]) {
+      if (element_[p] >= e && !is_fixed_[p] && !is_held_[p]) {
         unknown_[p] = unknowns_++;
-      } else if (interval_[p] < 0 || is_fixed_[p]) {
+      } else if (element_[p] < 0 || is_fixed_[p] || is_shared_[p]) {
         is_held_[p] = true;
       }
     }
@@ -186,7 +212,8 @@ class Conditions {
     for (int i = 0; i < unknowns_; ++i) entries.emplace_back(i, i, diagonal_shift);
   }
 
-  /// Those that speak of unknowns, of the node and of what is held only. @return the size of the conditions
+  /// Those that speak of unknowns, of the states at the start and of what is held only. @return the size of the
+  /// conditions
   Eigen::Index add_rows(std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& right) const {
     int next = unknowns_;
     for (int row = 0; row < rows_.rows(); ++row) {
@@ -207,6 +234,8 @@ class Conditions {
   }
 
   [[nodiscard]] bool is_behind(int row) const {
+    // What is past in this interval has its controls, too.
+    if (row_element_[at(row)] >= first_element_ && row_element_[at(row)] < next_element_) return false;
     bool has_unknown = false;
     for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
       const auto place = at(entry.col());
@@ -222,11 +251,12 @@ class Conditions {
   RowMatrix rows_;
   std::vector<Eigen::Triplet<double>> hessian_;  ///< both triangles
   std::vector<bool> is_active_, is_fixed_;
-  std::vector<int> interval_;
-  // Of the node under way, by place.
+  std::vector<int> element_, row_element_;
+  std::vector<bool> is_shared_;  ///< by the elements of an interval
+  // Of the element under way, by place.
   std::vector<int> unknown_, state_;
   std::vector<bool> is_held_;
-  int unknowns_ = 0;
+  int unknowns_ = 0, first_element_ = 0, next_element_ = 0;
 };
 
 }  // namespace
@@ -237,9 +267,14 @@ std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Soluti
   problem.without_method_terms();
   problem.relaxed_by(0.0);
   Conditions conditions(problem, solution, scales);
-  std::vector<Eigen::MatrixXd> gains{Eigen::MatrixXd::Zero(controls, states)};
-  for (std::size_t k = 1; k < problem.chain()->intervals.size(); ++k) {
-    gains.push_back(conditions.gain(static_cast<int>(k), controls, states));
+  const auto& chain = *problem.chain();
+  std::vector<Eigen::MatrixXd> gains(chain.elements.size());
+  for (std::size_t k = 0; k < chain.intervals.size(); ++k) {
+    const int first = chain.intervals[k].first_element, count = scales ? chain.intervals[k].elements : 1;
+    for (int e = first; e < first + count; ++e) {
+      gains[at(e)] =
+          e == 0 ? Eigen::MatrixXd::Zero(controls, states) : conditions.gain(static_cast<int>(k), e, controls, states);
+    }
   }
   return gains;
 }

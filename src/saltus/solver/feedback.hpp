@@ -1,4 +1,4 @@
-// How the optimal controls change with the states at the nodes: gains of a feedback.
+// How controls change with the states at starts of elements: gains of a feedback.
 #pragma once
 
 #include <optional>
@@ -15,20 +15,22 @@ struct TrackingScales {
   std::vector<double> states, controls;
 };
 
-/// Returns of each interval the gain K_k = d u_k / d x_k. It says how the first `controls` variables that the interval
-/// shares change with the first `states` of its left node. Everything from there on then is optimal again to first
-/// order. The sides of all pairs, the active constraints, and the horizon stay as they are. The gain of the first
-/// interval is 0, whose node is given.
+/// Returns of each element the gain K = d u_k / d x at its start, none (0 x 0) where nothing is corrected.
 ///
-/// They are columns of the inverse of the optimality conditions from node k on. The Riccati recursion over the
+/// It says how the first `controls` variables that interval k shares change with the first `states` there, until the
+/// interval ends. The sides of all pairs and the horizon stay as they are. The gain of the first element is 0, whose
+/// start is given.
+///
+/// Without `scales` only the first elements of intervals have gains: everything from the node on then is optimal again
+/// to first order, with the same active constraints. With `scales` all elements have those of a controller that tracks
+/// the plan instead: it minimises the sum of (d u / scale)^2 over this interval and those behind, and of
+/// (d x / scale)^2 at their ends. Inequalities and bounds say nothing to it: what is off may be on either side of them.
+///
+/// They are columns of the inverse of the optimality conditions of what is behind. The Riccati recursion over the
 /// linearised intervals gives the same. Both diagonals have 1e-9 added, so that rows that depend on each other do no
 /// harm.
-///
-/// With `scales` the gains are those of a controller that tracks the plan instead: it minimises the sum over all
-/// intervals behind of (d x / scale)^2 at their ends and (d u / scale)^2, with the sides of the plan. Inequalities and
-/// bounds say nothing to it: what is off may be on either side of them.
 /// @param problem  with a chain; else there are none
-/// Cost: per interval a sparse factorisation of what is behind it.
+/// Cost: per gain a sparse factorisation of what is behind it.
 [[nodiscard]] std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Solution& solution,
                                                           int controls, int states,
                                                           const std::optional<TrackingScales>& scales = {});

@@ -41,23 +41,64 @@ model::System with_parameters_as_controls(model::System system, const OptimizedP
   return system;
 }
 
-/// Rows of equal distance in each interval.
-constexpr std::size_t rows_of_interval = 20;
+/// Rows of equal distance between two corrections.
+constexpr std::size_t rows_between = 10;
+/// Of the mean interval: elements that start so near to each other start at one time, as where time is frozen.
+constexpr double one_time = 1e-6;
 
-/// The state of the plan that a state at node k is compared with: where the plan jumps there, the nearer one. A body
-/// that lands a little later than planned is off by nothing, and not by the velocity that the collision takes.
-const std::vector<double>& planned_state(const OptimizedPath& path, std::size_t k, const std::vector<double>& x) {
-  const auto& behind = path.nodes[k];
-  if (k == 0 || path.ends.empty()) return behind;
+/// Holds a time at which the controls of an interval are corrected, and what the state there is compared with.
+struct Correction {
+  double t = 0.0;
+  std::size_t interval = 0;
+  const std::vector<double>*before = nullptr, *behind = nullptr;  ///< different where the plan jumps
+  const Eigen::MatrixXd* gain = nullptr;
+};
+
+std::vector<Correction> corrections_of(const OptimizedPath& path, const std::vector<Eigen::MatrixXd>& gains) {
+  std::vector<Correction> list;
+  const double rounding =
+      one_time * (path.times.back() - path.times.front()) / static_cast<double>(path.controls.size());
+  for (std::size_t e = 0; e < path.elements.size(); ++e) {
+    const auto& start = path.elements[e];
+    if (list.empty() || start.t - list.back().t > rounding) {
+      list.push_back({.t = start.t, .before = &start.x});
+    }
+    auto& last = list.back();
+    last.interval = start.interval;
+    last.behind = &start.x;
+    if (gains[e].size() > 0) last.gain = &gains[e];
+  }
+  std::erase_if(list, [](const Correction& one) { return one.gain == nullptr; });
+  return list;
+}
+
+/// The state of the plan that a state is compared with: where the plan jumps, the nearer one. A body that lands a
+/// little later than planned is off by nothing, and not by the velocity that the collision takes.
+const std::vector<double>& planned_state(const OptimizedPath& path, const Correction& one,
+                                         const std::vector<double>& x) {
   const auto distance = [&](const std::vector<double>& planned) {
     double square = 0.0;
-    for (std::size_t i = 0; i < path.state_max.size(); ++i) {
+    for (std::size_t i = 0; i < planned.size(); ++i) {
       const double range = path.state_max[i] - path.state_min[i];
       if (range > 0.0) square += std::pow((x[i] - planned[i]) / range, 2);
     }
     return square;
   };
-  return distance(path.ends[k - 1]) < distance(behind) ? path.ends[k - 1] : behind;
+  return distance(*one.before) < distance(*one.behind) ? *one.before : *one.behind;
+}
+
+/// The controls of its interval, moved onto their bounds.
+std::vector<double> corrected_controls(const model::Ocp& ocp, const OptimizedPath& path, const Correction& one,
+                                       const std::vector<double>& x) {
+  const auto& planned = planned_state(path, one, x);
+  Eigen::VectorXd off(one.gain->cols());
+  for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = x[at(i)] - planned[at(i)];
+  const Eigen::VectorXd change = *one.gain * off;
+  std::vector<double> controls = path.controls[one.interval];
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    controls[i] = std::clamp(controls[i] + change[index(i)], ocp.system.control_lower[i], ocp.system.control_upper[i]);
+  }
+  return controls;
 }
 
 }  // namespace
@@ -66,27 +107,24 @@ Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, cons
                                                      const std::vector<Eigen::MatrixXd>& gains,
                                                      const std::function<bool()>& is_interrupted) {
   model::System system = with_parameters_as_controls(optimised_plant(ocp, path), path);
-  const std::size_t first = path.parameters.size();
+  const auto first = index(path.parameters.size());
   const auto observer = [&](const result::Progress&) {
     return is_interrupted && is_interrupted() ? result::Continue::no : result::Continue::yes;
   };
   KernelStore kernels;
   Resimulation::Segment whole;
   std::vector<double> x = system.initial_state;
-  for (std::size_t k = 0; k < path.controls.size(); ++k) {
-    const auto& planned = planned_state(path, k, x);
-    Eigen::VectorXd off(gains[k].cols());
-    for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = x[at(i)] - planned[at(i)];
-    const Eigen::VectorXd change = gains[k] * off;
-    for (std::size_t i = 0; i < path.controls[k].size(); ++i) {
-      const double u = path.controls[k][i] + change[index(i)];
-      system.parameter_values[first + i] = std::clamp(u, ocp.system.control_lower[i], ocp.system.control_upper[i]);
-    }
+  const auto corrections = corrections_of(path, gains);
+  for (std::size_t j = 0; j < corrections.size(); ++j) {
+    const auto& one = corrections[j];
+    const double until = j + 1 < corrections.size() ? corrections[j + 1].t : path.times.back();
+    const auto controls = corrected_controls(ocp, path, one, x);
+    std::copy(controls.begin(), controls.end(), system.parameter_values.begin() + first);
     system.initial_state = x;
     auto kept = kernels.take(system, evaluation::NativeCode::automatic);
     if (!kept) return tl::unexpected(kept.error());
-    Integration run = event_integrator::integrate(
-        kept->kernel, system, resimulation_options(path.times[k], path.times[k + 1], rows_of_interval), observer);
+    Integration run =
+        event_integrator::integrate(kept->kernel, system, resimulation_options(one.t, until, rows_between), observer);
     kernels.give_back(std::move(*kept));
     auto& rows = whole.run.trajectory;
     for (std::size_t i = 0; i < run.trajectory.t.size(); ++i) {
@@ -98,7 +136,7 @@ Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, cons
     x.resize(system.state_names.size(), 0.0);
     whole.run.final = std::move(run.final);
     whole.run.status = std::move(run.status);
-    const bool is_at_end = whole.run.status.time_reached >= path.times[k + 1] &&
+    const bool is_at_end = whole.run.status.time_reached >= until &&
                            std::all_of(x.begin(), x.end(), [](double value) { return std::isfinite(value); });
     if (!is_at_end || whole.run.status.termination == Termination::stopped_by_user) return whole;
   }

@@ -218,12 +218,16 @@ OptimizedPath path_of(const OcpSolution& solution, const std::vector<double>& ti
     }
   };
   for (const auto& interval : solution.elements) {
+    double t = times[path.nodes.size() - 1];
+    auto left = path.nodes.back();
     for (const auto& element : interval) {
       for (Eigen::Index m = 0; m < element.states.cols(); ++m) include(element.states.col(m));
       include(element.end);
+      path.elements.push_back({t, path.nodes.size() - 1, std::move(left)});
+      left = list_of(element.end);
+      t += element.h;
     }
-    const auto& end = interval.back().end;
-    path.nodes.emplace_back(end.data(), end.data() + end.size());
+    path.nodes.push_back(std::move(left));
   }
   return path;
 }

@@ -13,6 +13,13 @@
 
 namespace saltus::pipeline {
 
+/// Holds where an element of a solution starts, in the time of OptimizedPath::times.
+struct ElementStart {
+  double t = 0.0;
+  std::size_t interval = 0;
+  std::vector<double> x;
+};
+
 /// Holds an optimised trajectory, as far as it is simulated again.
 struct OptimizedPath {
   double horizon = 0.0;
@@ -22,6 +29,7 @@ struct OptimizedPath {
   std::vector<std::vector<double>> nodes;  ///< N + 1 states
   /// Where states jump at nodes: N states at the ends of intervals before that; else empty.
   std::vector<std::vector<double>> ends{};
+  std::vector<ElementStart> elements{};       ///< of all intervals, those of length zero, too
   std::vector<std::vector<double>> controls;  ///< N rows, all controls of Ocp::system
   /// Of each state the largest and smallest value of the solution at nodes and stages.
   std::vector<double> state_max, state_min;
@@ -33,8 +41,8 @@ struct OptimizedPath {
 /// Holds what is asked of the truth check.
 struct VerificationWanted {
   double tolerance = 1e-3;
-  /// K_k of every interval, over all controls and the states of the result: the controls are simulated with this
-  /// feedback, too. None: they are not.
+  /// Of every element, over all controls and the states of the result (0 x 0: corrects nothing): the controls are
+  /// simulated with this feedback, too. None: they are not.
   std::vector<Eigen::MatrixXd> gains{};
 };
 

@@ -84,11 +84,11 @@ constexpr std::array method_fields{
     choice_field<start_values_of, start_words, OptimizeOptions>(
         "start", "What selections and multipliers begin with: middle values, or those of a simulation of the guess."),
     truth_field<closed_loop_of, OptimizeOptions>(
-        "closed_loop", "Simulate the controls with feedback from the states at the nodes, too, beside the open loop."),
+        "closed_loop", "Simulate the controls with feedback from the states, too, beside the open loop."),
     choice_field<feedback_of, feedback_words, OptimizeOptions>(
         "feedback",
-        "Gains of `closed_loop`: how the optimal controls change with the state, or a controller that tracks "
-        "the plan."),
+        "Gains of `closed_loop`: how the optimal controls change with the states at nodes, or a controller that tracks "
+        "the plan from element to element."),
     number_field<verification_of, OptimizeOptions>(
         "verification_tolerance", positive_number,
         "Of the defects of intervals that are simulated again, relative to the range of each state."),

@@ -5,6 +5,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
+#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
 namespace saltus::pipeline {
 
@@ -69,6 +70,10 @@ OptimizedPath physical_path(const model::Ocp& ocp, PhysicalBodies& bodies, const
     if (k > 0) physical.ends.push_back(std::move(end));
     physical.times[k] = t;
     physical.nodes[k] = std::move(node);
+  }
+  for (auto& start : physical.elements) {
+    start.t = start.x[at(ocp.system.freezing->clock)];
+    start.x = shown_states(ocp.system, start.x);
   }
   for (auto* range : {&physical.state_max, &physical.state_min}) {
     range->resize(shown);
