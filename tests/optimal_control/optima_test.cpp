@@ -78,7 +78,9 @@ terminal_cost = "x"
 /// A ball that comes nowhere near the ground: the rate of its gap says nothing, so that it may change its sign. By
 /// quadrature J = 1.0403050; an optimiser that holds the rate at 0 hovers, with J = 1.4224.
 TEST(OcpOptima, RatesOfOpenGapsAreNotHeld) {
-  for (const std::string form : {"", "reformulation = \"stewart\"\n", "elements = 4\n"}) {
+  for (const std::string form : {"stages = 2\n", "stages = 2\nreformulation = \"stewart\"\n", "stages = 2\nelements = 4\n",
+                                 "stages = 3\nreformulation = \"stewart\"\n",
+                                 "stages = 4\nreformulation = \"stewart\"\n"}) {
     const auto result = optimized(stated(R"toml(
 [model]
 name = "flying"
@@ -100,7 +102,6 @@ horizon = 1
 control_intervals = 2
 running_cost = "0.01*u^2 + (x - 0.2)^2"
 terminal_cost = "5*(x - 0.6)^2 + v^2"
-stages = 2
 )toml" + form));
     EXPECT_EQ(result.status.termination, Termination::completed) << form << ": " << result.status.message;
     EXPECT_NEAR(result.optimization->objective, 1.0403050, 1e-4) << form;
