@@ -42,8 +42,7 @@ constexpr double small_barrier = 1e-7;
 constexpr int patience_at_optimum = 4;
 /// Below these violations, barrier parameters and gradients of the Lagrangian an objective is that of the solution but
 /// for this, relative above 1. The barrier parameter alone says nothing: it falls far from any solution, too.
-constexpr double nearly_feasible = 1e-5;
-constexpr double nearly_stationary = 1e-2;
+constexpr double nearly_solved = 1e-5;
 constexpr double nearly_optimal = 1e-4;
 
 }  // namespace
@@ -71,8 +70,8 @@ void IpoptProgram::watch(double objective, double primal_infeasibility, double d
   const bool is_equal = std::abs(objective - last_objective_) <= equal_objective * std::max(1.0, std::abs(objective));
   last_objective_ = objective;
   const double scale = std::max(1.0, std::abs(cutoff_));
-  is_cut_off_ = std::max(primal_infeasibility, mu) <= nearly_feasible &&
-                dual_infeasibility <= nearly_stationary * scale && objective > cutoff_ + nearly_optimal * scale;
+  is_cut_off_ = std::max({primal_infeasibility, dual_infeasibility, mu}) <= nearly_solved &&
+                objective > cutoff_ + nearly_optimal * scale;
   is_near_ = primal_infeasibility <= feasible_ && mu <= small_barrier;
   equal_ = is_near_ && is_equal ? equal_ + 1 : 0;
   if (!is_near_ || !(dual_infeasibility < best_error_)) return;
