@@ -97,8 +97,10 @@ class Descent {
     }
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
     // A certified point is not given up for digits of its objective.
+    const auto& of = run_.solution.certificate;
+    const bool is_certified = of.b_stationary.value_or(false) && of.stationarity <= tolerance();
     const double least = tolerance() * std::max(1.0, std::abs(branch().objective));
-    if (run_.solution.certificate.b_stationary.value_or(false) && branch().objective - next.objective < least) {
+    if (is_certified && branch().objective - next.objective < least) {
       return false;
     }
     run_.branch = std::move(next);
