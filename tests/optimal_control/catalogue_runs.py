@@ -18,8 +18,8 @@ SECONDS, SECONDS_OF_LONG = 1500 if "--all" in sys.argv else 480, 10
 
 # Beside the catalogue.
 EXAMPLES = [MODELS.parent / "examples" / "contacts" / f"{name}.toml"
-            for name in ("two-carts", "carts-apart", "carts-on-ground", "carts-apart-on-ground", "discs-switch",
-                         "ball-across", "throw-mirrored", "hopper-hop", "leg-hop")]
+            for name in ("two-carts", "carts-apart", "carts-on-ground", "carts-with-friction", "carts-apart-on-ground",
+                         "discs-switch", "ball-across", "throw-mirrored", "throwing-ball", "hopper-hop", "leg-hop")]
 
 
 def problems():

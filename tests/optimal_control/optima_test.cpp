@@ -78,7 +78,9 @@ terminal_cost = "x"
 /// A ball that comes nowhere near the ground: the rate of its gap says nothing, so that it may change its sign. By
 /// quadrature J = 1.0403050; an optimiser that holds the rate at 0 hovers, with J = 1.4224.
 TEST(OcpOptima, RatesOfOpenGapsAreNotHeld) {
-  for (const std::string form : {"", "reformulation = \"stewart\"\n", "elements = 4\n"}) {
+  for (const std::string form :
+       {"stages = 2\n", "stages = 2\nreformulation = \"stewart\"\n", "stages = 2\nelements = 4\n",
+        "stages = 3\nreformulation = \"stewart\"\n", "stages = 4\nreformulation = \"stewart\"\n"}) {
     const auto result = optimized(stated(R"toml(
 [model]
 name = "flying"
@@ -100,7 +102,6 @@ horizon = 1
 control_intervals = 2
 running_cost = "0.01*u^2 + (x - 0.2)^2"
 terminal_cost = "5*(x - 0.6)^2 + v^2"
-stages = 2
 )toml" + form));
     EXPECT_EQ(result.status.termination, Termination::completed) << form << ": " << result.status.message;
     EXPECT_NEAR(result.optimization->objective, 1.0403050, 1e-4) << form;
@@ -196,6 +197,35 @@ reformulation = "stewart"
 )toml"));
   EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_LT(result.optimization->objective, 0.195);
+}
+
+/// x and y come to 0 at one time, and stay there. One after the other is better, best without control; three elements
+/// have room for less of that, as y may not come to 0 before a third of the interval.
+TEST(OcpOptima, SignsThatChangeTogetherAreTakenApart) {
+  for (const auto& [elements, optimum] : {std::pair{3, 4.6237113}, std::pair{4, 4.292685}}) {
+    const auto result = optimized(stated(R"toml(
+[model]
+name = "together"
+[states]
+x = -0.10580160715591802
+y = -0.1893883973052961
+[controls]
+u = { lower = -3, upper = 3 }
+[dynamics]
+x = "u - 1.928*sign(x) - 0.290*sign(y)"
+y = "0.5*u - 1.482*sign(y) + 0.098*x"
+[optimize]
+horizon = 2
+control_intervals = 2
+running_cost = "0.1*u^2"
+terminal_cost = "5*(x + 0.069)^2 + 5*(y - 0.924)^2"
+stages = 4
+reformulation = "stewart"
+elements = )toml" + std::to_string(elements) +
+                                         "\n"));
+    EXPECT_EQ(result.status.termination, Termination::completed) << elements << ": " << result.status.message;
+    EXPECT_NEAR(result.optimization->objective, optimum, 1e-6) << elements;
+  }
 }
 
 TEST(OcpOptima, TurboCar) {

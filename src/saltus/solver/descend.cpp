@@ -44,6 +44,8 @@ double seconds_of_lpcc(const Run& run) {
 /// Improvements below are rounding.
 bool falls(double before, double after) { return after < before - 1e-11 * std::max(1.0, std::abs(before)); }
 
+bool is_equal(double a, double b) { return !falls(a, b) && !falls(b, a); }
+
 /// The branch that has been found, and what is known of it.
 class Descent {
  public:
@@ -88,10 +90,17 @@ class Descent {
             int iterations = branch_iterations) {
     if (!visited_.insert(sides).second) return false;
     crossover::Branch next = run_.solve_branch(sides, from, iterations, message, branch().objective);
+    // It is where it began, and may need more to leave.
+    if (next.report.termination == Termination::iteration_limit && next.is_feasible(tolerance()) &&
+        is_equal(branch().objective, next.objective)) {
+      next = run_.solve_branch(sides, next.w, branch_iterations, message, branch().objective);
+    }
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
     // A certified point is not given up for digits of its objective.
+    const auto& of = run_.solution.certificate;
+    const bool is_certified = of.b_stationary.value_or(false) && of.stationarity <= tolerance();
     const double least = tolerance() * std::max(1.0, std::abs(branch().objective));
-    if (run_.solution.certificate.b_stationary.value_or(false) && branch().objective - next.objective < least) {
+    if (is_certified && branch().objective - next.objective < least) {
       return false;
     }
     run_.branch = std::move(next);

@@ -40,8 +40,9 @@ constexpr double equal_objective = 1e-11;
 constexpr double feasible = 1e-9;
 constexpr double small_barrier = 1e-7;
 constexpr int patience_at_optimum = 4;
-/// Below these violations and barrier parameters an objective is that of the solution but for this, relative above 1.
-constexpr double nearly_feasible = 1e-5;
+/// Below these violations, barrier parameters and gradients of the Lagrangian an objective is that of the solution but
+/// for this, relative above 1. The barrier parameter alone says nothing: it falls far from any solution, too.
+constexpr double nearly_solved = 1e-5;
 constexpr double nearly_optimal = 1e-4;
 
 }  // namespace
@@ -68,8 +69,9 @@ void IpoptProgram::watch(double objective, double primal_infeasibility, double d
                          const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities) {
   const bool is_equal = std::abs(objective - last_objective_) <= equal_objective * std::max(1.0, std::abs(objective));
   last_objective_ = objective;
-  is_cut_off_ = std::max(primal_infeasibility, mu) <= nearly_feasible &&
-                objective > cutoff_ + nearly_optimal * std::max(1.0, std::abs(cutoff_));
+  const double scale = std::max(1.0, std::abs(cutoff_));
+  is_cut_off_ = std::max({primal_infeasibility, dual_infeasibility, mu}) <= nearly_solved &&
+                objective > cutoff_ + nearly_optimal * scale;
   is_near_ = primal_infeasibility <= feasible_ && mu <= small_barrier;
   equal_ = is_near_ && is_equal ? equal_ + 1 : 0;
   if (!is_near_ || !(dual_infeasibility < best_error_)) return;
