@@ -131,6 +131,18 @@ class TimeFreezing(FrozenTest):
         self.assertEqual(rows["t"], sorted(rows["t"]))
         self.assertEqual(rows["t"].count(frozen["events"][0]["t"]), 2)
 
+    def test_what_is_unique_beside_a_contact_at_rest(self):
+        # A relay slides from 0.1 on, until its field turns at 0.5: then it leaves to either side.
+        relay = LANDING[:LANDING.index("[controls]")] + "r = 0.1\n[dynamics]\nr = 'if(t < 0.5, -1, 1)*sign(r)'\n"
+        relay += LANDING[LANDING.index("[mechanics]"):LANDING.index("[optimize]")].replace("u - 9.81", "-9.81")
+        relay = relay.replace("z = 0.5", "z = 0") + "[simulate]\nuntil = 0.6\n"
+        frozen = self.simulated(relay, "fesd")
+        self.assertEqual([e["surfaces"] for e in frozen["events"]], [["r"], ["0.5-t"]])
+        self.assertEqual([e["unique"] for e in frozen["events"]], [True, False])
+        self.assertEqual([len(e["alternatives"]) for e in frozen["events"]], [0, 2])
+        for event, t in zip(frozen["events"], (0.1, 0.5)):
+            self.assertAlmostEqual(event["t"], t, delta=1e-9)
+
     def test_an_impact_ends_whatever_force_and_steps_are(self):
         landing = LANDING[:LANDING.index("[optimize]")] + "[simulate]\nuntil = 0.6\n"
         for force in (1, 9.81, 100):
