@@ -162,7 +162,8 @@ Transition::Trial Transition::try_element(const Decision& decision, const Group&
     if (!contains(members, condition.selection)) continue;
     const double value = watch_.end_value(candidate.set, condition), rounding = clear * watch_.noise(condition);
     if (value < -rounding) return Trial::fails;
-    stays = stays || !(value > rounding);
+    if (value > rounding) continue;
+    stays = true;
     moves = moves || condition.kind != Condition::Kind::side || value != watch_.left_value(candidate.set, condition);
   }
   return !stays ? Trial::holds : moves || decision.before == nullptr ? Trial::stays : Trial::stands;
