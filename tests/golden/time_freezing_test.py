@@ -153,6 +153,20 @@ class TimeFreezing(FrozenTest):
                 self.assertEqual([e["kind"] for e in frozen["events"]], ["impact"])
                 self.assertEqual(frozen["final"]["contact_modes"], ["closed"])
 
+    def test_impulses_of_a_rod(self):
+        # Its gaps are curved, and stand still at zero where their ends slip, stick and turn.
+        for steps in (100, 300):
+            options = ("--set", "simulate.fesd.stages=3", "--set", f"simulate.fesd.steps={steps}")
+            found = []
+            for method, more in (("event", ()), ("fesd", options)):
+                self.run_tool("simulate", "falling-rod", "--method", method, "--until", "0.49", "--quiet", "--out",
+                              "r.json", *more, code=0)
+                events = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["events"]
+                self.assertEqual([e["kind"] for e in events], ["impact", "slip", "impact"])
+                found.append([normal for e in events[::2] for normal, _ in e["impulse"]])
+            for expected, impulse in zip(*found):
+                self.assertAlmostEqual(expected, impulse, delta=1e-7)
+
     def test_restitution_holds_with_any_mass_and_gap(self):
         _, frozen = self.assert_agree(BOWL, 1e-8, "--set", "simulate.fesd.stages=3")
         hit = frozen["events"][0]
