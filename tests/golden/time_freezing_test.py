@@ -131,6 +131,18 @@ class TimeFreezing(FrozenTest):
         self.assertEqual(rows["t"], sorted(rows["t"]))
         self.assertEqual(rows["t"].count(frozen["events"][0]["t"]), 2)
 
+    def test_what_is_unique_beside_a_contact_at_rest(self):
+        # A relay slides from 0.1 on, until its field turns at 0.5: then it leaves to either side.
+        relay = LANDING[:LANDING.index("[controls]")] + "r = 0.1\n[dynamics]\nr = 'if(t < 0.5, -1, 1)*sign(r)'\n"
+        relay += LANDING[LANDING.index("[mechanics]"):LANDING.index("[optimize]")].replace("u - 9.81", "-9.81")
+        relay = relay.replace("z = 0.5", "z = 0") + "[simulate]\nuntil = 0.6\n"
+        frozen = self.simulated(relay, "fesd")
+        self.assertEqual([e["surfaces"] for e in frozen["events"]], [["r"], ["0.5-t"]])
+        self.assertEqual([e["unique"] for e in frozen["events"]], [True, False])
+        self.assertEqual([len(e["alternatives"]) for e in frozen["events"]], [0, 2])
+        for event, t in zip(frozen["events"], (0.1, 0.5)):
+            self.assertAlmostEqual(event["t"], t, delta=1e-9)
+
     def test_an_impact_ends_whatever_force_and_steps_are(self):
         landing = LANDING[:LANDING.index("[optimize]")] + "[simulate]\nuntil = 0.6\n"
         for force in (1, 9.81, 100):
@@ -140,6 +152,20 @@ class TimeFreezing(FrozenTest):
                 self.assertAlmostEqual(frozen["events"][0]["t"], math.sqrt(1 / 9.81), delta=1e-9)
                 self.assertEqual([e["kind"] for e in frozen["events"]], ["impact"])
                 self.assertEqual(frozen["final"]["contact_modes"], ["closed"])
+
+    def test_impulses_of_a_rod(self):
+        # Its gaps are curved, and stand still at zero where their ends slip, stick and turn.
+        for steps in (100, 300):
+            options = ("--set", "simulate.fesd.stages=3", "--set", f"simulate.fesd.steps={steps}")
+            found = []
+            for method, more in (("event", ()), ("fesd", options)):
+                self.run_tool("simulate", "falling-rod", "--method", method, "--until", "0.49", "--quiet", "--out",
+                              "r.json", *more, code=0)
+                events = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["events"]
+                self.assertEqual([e["kind"] for e in events], ["impact", "slip", "impact"])
+                found.append([normal for e in events[::2] for normal, _ in e["impulse"]])
+            for expected, impulse in zip(*found):
+                self.assertAlmostEqual(expected, impulse, delta=1e-7)
 
     def test_restitution_holds_with_any_mass_and_gap(self):
         _, frozen = self.assert_agree(BOWL, 1e-8, "--set", "simulate.fesd.stages=3")

@@ -17,6 +17,14 @@ mpcc::Pattern pattern_of(const SX& matrix) {
   return pattern;
 }
 
+/// The lower triangle of the Hessian. Colours of a symmetric matrix save derivatives where it is sparse; to find them
+/// takes minutes where it is dense, as behind step equilibration with hundreds of selections.
+SX lower_hessian(const SX& lagrangian, const SX& z) {
+  const SX gradient = SX::gradient(lagrangian, z);
+  const bool is_dense = 2 * SX::jacobian_sparsity(gradient, z).nnz() > z.numel() * z.numel();
+  return SX::tril(SX::jacobian(gradient, z, {{"symmetric", !is_dense}}));
+}
+
 SX column_of(const std::vector<SX>& scalars) { return scalars.empty() ? SX(0, 1) : SX::vertcat(scalars); }
 
 }  // namespace
@@ -48,7 +56,7 @@ LocalFunction::LocalFunction(const std::string& name, const SX& z, const SX& par
   const SX y = SX::sym("y", rows.numel());
   const SX jacobian = SX::jacobian(rows, z);
   const SX gradient = SX::gradient(expressions.objective, z);
-  const SX hessian = SX::tril(SX::hessian(factor * expressions.objective + SX::dot(y, rows), z));
+  const SX hessian = lower_hessian(factor * expressions.objective + SX::dot(y, rows), z);
   jacobian_pattern_ = pattern_of(jacobian);
   hessian_pattern_ = pattern_of(hessian);
   values_ = model::ModelFunction(name, {z, parameters}, {expressions.objective, rows});

@@ -41,16 +41,24 @@ bool Transition::slides_beside(const Option& sliding, const Option& beside) {
   return true;
 }
 
+/// Whether what one slides on has not moved at all while the other one was beside it.
+bool Transition::stands_still(const Option& beside, const Option& sliding, const Group& group) {
+  for (std::size_t k = 0; k < beside.pattern.size(); ++k) {
+    if (beside.pattern[k] != sliding.pattern[k] && !contains(beside.still, group.members[k])) return false;
+  }
+  return true;
+}
+
 /// Whether an option is no other continuation than this one: it moves in the same way, and its selections follow from
 /// higher derivatives where this one has its own; or it is a side that psi stays at without leaving zero; or it slides
 /// where psi does not move at all on a side: nothing may determine its selections a little later.
-bool Transition::stands_for(const Option& option, const Option& other) {
+bool Transition::stands_for(const Option& option, const Option& other, const Group& group) {
   const bool regular = option.regular && other.regular;
   if (!(regular ? are_near(option.selections, other.selections) : are_near(option.motion, other.motion))) return false;
   if (option.regular != other.regular) return option.regular;
-  if (slides_beside(other, option)) return option.trial == Trial::stands && regular;
+  if (slides_beside(other, option)) return regular && stands_still(option, other, group);
   if (!slides_beside(option, other)) return false;
-  return other.trial == Trial::stays || (other.trial == Trial::stands && !regular);
+  return other.trial == Trial::stays && !(regular && stands_still(other, option, group));
 }
 
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
@@ -149,7 +157,7 @@ bool Transition::take_from_trial(const Decision& decision, Continuation& candida
 
 /// By the end of an element: where psi leaves zero like t^3 its polynomial has other signs on the way.
 Transition::Trial Transition::try_element(const Decision& decision, const Group& group, const Continuation& candidate,
-                                          double length) {
+                                          double length, std::vector<int>& still) {
   if (solve_trial(decision, candidate, length) != ElementSolver::Outcome::solved) return Trial::unsolved;
   auto selections = candidate.selections;
   Violation ignored;
@@ -157,37 +165,44 @@ Transition::Trial Transition::try_element(const Decision& decision, const Group&
   const auto answer = watch_.look(trial_, candidate.set, decision.held, selections, ignored, members);
   if (answer == Watch::Answer::not_finite) return Trial::unsolved;
   constexpr double clear = 16.0;  // of roundings
-  bool stays = false, moves = false;
+  bool stays = false;
+  still.clear();
   for (const Condition& condition : candidate.set.conditions()) {
     if (!contains(members, condition.selection)) continue;
     const double value = watch_.end_value(candidate.set, condition), rounding = clear * watch_.noise(condition);
     if (value < -rounding) return Trial::fails;
-    stays = stays || !(value > rounding);
-    moves = moves || condition.kind != Condition::Kind::side || value != watch_.left_value(candidate.set, condition);
+    if (value > rounding) continue;
+    stays = true;
+    const bool is_side = condition.kind == Condition::Kind::side;
+    if (is_side && decision.before != nullptr && value == watch_.left_value(candidate.set, condition))
+      still.push_back(condition.selection);
   }
-  return !stays ? Trial::holds : moves || decision.before == nullptr ? Trial::stays : Trial::stands;
+  return stays ? Trial::stays : Trial::holds;
 }
 
 /// By the shortest element behind which signs are clear of their roundings: psi may leave zero like t^3 or t^4.
-Transition::Trial Transition::try_elements(const Decision& decision, const Group& group,
-                                           const Continuation& candidate) {
+void Transition::try_elements(const Decision& decision, const Group& group, const Continuation& candidate,
+                              Option& option) {
   const auto attempt = [&](double factor) {
-    return try_element(decision, group, candidate, factor * decision.trial_length);
+    return try_element(decision, group, candidate, factor * decision.trial_length, option.still);
   };
-  Trial trial = attempt(1.0);
-  if (trial == Trial::fails) {
+  option.trial = attempt(1.0);
+  if (option.trial == Trial::fails) {
     // What ends inside of the trial is the next switch.
-    const Trial nearer = attempt(0.125);
-    return nearer == Trial::holds ? nearer : trial;
+    if (attempt(0.125) == Trial::holds) option.trial = Trial::holds;
+    return;
   }
   // The trial length is the 128th part of an element.
   for (const double factor : {8.0, 64.0}) {
-    if (trial != Trial::stays && trial != Trial::stands) break;
+    if (option.trial != Trial::stays) break;
+    const auto still = option.still;
     const Trial longer = attempt(factor);
-    if (longer == Trial::unsolved) break;
-    trial = longer;
+    if (longer == Trial::unsolved) {
+      option.still = still;
+      break;
+    }
+    option.trial = longer;
   }
-  return trial;
 }
 
 std::vector<Continuation> Transition::continuations(const Decision& decision) {
@@ -235,7 +250,7 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
     if (option.margin <= undecided || group.dependent) {
       if (margin(decision, group, candidate) < -undecided) continue;
       option.regular = projected_.regular();
-      option.trial = try_elements(decision, group, candidate);
+      try_elements(decision, group, candidate, option);
       if (option.trial == Trial::fails || option.trial == Trial::unsolved) continue;
       option.motion = projected_.values().f;
     }
@@ -245,7 +260,7 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
   }
   std::vector<std::vector<int>> admissible;
   for (const Option& option : passed) {
-    const auto known = [&](const Option& other) { return stands_for(other, option); };
+    const auto known = [&](const Option& other) { return stands_for(other, option, group); };
     if (std::none_of(passed.begin(), passed.end(), known)) admissible.push_back(option.pattern);
   }
   return admissible;

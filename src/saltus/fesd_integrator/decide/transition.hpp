@@ -103,14 +103,14 @@ class Transition {
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
                                    Continuation& candidate);
-  /// What a short element says of a set: its signs hold behind it, or not, or are within their roundings, or nothing
-  /// that has a sign moves.
-  enum class Trial { holds, fails, stays, stands, unsolved };
+  /// What a short element says of a set: its signs hold behind it, or not, or are within their roundings.
+  enum class Trial { holds, fails, stays, unsolved };
   /// A pattern that may continue the solution.
   struct Option {
     std::vector<int> pattern;
     double margin = 0.0;
     Trial trial = Trial::holds;
+    std::vector<int> still = {};  ///< members whose psi is at zero, and has not moved at all, behind the trial
     std::vector<double> selections = {}, motion = {};  ///< if rates do not decide; of all states
     bool regular = true;                               ///< whether first derivatives determine the selections
   };
@@ -121,14 +121,15 @@ class Transition {
                                                             std::vector<Option> options, const std::vector<int>& guess);
   [[nodiscard]] std::optional<Continuation> continuation_in(const Decision& decision, const std::vector<int>& modes);
   [[nodiscard]] static bool slides_beside(const Option& sliding, const Option& beside);
-  [[nodiscard]] static bool stands_for(const Option& option, const Option& other);
+  [[nodiscard]] static bool stands_still(const Option& beside, const Option& sliding, const Group& group);
+  [[nodiscard]] static bool stands_for(const Option& option, const Option& other, const Group& group);
   [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate,
                                                    double length);
   [[nodiscard]] bool follows_from_trial(const Continuation& candidate) const;
   [[nodiscard]] bool take_from_trial(const Decision& decision, Continuation& candidate);
   [[nodiscard]] Trial try_element(const Decision& decision, const Group& group, const Continuation& candidate,
-                                  double length);
-  [[nodiscard]] Trial try_elements(const Decision& decision, const Group& group, const Continuation& candidate);
+                                  double length, std::vector<int>& still);
+  void try_elements(const Decision& decision, const Group& group, const Continuation& candidate, Option& option);
 
   const discretization::StageKernel& kernel_;
   std::span<const Part> parts_;

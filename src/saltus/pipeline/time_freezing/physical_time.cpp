@@ -197,7 +197,8 @@ class PhysicalTime {
   [[nodiscard]] std::vector<ContactMode> contact_modes(const Mode& mode) const {
     std::vector<ContactMode> modes;
     for (const auto& contact : freezing_.contacts) {
-      const bool closed = mode_of(contact.normal, mode) == 0 && mode_of(contact.gap, mode) <= 0;
+      // A gap that stays 0 keeps its rate at 0, whatever side the rate's own selection takes.
+      const bool closed = mode_of(contact.normal, mode) <= 0 && mode_of(contact.gap, mode) <= 0;
       const bool sticks = contact.tangent.function >= 0 && mode_of(contact.tangent, mode) == 0;
       modes.push_back(!closed                        ? ContactMode::open
                       : contact.tangent.function < 0 ? ContactMode::closed
@@ -333,8 +334,38 @@ class PhysicalTime {
         event.kind = one.kind;
       }
     }
-    event.alternatives.clear();
+    take_alternatives(here, event);
     event.reason = last.reason;
+  }
+
+  /// What could follow instead, as far as it can be seen: selections of a contact that persists are not unique, the
+  /// motion is.
+  void take_alternatives(const std::vector<Event>& here, Event& event) const {
+    event.alternatives.clear();
+    event.unique = true;
+    for (const auto& one : here) {
+      if (one.kind == EventKind::user) continue;
+      bool is_seen = one.alternatives.empty();
+      for (const auto& other : one.alternatives) {
+        if (is_taken(other, one)) continue;
+        is_seen = true;
+        result::Alternative shown{kept(other.mode), kept(other.alpha), {}};
+        if (shows_regions_) shown.regions = other.regions;
+        const auto is_known = [&](const auto& known) {
+          return known.mode == shown.mode && known.regions == shown.regions;
+        };
+        if (std::none_of(event.alternatives.begin(), event.alternatives.end(), is_known))
+          event.alternatives.push_back(std::move(shown));
+      }
+      if (is_seen && one.unique != true && event.unique != false) event.unique = one.unique;
+    }
+  }
+
+  /// Whether an alternative is what goes on, but for selections that are hidden.
+  [[nodiscard]] bool is_taken(const result::Alternative& other, const Event& event) const {
+    const bool same_regions = !shows_regions_ || !event.regions_after || other.regions == *event.regions_after;
+    return same_regions && event.mode_after && kept(other.mode) == kept(*event.mode_after) &&
+           contact_modes(other.mode) == contact_modes(*event.mode_after);
   }
 
   const model::System& system_;

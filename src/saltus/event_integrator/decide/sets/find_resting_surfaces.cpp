@@ -167,14 +167,13 @@ RestingSurfaces find_resting_surfaces(const SwitchingContext& switching_context,
 
 void add_kept_kinks(const SwitchingContext& s, const Projection& project, double t, const std::vector<double>& alpha,
                     const std::vector<double>& x, RestingSurfaces& resting) {
-  std::vector<double> values(at(s.kernel.event_functions()));
-  s.kernel.functions(t, x.data(), alpha.data(), values.data());
-  std::vector<NearPoint> points;
+  const std::vector<NearPoint> here{{t, x}};
+  std::vector<NearPoint> near_by;
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
-    constexpr double far = 1e-9;
-    if (!s.system.switching[at(j)].is_kink() || !s.kernel.inner(j).empty() || std::abs(values[at(j)]) > far) continue;
-    if (points.empty()) points = points_near(s, t, x, project);
-    if (!stays_at_zero(s, points, alpha, j)) continue;
+    const bool may_rest = s.system.switching[at(j)].is_kink() && s.kernel.inner(j).empty();
+    if (!may_rest || !stays_at_zero(s, here, alpha, j)) continue;
+    if (near_by.empty()) near_by = points_near(s, t, x, project);
+    if (!stays_at_zero(s, near_by, alpha, j)) continue;
     const auto place = std::lower_bound(resting.surfaces.begin(), resting.surfaces.end(), j);
     resting.alpha.insert(resting.alpha.begin() + (place - resting.surfaces.begin()), 1.0);
     resting.surfaces.insert(place, j);
