@@ -56,7 +56,7 @@ running_cost = "(u - 1)^2"
 
 class FrozenTest(tool.ToolTest):
     def simulated(self, model, method, *more):
-        file = self.write("m.toml", model)
+        file = self.write("m.toml", model) if "\n" in model else model
         self.run_tool("simulate", file, "--method", method, "--quiet", "--out", "r.json", *more, code=0)
         return json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
 
@@ -94,16 +94,17 @@ class TimeFreezing(FrozenTest):
         self.assertEqual(*found)
 
     def test_events_of_runs_that_fail_do_not_depend_on_the_rows(self):
-        for model in ("falling-rod", "painleve-rod"):
-            found = set()
-            for rows in ("auto", "steps", "{ points = 2 }", "{ every = 0.01 }"):
-                self.run_tool("simulate", model, "--method", "fesd", "--set", f"simulate.output={rows}", "--quiet",
-                              "--out", "r.events.csv", "--out", "r.json", code=3)
-                final = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["final"]
-                found.add((json.dumps(final), (self.folder / "r.events.csv").read_text(encoding="utf-8")))
-            with self.subTest(model=model):
-                self.assertEqual(len(found), 1)
-                self.run_tool("report", "r.json", code=0)
+        found = set()
+        for rows in ("auto", "steps", "{ points = 2 }", "{ every = 0.01 }"):
+            self.run_tool("simulate", "falling-rod", "--method", "fesd", "--set", f"simulate.output={rows}", "--quiet",
+                          "--out", "r.events.csv", "--out", "r.json", code=3)
+            final = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["final"]
+            found.add((json.dumps(final), (self.folder / "r.events.csv").read_text(encoding="utf-8")))
+        self.assertEqual(len(found), 1)
+        self.run_tool("report", "r.json", code=0)
+
+    def test_a_rod_is_thrown_up(self):
+        self.assert_agree("painleve-rod", 1e-8)
 
     def test_where_time_stands_still_there_are_no_forces(self):
         for output in ("auto", "{ every = 0.001 }"):
