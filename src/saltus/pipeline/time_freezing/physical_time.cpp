@@ -334,8 +334,20 @@ class PhysicalTime {
         event.kind = one.kind;
       }
     }
+    take_kind(event);
     take_alternatives(here, event);
     event.reason = last.reason;
+  }
+
+  /// What hidden selections begin or end to slide on says nothing of the user's.
+  void take_kind(Event& event) const {
+    Mode before, after;
+    for (const std::size_t c : kept_) {
+      if (!event.mode_before || !event.mode_after || !contains(event.surfaces, system_.columns[c].name)) continue;
+      before.push_back((*event.mode_before)[c]);
+      after.push_back((*event.mode_after)[c]);
+    }
+    if (before != after) event.kind = result::kind_of_switch(before, after);
   }
 
   /// What could follow instead, as far as it can be seen: selections of a contact that persists are not unique, the
