@@ -33,7 +33,6 @@ class TouchedSides {
         add_touched(e, s, before, moves);
         if (!differing.empty()) add_touched(e, s, after, moves);
       }
-      if (made_.element[e + 1].number == 0) add_held(e, before, after, moves);
       if (differing.size() < 2) continue;
       for (const auto s : differing) insert(e, states_.with(before, s, states_.of(after, s)), moves);
     }
@@ -43,13 +42,6 @@ class TouchedSides {
   void add_touched(std::size_t e, std::size_t surface, const Modes& modes, std::vector<mpcc::BranchMove>& moves) const {
     const int state = states_.of(modes, surface);
     if (state != 0 && states_.is_reached(e, surface, w_)) insert(e, states_.with(modes, surface, -state), moves);
-  }
-
-  /// What is crossed where controls jump may be held there before the jump, or behind it.
-  void add_held(std::size_t e, const Modes& before, const Modes& after, std::vector<mpcc::BranchMove>& moves) const {
-    for (std::size_t s = 0; s < states_.count(); ++s) {
-      if (states_.of(before, s) * states_.of(after, s) < 0) insert(e, states_.with(before, s, 0), moves);
-    }
   }
 
   /// A short element behind e, in its interval or in the next one.
