@@ -322,6 +322,19 @@ until = 9
             _, err = self.run_tool("simulate", "m.toml", code=2)
             self.assertIn(words, err)
 
+    def test_gaps_that_depend_on_time_are_looked_at_where_the_run_begins(self):
+        pad = BALL.replace('gap = "z"', 'gap = "z - 0.2*cos(t)"').replace("z = 1", "z = 0.05")
+        self.assertEqual(pad.count("0.05") + pad.count("cos"), 2)
+        late = pad.replace("until = 2", "from = 2\nuntil = 9")
+        result = self.result(late, "--until", "3")  # at t = 0 the ball would be in the pad
+        self.assertAlmostEqual(result["trajectory"]["outputs"][0][0], 0.05 - 0.2 * math.cos(2), delta=1e-12)
+        self.assertEqual(result["events"][0]["kind"], "impact")
+        for text, start in ((pad, 0), (late.replace("from = 2", "from = 6"), 6)):
+            (self.folder / "m.toml").write_text(text, encoding="utf-8")
+            for command in ("simulate", "check"):
+                _, err = self.run_tool(command, "m.toml", code=2)
+                self.assertRegex(err, rf"^m.toml:16:.* the gap of 'ground' is -0.1\d+ at the start, t = {start}\n")
+
     def test_check_says_how_bodies_move_and_touch(self):
         (self.folder / "m.toml").write_text(BALL, encoding="utf-8")
         out, _ = self.run_tool("check", "m.toml", code=0)
