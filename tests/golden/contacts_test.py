@@ -313,37 +313,43 @@ until = 9
             for k, event in enumerate(events[::2]):
                 self.assertAlmostEqual(event["t"], first + k * 2 * math.pi / 3, delta=1e-9)
 
-    def test_bounces_on_what_friction_holds_end_at_rest_on_it(self):
-        pile = """[model]
+    def test_bounces_on_what_friction_holds_end_in_one_accumulation(self):
+        def run(hammer, pile, height, pull, friction):
+            result = self.result(f"""[model]
 name = "pile"
 [states]
-h = 0.313
+h = {height}
 p = 0
 vh = 0
 vp = 0
 [mechanics]
 positions = ["h", "p"]
 velocities = ["vh", "vp"]
-mass = [["1.843", "0"], ["0", "2.166"]]
-potential = "9.81*(1.843*h + 2.166*p)"
-force = { vh = "if(mod(t, 1.019) < 0.509, 1.257*1.843*9.81, 0)", vp = "-76.80429*sign(vp)" }
+mass = [["{hammer}", "0"], ["0", "{pile}"]]
+potential = "9.81*({hammer}*h + {pile}*p)"
+force = {{ vh = "{pull}*{hammer}*9.81", vp = "{friction}" }}
 [[contacts]]
 name = "hit"
 gap = "h - p"
 restitution = 0.5
 [simulate]
 until = 2.5
-"""
-        result = self.result(pile, "--integrator", "dop853")
-        events = result["events"]
-        last = [event["kind"] for event in events].index("accumulation")
-        self.assertAlmostEqual(events[last]["t"], 1.8133559, delta=1e-7)
-        self.assertEqual(events[last]["mode_after"], [0])
-        self.assertEqual([event["kind"] for event in events[last + 1:]], ["lift_off"])
-        self.assertAlmostEqual(events[-1]["t"], 2.038, delta=1e-9)  # the hammer is pulled up
-        force = [row[result["outputs"].index("force(hit)")] for row in result["trajectory"]["outputs"]]
-        self.assertGreaterEqual(min(force), 0)
-        self.assertAlmostEqual(max(force), 1.843 * 9.81, delta=1e-9)
+""", "--integrator", "dop853")
+            force = [row[result["outputs"].index("force(hit)")] for row in result["trajectory"]["outputs"]]
+            kinds = [event["kind"] for event in result["events"]]
+            first = kinds.index("accumulation")
+            self.assertGreaterEqual(min(force), 0)
+            self.assertEqual(result["events"][first]["mode_after"][-1:], [0])  # the pile stands
+            return result["events"][first], kinds[first + 1:], max(force)
+
+        limit, behind, force = run(1.843, 2.166, 0.313, "if(mod(t, 1.019) < 0.509, 1.257, 0)", "-76.80429*sign(vp)")
+        self.assertAlmostEqual(limit["t"], 1.8133559, delta=1e-7)
+        self.assertEqual((limit["contact_modes_after"], behind), (["closed"], ["lift_off"]))
+        self.assertAlmostEqual(force, 1.843 * 9.81, delta=1e-9)
+        # Pulled up where the bounces end, the hammer leaves the pile at once.
+        limit, behind, _ = run(1.781, 1.032, 0.468, "if(mod(t, 1.095) < 0.547, 1.357, 0)", "-51.31453*sign(vp) - 3*vp")
+        self.assertAlmostEqual(limit["t"], 1.3887742, delta=1e-7)
+        self.assertEqual((limit["contact_modes_after"], behind[0]), (["open"], "impact"))
 
     def test_tangents_that_no_body_slips_along(self):
         for row, words in (("{ x = 0 }", "is 0 at the start"), ("{ z = 1 }", "the direction in which its gap opens"),

@@ -114,6 +114,8 @@ void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x
   contacts_.copy_modes(x_last, here_.x);
   contacts_.forget_impulses(here_.x);
   cascade_.begin();
+  const auto slid_on = slid_on_between_bounces(kernel_, event_.before.sliding, here_, x_last);
+  for (const int j : slid_on) here_.state.alpha[at(j)] = event_.before.alpha[at(j)];  // what holds it opens a contact
   auto problem = contacts_.settle(contact_moment(), limit.events, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   const auto accumulated = [&] {
@@ -124,7 +126,7 @@ void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x
   };
   if (!outcome_.running) return accumulated();
   cascade_.drop_zeros();
-  for (const int j : slid_on_between_bounces(kernel_, event_.before.sliding, here_, x_last)) cascade_.add_zero(j);
+  for (const int j : slid_on) cascade_.add_zero(j);
   cascade_.read_user_signs();
   if (!decide_behind_jumps()) return accumulated();
   cascade_.give_directions();
