@@ -313,6 +313,44 @@ until = 9
             for k, event in enumerate(events[::2]):
                 self.assertAlmostEqual(event["t"], first + k * 2 * math.pi / 3, delta=1e-9)
 
+    def test_bounces_on_what_friction_holds_end_in_one_accumulation(self):
+        def run(hammer, pile, height, pull, friction):
+            result = self.result(f"""[model]
+name = "pile"
+[states]
+h = {height}
+p = 0
+vh = 0
+vp = 0
+[mechanics]
+positions = ["h", "p"]
+velocities = ["vh", "vp"]
+mass = [["{hammer}", "0"], ["0", "{pile}"]]
+potential = "9.81*({hammer}*h + {pile}*p)"
+force = {{ vh = "{pull}*{hammer}*9.81", vp = "{friction}" }}
+[[contacts]]
+name = "hit"
+gap = "h - p"
+restitution = 0.5
+[simulate]
+until = 2.5
+""", "--integrator", "dop853")
+            force = [row[result["outputs"].index("force(hit)")] for row in result["trajectory"]["outputs"]]
+            kinds = [event["kind"] for event in result["events"]]
+            first = kinds.index("accumulation")
+            self.assertGreaterEqual(min(force), 0)
+            self.assertEqual(result["events"][first]["mode_after"][-1:], [0])  # the pile stands
+            return result["events"][first], kinds[first + 1:], max(force)
+
+        limit, behind, force = run(1.843, 2.166, 0.313, "if(mod(t, 1.019) < 0.509, 1.257, 0)", "-76.80429*sign(vp)")
+        self.assertAlmostEqual(limit["t"], 1.8133559, delta=1e-7)
+        self.assertEqual((limit["contact_modes_after"], behind), (["closed"], ["lift_off"]))
+        self.assertAlmostEqual(force, 1.843 * 9.81, delta=1e-9)
+        # Pulled up where the bounces end, the hammer leaves the pile at once.
+        limit, behind, _ = run(1.781, 1.032, 0.468, "if(mod(t, 1.095) < 0.547, 1.357, 0)", "-51.31453*sign(vp) - 3*vp")
+        self.assertAlmostEqual(limit["t"], 1.3887742, delta=1e-7)
+        self.assertEqual((limit["contact_modes_after"], behind[0]), (["open"], "impact"))
+
     def test_tangents_that_no_body_slips_along(self):
         for row, words in (("{ x = 0 }", "is 0 at the start"), ("{ z = 1 }", "the direction in which its gap opens"),
                            ("{ z = -2 }", "the direction in which its gap opens")):
@@ -321,6 +359,19 @@ until = 9
             (self.folder / "m.toml").write_text(text, encoding="utf-8")
             _, err = self.run_tool("simulate", "m.toml", code=2)
             self.assertIn(words, err)
+
+    def test_gaps_that_depend_on_time_are_looked_at_where_the_run_begins(self):
+        pad = BALL.replace('gap = "z"', 'gap = "z - 0.2*cos(t)"').replace("z = 1", "z = 0.05")
+        self.assertEqual(pad.count("0.05") + pad.count("cos"), 2)
+        late = pad.replace("until = 2", "from = 2\nuntil = 9")
+        result = self.result(late, "--until", "3")  # at t = 0 the ball would be in the pad
+        self.assertAlmostEqual(result["trajectory"]["outputs"][0][0], 0.05 - 0.2 * math.cos(2), delta=1e-12)
+        self.assertEqual(result["events"][0]["kind"], "impact")
+        for text, start in ((pad, 0), (late.replace("from = 2", "from = 6"), 6)):
+            (self.folder / "m.toml").write_text(text, encoding="utf-8")
+            for command in ("simulate", "check"):
+                _, err = self.run_tool(command, "m.toml", code=2)
+                self.assertRegex(err, rf"^m.toml:16:.* the gap of 'ground' is -0.1\d+ at the start, t = {start}\n")
 
     def test_check_says_how_bodies_move_and_touch(self):
         (self.folder / "m.toml").write_text(BALL, encoding="utf-8")

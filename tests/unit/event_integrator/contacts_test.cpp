@@ -310,6 +310,42 @@ TEST(Contacts, ADiscLeavesAnotherOneAtEveryTolerance) {
   }
 }
 
+/// A step may lead from one side of the post to the other one: what is found on its way is located on the near side,
+/// however little the iteration of an implicit step leaves of it.
+TEST(Contacts, AFreeBallHitsARoundPost) {
+  struct Flight {
+    double x, y, v, until;
+  };
+  constexpr double radius = 0.2;
+  constexpr Flight flights[] = {
+      {-1.06, -0.066, 4.945, 1.9735085945399393}, {-1.1, -0.127, 2.065, 0.976997578692494},
+      {-1.274, 0.005, 4.141, 2.9239314175319966}, {-1.648, -0.081, 2.964, 4.501518218623482},
+      {-1.3, -0.143, 4.351, 3.220983681912204},   {-0.727, 0.13, 3.688, 1.2095986984815619},
+      {-1.424, 0.0, 0.515, 30.192233009708737},   {-0.561, -0.014, 4.877, 0.8328890711502974}};
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::radau9,
+                            ode::Method::radau13, ode::Method::taylor}) {
+    for (const auto& flight : flights) {
+      SCOPED_TRACE(::testing::Message() << static_cast<int>(method) << " from " << flight.x << ", " << flight.y);
+      model::Builder model("post");
+      const SX x = model.state("x", {flight.x}), y = model.state("y", {flight.y});
+      static_cast<void>(model.state("vx", {flight.v}));
+      static_cast<void>(model.state("vy", {0.0}));
+      model.mechanics({.positions = {"x", "y"}, .velocities = {"vx", "vy"}});
+      model.contact("post", sqrt(x * x + y * y) - radius, {.restitution = 1.0});
+      IntegrationOptions options;
+      options.method = method;
+      options.tolerances = {1e-8, 1e-10};
+      options.until = flight.until;
+      const auto run = run_model(model, options);
+      expect_done(run);
+      ASSERT_EQ(kinds(run), std::vector<EventKind>{EventKind::impact});
+      const double way = -std::sqrt(radius * radius - flight.y * flight.y) - flight.x;
+      EXPECT_NEAR(run.events[0].t, way / flight.v, 1e-12);
+      expect_apart(run, {0});
+    }
+  }
+}
+
 TEST(Contacts, CollidesAtTheStart) {
   model::Builder model("start");
   const SX y = model.state("y", {0.0});

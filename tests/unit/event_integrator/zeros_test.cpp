@@ -42,6 +42,27 @@ TEST(JumpsAtZero, AGuardThatIsSetToZeroIsPassedOnce) {
   }
 }
 
+/// A ring is entered and left within one step: both are counted, by a guard and by a surface.
+TEST(Zeros, AShortDipHasTwo) {
+  for (const auto method : methods_at_zero) {
+    for (const double start : {-1.06, -1.1, -1.274, -1.3, -1.424, -1.648, -1.787, -1.911}) {
+      SCOPED_TRACE(::testing::Message() << static_cast<int>(method) << " from " << start);
+      Builder b("ring");
+      const SX x = b.state("x", {start});
+      const SX inside = b.state("inside", {0.0});
+      const SX n = b.state("n", {0.0});
+      const SX distance = sqrt(x * x + 0.004356) - 0.2;
+      b.dynamics("x", 4.945);
+      b.dynamics("inside", b.step(-distance));
+      b.dynamics("n", 0.0);
+      b.jump(distance, Direction::both, {{"n", n + 1.0}});
+      const auto run = run_with(b, 1.9735085945399393, method);
+      EXPECT_EQ(counted(run), 2.0);
+      EXPECT_NEAR(run.final.x[1], 2.0 * std::sqrt(0.04 - 0.004356) / 4.945, 1e-12);
+    }
+  }
+}
+
 /// x = cos(t) 0.9^n.
 TEST(JumpsAtZero, AGuardThatIsScaledAtZeroIsPassedOnce) {
   for (const auto method : methods_at_zero) {

@@ -1,6 +1,8 @@
 // Contacts in a run: where their modes change.
 #include <algorithm>
+#include <cmath>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -10,6 +12,25 @@
 namespace saltus::event_integrator {
 
 using result::Termination;
+
+namespace {
+
+/// Surfaces that were slid on before the last bounce and left by it. A bounce leaves them by less each time: the limit
+/// is on them, whatever the extrapolation leaves of their psi.
+std::vector<int> slid_on_between_bounces(const evaluation::ModelKernel& kernel, const std::vector<int>& slid,
+                                         const Position& limit, const std::vector<double>& x_last) {
+  constexpr double converged = 1e-2;
+  std::vector<double> there(at(kernel.event_functions())), last(there);
+  kernel.functions(limit.t, limit.x.data(), limit.state.alpha.data(), there.data());
+  kernel.functions(limit.t, x_last.data(), limit.state.alpha.data(), last.data());
+  std::vector<int> found;
+  for (const int j : slid) {
+    if (limit.state.mode[at(j)] != 0 && std::abs(there[at(j)]) <= converged * std::abs(last[at(j)])) found.push_back(j);
+  }
+  return found;
+}
+
+}  // namespace
 
 ContactMoment Run::contact_moment() const { return {here_.t, here_.state.alpha, here_.time_scale, tolerances_.step()}; }
 
@@ -93,6 +114,8 @@ void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x
   contacts_.copy_modes(x_last, here_.x);
   contacts_.forget_impulses(here_.x);
   cascade_.begin();
+  const auto slid_on = slid_on_between_bounces(kernel_, event_.before.sliding, here_, x_last);
+  for (const int j : slid_on) here_.state.alpha[at(j)] = event_.before.alpha[at(j)];  // what holds it opens a contact
   auto problem = contacts_.settle(contact_moment(), limit.events, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   const auto accumulated = [&] {
@@ -103,6 +126,7 @@ void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x
   };
   if (!outcome_.running) return accumulated();
   cascade_.drop_zeros();
+  for (const int j : slid_on) cascade_.add_zero(j);
   cascade_.read_user_signs();
   if (!decide_behind_jumps()) return accumulated();
   cascade_.give_directions();

@@ -23,9 +23,14 @@ constexpr double flat_zero = 1e-9;
 /// Lengths of steps: one that ends before the event, one that ends behind it.
 struct Bracket {
   double before, beyond;
+  double end = beyond;  ///< of the step, which may be on the first side again
   [[nodiscard]] double middle() const { return 0.5 * (before + beyond); }
   [[nodiscard]] double width() const { return beyond - before; }
   [[nodiscard]] bool holds(double h) const { return h > before && h < beyond; }
+  /// Whether no step has ended behind the event.
+  [[nodiscard]] bool is_open() const { return beyond == end; }
+  /// Where to look next. While nobody knows where the other side is it may be a short dip: not farther than `reach`.
+  [[nodiscard]] double inside(double reach) const { return is_open() ? std::min(middle(), before + reach) : middle(); }
 };
 
 /// The slope of Newton's method. That of the interpolant is good to many digits; only where it fails, near a double
@@ -171,6 +176,7 @@ bool Locator::correct(const Hit& hit) {
   Bracket bracket{0.0, dense_->h};
   NewtonSlope slope{hit.slope};
   double h = hit.theta * dense_->h;
+  double reach = 0.0;
   for (int iteration = 0; iteration < 60; ++iteration) {
     if (!take(h)) {
       // Undefined: beyond the region where the field exists.
@@ -189,13 +195,16 @@ bool Locator::correct(const Hit& hit) {
     const bool inside = bracket.holds(next);
     // A correction that leaves the bracket within rounding of its end has converged.
     if (!inside && !flat_ && std::abs(left) <= time_resolution()) return true;
-    if (!inside || iteration >= newton_steps) next = bracket.middle();
-    if (!flat_ && std::abs(next - h) <= time_resolution()) return true;
-    if (bracket.width() <= time_resolution()) {
+    if (!inside || iteration >= newton_steps) {
+      constexpr double growth = 8.0;
+      reach = growth * std::max({reach, time_resolution(), std::abs(left)});
+      next = bracket.inside(reach);
+    }
+    if (bracket.width() <= time_resolution() || (!flat_ && std::abs(next - h) <= time_resolution())) {
       // A function that touches zero: its interpolant has passed it by less than the tolerances, and it is far from
       // zero where the bracket ends with the step.
       constexpr double far = 1e3;
-      touches_ = bracket.beyond == dense_->h && value * hit.sign > far * search_.accuracy(hit.function);
+      touches_ = bracket.is_open() && value * hit.sign > far * search_.accuracy(hit.function);
       return true;
     }
     h = next;

@@ -299,6 +299,10 @@ Error located(Error error, const ModelFile& model) {
       if (frame == fmt::format("in [{}]", table)) error.location = location;
     }
   }
+  for (const auto& contact : model.description.contacts) {
+    if (contains(error.context, fmt::format("in [[contacts]] {}", contact.name)))
+      error.location = contact.gap->location;
+  }
   for (const auto& [key, location] : model.option_locations) {
     const auto frame = fmt::format("in simulate.{}", key);
     if (contains(error.context, frame)) error.location = location;

@@ -9,6 +9,7 @@
 
 #include "saltus/base/contains.hpp"
 #include "saltus/model/mechanics/contact_motion_internal.hpp"
+#include "saltus/model/mechanics/gaps_at_start.hpp"
 #include "saltus/model/mechanics/smooth_check_internal.hpp"
 #include "saltus/model/statement/start_values_internal.hpp"
 
@@ -215,11 +216,12 @@ class ContactMotion {
       return contact_error(contact.gap_location, fmt::format("the gap of '{}' has no position in it", contact.name),
                            "a gap is an expression of the positions of [mechanics], of parameters and t");
     }
+    if (SX::depends_on(contact.gap, SX(statement_.time))) return std::nullopt;  // nobody knows yet when it starts
     const auto gap = at_start(contact.gap);
     if (!gap) return with_location(gap.error(), contact.gap_location);
-    if (*gap >= -1e-12) return std::nullopt;
-    return contact_error(contact.gap_location, fmt::format("the gap of '{}' is {} at the start", contact.name, *gap),
-                         "bodies begin apart or in touch: the gap must not be negative; change the initial positions");
+    auto error = check_gap_at_start(contact.name, *gap);
+    if (error) error->location = contact.gap_location;
+    return error;
   }
 
   void set_motion() {
