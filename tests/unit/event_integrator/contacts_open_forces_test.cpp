@@ -1,5 +1,6 @@
 // Contacts whose forces the motion does not determine, and motions that it leaves open with them.
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "run_model.hpp"
@@ -147,6 +148,53 @@ TEST(ContactsWithOpenForces, BlocksThatPressOnEachOtherStopAndLeaveTogether) {
   EXPECT_NEAR(run.events[1].t, leave, 1e-9);
   EXPECT_EQ(*run.events[1].mode_after, (result::Mode{1, 1}));
   for (const std::size_t v : {2U, 3U}) EXPECT_NEAR(run.final.x[v], 0.375 * (6.0 - leave) * (6.0 - leave), 1e-8);
+}
+
+/// A motor against its stop with the dry friction c sign(w), driven by 2 + i with di/dt = rate(i): what of the drive
+/// friction bears at the stop is open, the motion is not.
+Integration motor_at_stop(ode::Method method, double friction, const std::function<SX(const SX&)>& rate) {
+  model::Builder model("motor");
+  const SX a = model.state("a", {0.0}), w = model.state("w", {0.0}), i = model.state("i", {0.0});
+  model.dynamics("i", rate(i));
+  model.mechanics(
+      {.positions = {"a"}, .velocities = {"w"}, .mass = {{0.3}}, .force = {{"w", 2.0 + i - friction * model.sign(w)}}});
+  model.contact("stop", 0.5 - a, {});
+  IntegrationOptions options;
+  options.method = method;
+  options.until = 4.0;
+  return run_model(model, options);
+}
+
+constexpr auto methods_at_stop = {ode::Method::dopri5, ode::Method::dop853,  ode::Method::radau5,
+                                  ode::Method::radau9, ode::Method::radau13, ode::Method::taylor};
+
+TEST(ContactsWithOpenForces, AMotorPressedOnItsStopRestsThere) {
+  for (const auto method : methods_at_stop) {
+    SCOPED_TRACE(static_cast<int>(method));
+    const auto run = motor_at_stop(method, 0.1, [](const SX& i) { return 1.5 - i; });
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_FALSE(run.events.empty());
+    EXPECT_EQ(run.events.back().kind, EventKind::impact);
+    EXPECT_NEAR(run.final.x[0], 0.5, 1e-12);
+    EXPECT_NEAR(run.final.x[1], 0.0, 1e-15);
+    EXPECT_NEAR(run.final.x[2], 1.5 * (1.0 - std::exp(-4.0)), 1e-7);
+  }
+}
+
+/// It leaves once the drive pulls more than friction holds: 2 - 1.5 t = -c.
+TEST(ContactsWithOpenForces, AMotorLeavesItsStopAgainstFriction) {
+  for (const auto method : methods_at_stop) {
+    SCOPED_TRACE(static_cast<int>(method));
+    const auto run = motor_at_stop(method, 0.4, [](const SX&) { return SX(-1.5); });
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_FALSE(run.events.empty());
+    const double leave = 2.4 / 1.5, left = 4.0 - leave;
+    EXPECT_EQ(run.events.back().kind, EventKind::lift_off);
+    EXPECT_NEAR(run.events.back().t, leave, 1e-8);
+    EXPECT_EQ(*run.events.back().mode_after, result::Mode{-1});
+    EXPECT_NEAR(run.final.x[0], 0.5 - 5.0 * left * left * left / 6.0, 1e-6);
+    EXPECT_NEAR(run.final.x[1], -2.5 * left * left, 1e-6);
+  }
 }
 
 }  // namespace saltus::event_integrator::testing

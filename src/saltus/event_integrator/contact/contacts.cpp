@@ -50,12 +50,16 @@ double Contacts::force_terms(const ContactPoint& point, double t, const std::vec
   return largest;
 }
 
+std::vector<double> Contacts::without_forces(std::vector<double> x) const {
+  for (const auto& contact : contacts_) {
+    std::fill(x.begin() + contact.active, x.begin() + contact.force_unit, 0.0);
+  }
+  return x;
+}
+
 /// Along the motion without contact forces.
 double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
-  auto open = x;
-  for (const auto& contact : contacts_) {
-    std::fill(open.begin() + contact.active, open.begin() + contact.force_unit, 0.0);
-  }
+  const auto open = without_forces(x);
   std::vector<double> rate(x.size());
   kernel_.field(t, open.data(), alpha.data(), rate.data());
   VectorXd free(static_cast<Eigen::Index>(system_.velocities.size()));
