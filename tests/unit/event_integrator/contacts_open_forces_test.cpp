@@ -197,4 +197,29 @@ TEST(ContactsWithOpenForces, AMotorLeavesItsStopAgainstFriction) {
   }
 }
 
+/// A body that friction stops at a wall is pushed into it later: the wall holds it, whatever roundings of the gap the
+/// impact has left.
+TEST(ContactsWithOpenForces, AWallHoldsWhatFrictionHasHeldAtIt) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::radau13}) {
+    for (int k = 0; k < 40; ++k) {
+      const double wall = 0.1 + 0.01 * k;
+      SCOPED_TRACE(::testing::Message() << static_cast<int>(method) << " " << wall);
+      model::Builder model("body");
+      const SX a = model.state("a", {0.0}), w = model.state("w", {3.0}), t = model.time();
+      model.mechanics({.positions = {"a"},
+                       .velocities = {"w"},
+                       .mass = {{0.3}},
+                       .force = {{"w", t * t - 0.05 - 0.4 * model.sign(w)}}});
+      model.contact("wall", wall - a, {});
+      IntegrationOptions options;
+      options.method = method;
+      options.until = 1.5;
+      const auto run = run_model(model, options);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+      EXPECT_NEAR(run.final.x[0], wall, 1e-12);
+      EXPECT_EQ(run.final.contact_modes, std::vector<ContactMode>{ContactMode::closed});
+    }
+  }
+}
+
 }  // namespace saltus::event_integrator::testing
