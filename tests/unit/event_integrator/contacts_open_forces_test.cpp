@@ -99,6 +99,32 @@ TEST(ContactsWithOpenForces, ABlockInAViseMayFallOrNot) {
   EXPECT_EQ(run.events[0].unique, false);
 }
 
+/// A run goes on from what another one has left of the speeds of fingers that hold a block: no speed of rounding
+/// collides.
+TEST(ContactsWithOpenForces, FingersThatHoldABlockDoNotCollideWithRoundings) {
+  for (const double speed : {0.0, 5e-324, 1e-300, 1e-17}) {
+    for (const double asymmetry : {1.0, 0.0, -1.0}) {
+      SCOPED_TRACE(::testing::Message() << speed << " " << asymmetry);
+      model::Builder model("gripper");
+      const SX x = model.state("x", {0.0}), z = model.state("z", {0.5});
+      const SX a = model.state("a", {-0.1}), b = model.state("b", {0.1});
+      for (const auto& rate : rates) static_cast<void>(model.state(rate, {0.0}));
+      static_cast<void>(model.state("va", {speed}));
+      static_cast<void>(model.state("vb", {-asymmetry * speed}));
+      model.mechanics({.positions = {"x", "z", "a", "b"},
+                       .velocities = {"vx", "vz", "va", "vb"},
+                       .mass = SX::diag(SX(std::vector<double>{0.62, 0.62, 0.4, 0.4})),
+                       .force = {{"vz", -6.0}, {"va", 7.0}, {"vb", -7.0}}});
+      model.contact("left", x - 0.1 - a, {.tangent = {{"z", 1.0}}, .friction = 0.7});
+      model.contact("right", b - x - 0.1, {.tangent = {{"z", 1.0}}, .friction = 0.7});
+      const auto run = run_tightly(model, 1.0);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+      EXPECT_NEAR(run.final.x[1], 0.5, 1e-12);
+      for (const auto& event : run.events) EXPECT_NE(event.kind, EventKind::impact);
+    }
+  }
+}
+
 /// A load goes around on a table with four legs, of which three suffice.
 TEST(ContactsWithOpenForces, ATableStandsOnAllItsLegs) {
   model::Builder model("table");
