@@ -1,5 +1,6 @@
 // Contacts whose forces the motion does not determine, and motions that it leaves open with them.
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "run_model.hpp"
@@ -98,6 +99,32 @@ TEST(ContactsWithOpenForces, ABlockInAViseMayFallOrNot) {
   EXPECT_EQ(run.events[0].unique, false);
 }
 
+/// A run goes on from what another one has left of the speeds of fingers that hold a block: no speed of rounding
+/// collides.
+TEST(ContactsWithOpenForces, FingersThatHoldABlockDoNotCollideWithRoundings) {
+  for (const double speed : {0.0, 5e-324, 1e-300, 1e-17}) {
+    for (const double asymmetry : {1.0, 0.0, -1.0}) {
+      SCOPED_TRACE(::testing::Message() << speed << " " << asymmetry);
+      model::Builder model("gripper");
+      const SX x = model.state("x", {0.0}), z = model.state("z", {0.5});
+      const SX a = model.state("a", {-0.1}), b = model.state("b", {0.1});
+      for (const auto& rate : rates) static_cast<void>(model.state(rate, {0.0}));
+      static_cast<void>(model.state("va", {speed}));
+      static_cast<void>(model.state("vb", {-asymmetry * speed}));
+      model.mechanics({.positions = {"x", "z", "a", "b"},
+                       .velocities = {"vx", "vz", "va", "vb"},
+                       .mass = SX::diag(SX(std::vector<double>{0.62, 0.62, 0.4, 0.4})),
+                       .force = {{"vz", -6.0}, {"va", 7.0}, {"vb", -7.0}}});
+      model.contact("left", x - 0.1 - a, {.tangent = {{"z", 1.0}}, .friction = 0.7});
+      model.contact("right", b - x - 0.1, {.tangent = {{"z", 1.0}}, .friction = 0.7});
+      const auto run = run_tightly(model, 1.0);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+      EXPECT_NEAR(run.final.x[1], 0.5, 1e-12);
+      for (const auto& event : run.events) EXPECT_NE(event.kind, EventKind::impact);
+    }
+  }
+}
+
 /// A load goes around on a table with four legs, of which three suffice.
 TEST(ContactsWithOpenForces, ATableStandsOnAllItsLegs) {
   model::Builder model("table");
@@ -147,6 +174,78 @@ TEST(ContactsWithOpenForces, BlocksThatPressOnEachOtherStopAndLeaveTogether) {
   EXPECT_NEAR(run.events[1].t, leave, 1e-9);
   EXPECT_EQ(*run.events[1].mode_after, (result::Mode{1, 1}));
   for (const std::size_t v : {2U, 3U}) EXPECT_NEAR(run.final.x[v], 0.375 * (6.0 - leave) * (6.0 - leave), 1e-8);
+}
+
+/// A motor against its stop with the dry friction c sign(w), driven by 2 + i with di/dt = rate(i): what of the drive
+/// friction bears at the stop is open, the motion is not.
+Integration motor_at_stop(ode::Method method, double friction, const std::function<SX(const SX&)>& rate) {
+  model::Builder model("motor");
+  const SX a = model.state("a", {0.0}), w = model.state("w", {0.0}), i = model.state("i", {0.0});
+  model.dynamics("i", rate(i));
+  model.mechanics(
+      {.positions = {"a"}, .velocities = {"w"}, .mass = {{0.3}}, .force = {{"w", 2.0 + i - friction * model.sign(w)}}});
+  model.contact("stop", 0.5 - a, {});
+  IntegrationOptions options;
+  options.method = method;
+  options.until = 4.0;
+  return run_model(model, options);
+}
+
+constexpr auto methods_at_stop = {ode::Method::dopri5, ode::Method::dop853,  ode::Method::radau5,
+                                  ode::Method::radau9, ode::Method::radau13, ode::Method::taylor};
+
+TEST(ContactsWithOpenForces, AMotorPressedOnItsStopRestsThere) {
+  for (const auto method : methods_at_stop) {
+    SCOPED_TRACE(static_cast<int>(method));
+    const auto run = motor_at_stop(method, 0.1, [](const SX& i) { return 1.5 - i; });
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_FALSE(run.events.empty());
+    EXPECT_EQ(run.events.back().kind, EventKind::impact);
+    EXPECT_NEAR(run.final.x[0], 0.5, 1e-12);
+    EXPECT_NEAR(run.final.x[1], 0.0, 1e-15);
+    EXPECT_NEAR(run.final.x[2], 1.5 * (1.0 - std::exp(-4.0)), 1e-7);
+  }
+}
+
+/// It leaves once the drive pulls more than friction holds: 2 - 1.5 t = -c.
+TEST(ContactsWithOpenForces, AMotorLeavesItsStopAgainstFriction) {
+  for (const auto method : methods_at_stop) {
+    SCOPED_TRACE(static_cast<int>(method));
+    const auto run = motor_at_stop(method, 0.4, [](const SX&) { return SX(-1.5); });
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_FALSE(run.events.empty());
+    const double leave = 2.4 / 1.5, left = 4.0 - leave;
+    EXPECT_EQ(run.events.back().kind, EventKind::lift_off);
+    EXPECT_NEAR(run.events.back().t, leave, 1e-8);
+    EXPECT_EQ(*run.events.back().mode_after, result::Mode{-1});
+    EXPECT_NEAR(run.final.x[0], 0.5 - 5.0 * left * left * left / 6.0, 1e-6);
+    EXPECT_NEAR(run.final.x[1], -2.5 * left * left, 1e-6);
+  }
+}
+
+/// A body that friction stops at a wall is pushed into it later: the wall holds it, whatever roundings of the gap the
+/// impact has left.
+TEST(ContactsWithOpenForces, AWallHoldsWhatFrictionHasHeldAtIt) {
+  for (const auto method : {ode::Method::dopri5, ode::Method::radau13}) {
+    for (int k = 0; k < 40; ++k) {
+      const double wall = 0.1 + 0.01 * k;
+      SCOPED_TRACE(::testing::Message() << static_cast<int>(method) << " " << wall);
+      model::Builder model("body");
+      const SX a = model.state("a", {0.0}), w = model.state("w", {3.0}), t = model.time();
+      model.mechanics({.positions = {"a"},
+                       .velocities = {"w"},
+                       .mass = {{0.3}},
+                       .force = {{"w", t * t - 0.05 - 0.4 * model.sign(w)}}});
+      model.contact("wall", wall - a, {});
+      IntegrationOptions options;
+      options.method = method;
+      options.until = 1.5;
+      const auto run = run_model(model, options);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+      EXPECT_NEAR(run.final.x[0], wall, 1e-12);
+      EXPECT_EQ(run.final.contact_modes, std::vector<ContactMode>{ContactMode::closed});
+    }
+  }
 }
 
 }  // namespace saltus::event_integrator::testing

@@ -288,21 +288,31 @@ JumpCascade::RestingGuards JumpCascade::pressed_guards() {
   return guards;
 }
 
+/// Whether a guard is the gap of an open contact, 0 to its rounding. It is open until its own jump, whatever that
+/// rounding says.
+bool JumpCascade::is_open_at_zero(int function) {
+  const double rounding = contacts_.tolerated(function, here_.x);
+  if (rounding == 0.0) return false;
+  find_values();
+  return std::abs(values_.value[at(function)]) <= rounding;
+}
+
 void JumpCascade::leave_guards(const std::vector<int>& zero_order) {
   auto signs = search_.user_signs();
   auto vanish = search_.user_zeros();
   std::vector<int> orders(signs.size(), 1);
   bool any = false;
   for (int jump = 0; jump < static_cast<int>(switching_context_.system.jumps.size()); ++jump) {
-    if (contacts_.owns(jump)) continue;
     for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const auto user = at(function - kernel_.switching_functions());
-      if (signs[user] != 0 || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
-      const int side = side_ahead(switching_context_, here_.state, at_this_time(), here_.x, function);
+      const bool by_contact = contacts_.owns(jump);
+      const bool leaves = by_contact ? signs[user] >= 0 && is_open_at_zero(function) : signs[user] == 0;
+      if (!leaves || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
+      const int side = by_contact ? -1 : side_ahead(switching_context_, here_.state, at_this_time(), here_.x, function);
       if (side == 0) continue;
       add_zero(function);
-      left_.push_back({function, side});
+      if (!by_contact) left_.push_back({function, side});
       signs[user] = side;
       vanish[user] = true;
       orders[user] = 2;  // at least: its rate was held at 0

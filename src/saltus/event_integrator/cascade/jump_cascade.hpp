@@ -71,7 +71,7 @@ class JumpCascade {
   /// Gives functions that are at zero behind jumps the signs to which the motion takes them.
   void give_directions();
   /// Gives guards that are left in the mode that was entered here the sign to which they go. Before, what slid kept
-  /// them at zero. They get it at this time and not where it is seen first.
+  /// them at zero. They get it at this time and not where it is seen first. Gaps at zero that are open stay so.
   /// @param zero_order  of the mode's surfaces
   void leave_guards(const std::vector<int>& zero_order);
 
@@ -93,6 +93,7 @@ class JumpCascade {
   [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
   [[nodiscard]] SwitchingPoint at_this_time() const;
   void find_values();
+  [[nodiscard]] bool is_open_at_zero(int function);
   [[nodiscard]] double time_resolution() const;
   [[nodiscard]] double resolution(int function) const;
   [[nodiscard]] bool is_unchanged(int function) const;

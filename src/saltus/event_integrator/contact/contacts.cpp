@@ -50,12 +50,16 @@ double Contacts::force_terms(const ContactPoint& point, double t, const std::vec
   return largest;
 }
 
+std::vector<double> Contacts::without_forces(std::vector<double> x) const {
+  for (const auto& contact : contacts_) {
+    std::fill(x.begin() + contact.active, x.begin() + contact.force_unit, 0.0);
+  }
+  return x;
+}
+
 /// Along the motion without contact forces.
 double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
-  auto open = x;
-  for (const auto& contact : contacts_) {
-    std::fill(open.begin() + contact.active, open.begin() + contact.force_unit, 0.0);
-  }
+  const auto open = without_forces(x);
   std::vector<double> rate(x.size());
   kernel_.field(t, open.data(), alpha.data(), rate.data());
   VectorXd free(static_cast<Eigen::Index>(system_.velocities.size()));
@@ -107,6 +111,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
     terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * std::abs(x[at(system_.velocities[k])]);
   }
   const double small = small_velocity * fastest(moment, point, x), end = none_below * slowest(moment, point, x);
+  const double time = std::max(std::abs(moment.t), moment.time_scale);
   const auto is_over = [&](int i) {
     return slips(mode_of(i, x)) && point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
   };
@@ -121,7 +126,10 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
     const auto mode = mode_of(contact, x);
     const bool slip_ends = slip_has_ended[at(contact)];
     const bool held = row < m ? mode != ContactMode::open : mode == ContactMode::stick || slip_ends;
-    if (held || std::abs(point.velocity(row)) <= 16.0 * rounding_unit * terms(row)) point.velocity(row) = 0.0;
+    // Towards a gap forces change it by as much in the rounding of the time.
+    const double change = row < m ? std::abs(point.acceleration(row)) * time : 0.0;
+    if (held || std::abs(point.velocity(row)) <= 16.0 * rounding_unit * std::max(terms(row), change))
+      point.velocity(row) = 0.0;
   }
 }
 

@@ -83,6 +83,8 @@ class Contacts {
   [[nodiscard]] std::optional<std::string> jam(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns whether a gap or a velocity is held at 0.
   [[nodiscard]] bool hold(const std::vector<double>& x);
+  /// Returns the state with modes that have no forces.
+  [[nodiscard]] std::vector<double> without_forces(std::vector<double> x) const;
   enum class Slips { kept, free };
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
   /// @param slips  in a plane: kept as they are, or as free as all that is not held

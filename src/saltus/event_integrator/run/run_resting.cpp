@@ -20,12 +20,8 @@ using result::Termination;
 /// The surfaces that held guards and contacts keep at zero; false if these cannot be followed, with the status set.
 bool Run::find_resting(RestingSurfaces& resting) {
   resting = find_resting_surfaces(switching_context_, holding_, here_.t, here_.state.alpha, here_.x);
-  if (contacts_.hold(here_.x)) {
-    const auto onto_contacts = [&](double t, std::vector<double>& x) {
-      static_cast<void>(contacts_.project(t, here_.state.alpha, x));
-    };
-    add_kept_kinks(switching_context_, onto_contacts, here_.t, here_.state.alpha, here_.x, resting);
-  }
+  if (contacts_.hold(here_.x))
+    add_kept_by_contacts(switching_context_, contacts_, here_.t, here_.state.alpha, here_.x, resting);
   if (resting.problem.empty()) return true;
   fail(Termination::outside_class, fmt::format("at t = {:.17g} {}", here_.t, resting.problem));
   return false;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -19,6 +20,9 @@ struct NearPoint {
   double t = 0.0;
   std::vector<double> x;
 };
+
+/// Puts a point on what is held.
+using Projection = FunctionRef<void(double t, std::vector<double>& x)>;
 
 /// A point, and two near by on what is held, also as time goes.
 std::vector<NearPoint> points_near(const SwitchingContext& s, double t, const std::vector<double>& x,
@@ -47,6 +51,31 @@ bool stays_at_zero(const SwitchingContext& s, const std::vector<NearPoint>& poin
   });
 }
 
+/// f at a point as if nothing was held.
+using FreeField = FunctionRef<std::vector<double>(const NearPoint& point, const std::vector<double>& alpha)>;
+
+/// Whether f jumps across a surface, but not while what holds the points is held.
+bool moves_nothing(const SwitchingContext& s, const std::vector<NearPoint>& points, const std::vector<double>& alpha,
+                   int j, const FreeField& free_field) {
+  bool acts = false;
+  for (const NearPoint& point : points) {
+    std::vector<double> own = alpha, below(point.x.size()), above(below.size());
+    own[at(j)] = 0.0;
+    const auto free_below = free_field(point, own);
+    s.kernel.field(point.t, point.x.data(), own.data(), below.data());
+    own[at(j)] = 1.0;
+    const auto free_above = free_field(point, own);
+    s.kernel.field(point.t, point.x.data(), own.data(), above.data());
+    for (std::size_t i = 0; i < below.size(); ++i) {
+      const double terms =
+          std::max({std::abs(below[i]), std::abs(above[i]), std::abs(free_below[i]), std::abs(free_above[i])});
+      if (!(std::abs(above[i] - below[i]) <= rate_accuracy * terms)) return false;
+      acts = acts || std::abs(free_above[i] - free_below[i]) > rate_accuracy * terms;
+    }
+  }
+  return acts;
+}
+
 class RestingSearch {
  public:
   RestingSearch(const SwitchingContext& s, Holding& holding, double t, const std::vector<double>& alpha,
@@ -60,36 +89,19 @@ class RestingSearch {
         })) {}
 
   RestingSurfaces run() {
+    const auto free_field = [this](const NearPoint& point, const std::vector<double>& alpha) {
+      return holding_.free_field(point.t, alpha, point.x);
+    };
     const int n_psi = s_.kernel.switching_functions();
     for (int j = 0; j < n_psi && found_.problem.empty(); ++j) {
-      if (are_plain_surfaces(s_, {j}) && stays_at_zero(s_, points_, alpha_, j) && moves_nothing(j)) take(j);
+      if (!are_plain_surfaces(s_, {j}) || !stays_at_zero(s_, points_, alpha_, j)) continue;
+      if (moves_nothing(s_, points_, alpha_, j, free_field)) take(j);
     }
     if (found_.problem.empty() && found_.surfaces.size() > 1) check_sum();
     return std::move(found_);
   }
 
  private:
-  /// Whether f jumps across the surface, but not while the guards are held.
-  [[nodiscard]] bool moves_nothing(int j) const {
-    bool acts = false;
-    for (const NearPoint& point : points_) {
-      std::vector<double> alpha = alpha_, below(point.x.size()), above(below.size());
-      alpha[at(j)] = 0.0;
-      const auto free_below = holding_.free_field(point.t, alpha, point.x);
-      s_.kernel.field(point.t, point.x.data(), alpha.data(), below.data());
-      alpha[at(j)] = 1.0;
-      const auto free_above = holding_.free_field(point.t, alpha, point.x);
-      s_.kernel.field(point.t, point.x.data(), alpha.data(), above.data());
-      for (std::size_t i = 0; i < below.size(); ++i) {
-        const double terms =
-            std::max({std::abs(below[i]), std::abs(above[i]), std::abs(free_below[i]), std::abs(free_above[i])});
-        if (!(std::abs(above[i] - below[i]) <= rate_accuracy * terms)) return false;
-        acts = acts || std::abs(free_above[i] - free_below[i]) > rate_accuracy * terms;
-      }
-    }
-    return acts;
-  }
-
   /// What presses on each guard, in its own direction: > 0 while pressed on.
   [[nodiscard]] std::vector<double> pressures(const std::vector<double>& alpha) const {
     std::vector<double> values(holding_.guards().size());
@@ -157,6 +169,25 @@ class RestingSearch {
   RestingSurfaces found_;
 };
 
+/// The selection with which most presses on all contacts that it presses on; as it is where these do not agree.
+double pressing_selection(const SwitchingContext& s, const Contacts& contacts, const NearPoint& point,
+                          std::vector<double> alpha, int j) {
+  const double own = alpha[at(j)];
+  std::vector<double> below(at(s.kernel.event_functions())), above(below.size());
+  alpha[at(j)] = 0.0;
+  s.kernel.functions(point.t, point.x.data(), alpha.data(), below.data());
+  alpha[at(j)] = 1.0;
+  s.kernel.functions(point.t, point.x.data(), alpha.data(), above.data());
+  bool more = false, less = false;
+  for (std::size_t k = 0; k < below.size(); ++k) {
+    if (!contacts.guards(static_cast<int>(k))) continue;
+    const double change = below[k] - above[k];  // guards are negative while a mode lasts
+    if (!(std::abs(change) > rate_accuracy * std::max(std::abs(below[k]), std::abs(above[k])))) continue;
+    (change > 0.0 ? more : less) = true;
+  }
+  return more == less ? own : more ? 1.0 : 0.0;
+}
+
 }  // namespace
 
 RestingSurfaces find_resting_surfaces(const SwitchingContext& switching_context, Holding& holding, double t,
@@ -165,17 +196,29 @@ RestingSurfaces find_resting_surfaces(const SwitchingContext& switching_context,
   return RestingSearch(switching_context, holding, t, alpha, x).run();
 }
 
-void add_kept_kinks(const SwitchingContext& s, const Projection& project, double t, const std::vector<double>& alpha,
-                    const std::vector<double>& x, RestingSurfaces& resting) {
+void add_kept_by_contacts(const SwitchingContext& s, Contacts& contacts, double t, const std::vector<double>& alpha,
+                          const std::vector<double>& x, RestingSurfaces& resting) {
+  const auto onto_contacts = [&](double time, std::vector<double>& point) {
+    static_cast<void>(contacts.project(time, alpha, point));
+  };
+  const auto free_field = [&](const NearPoint& point, const std::vector<double>& own) {
+    std::vector<double> f(point.x.size());
+    s.kernel.field(point.t, contacts.without_forces(point.x).data(), own.data(), f.data());
+    return f;
+  };
   const std::vector<NearPoint> here{{t, x}};
-  std::vector<NearPoint> near_by;
+  std::vector<NearPoint> points;
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
-    const bool may_rest = s.system.switching[at(j)].is_kink() && s.kernel.inner(j).empty();
-    if (!may_rest || !stays_at_zero(s, here, alpha, j)) continue;
-    if (near_by.empty()) near_by = points_near(s, t, x, project);
-    if (!stays_at_zero(s, near_by, alpha, j)) continue;
+    const bool kink = s.system.switching[at(j)].is_kink();
     const auto place = std::lower_bound(resting.surfaces.begin(), resting.surfaces.end(), j);
-    resting.alpha.insert(resting.alpha.begin() + (place - resting.surfaces.begin()), 1.0);
+    if (place != resting.surfaces.end() && *place == j) continue;
+    if (kink ? !s.kernel.inner(j).empty() : !are_plain_surfaces(s, {j})) continue;
+    if (!stays_at_zero(s, here, alpha, j)) continue;
+    if (points.empty()) points = points_near(s, t, x, onto_contacts);
+    if (!stays_at_zero(s, points, alpha, j)) continue;
+    if (!kink && !moves_nothing(s, points, alpha, j, free_field)) continue;
+    resting.alpha.insert(resting.alpha.begin() + (place - resting.surfaces.begin()),
+                         kink ? 1.0 : pressing_selection(s, contacts, points.front(), alpha, j));
     resting.surfaces.insert(place, j);
   }
 }

@@ -1,9 +1,10 @@
-// Finds the surfaces that guards at rest keep at zero: dry friction in the direction of a wall at which a mass rests.
+// Finds the surfaces that guards and contacts at rest keep at zero: dry friction in the direction of a wall at which a
+// mass rests.
 #pragma once
 
 #include <vector>
 
-#include "saltus/base/function_ref.hpp"
+#include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/decide/transition.hpp"
 #include "saltus/event_integrator/jumps/holding.hpp"
 #include "saltus/event_integrator/jumps/resting_surfaces.hpp"
@@ -18,13 +19,11 @@ namespace saltus::event_integrator {
                                                     double t, const std::vector<double>& alpha,
                                                     const std::vector<double>& x);
 
-/// Puts a point on what is held.
-using Projection = FunctionRef<void(double t, std::vector<double>& x)>;
-
-/// Adds the kinks that are 0 here and wherever else `project` leads: abs(v) of a velocity that a contact holds. Nothing
-/// depends on their selections, and all that is left of their values is roundings. Cost: an evaluation of all
-/// functions, and two projections where one of them is a kink at 0.
-void add_kept_kinks(const SwitchingContext& switching_context, const Projection& project, double t,
-                    const std::vector<double>& alpha, const std::vector<double>& x, RestingSurfaces& resting);
+/// Adds what is 0 here and wherever else the contacts hold: the sign of a velocity, its abs(v). All that is left of
+/// their values is roundings. Nothing depends on the selection of a kink; those of dry friction change the forces of
+/// the contacts only. Cost: an evaluation of all functions; where one of them is 0, two projections and a few
+/// evaluations of f.
+void add_kept_by_contacts(const SwitchingContext& switching_context, Contacts& contacts, double t,
+                          const std::vector<double>& alpha, const std::vector<double>& x, RestingSurfaces& resting);
 
 }  // namespace saltus::event_integrator
