@@ -40,7 +40,7 @@ class Contacts {
   /// 0 to the rounding of bodies whose positions may all be 0.
   [[nodiscard]] double tolerated(int function, const std::vector<double>& x) const;
   struct GapMotion {
-    double size, rate, terms, bend;  ///< sizes of the terms of the gap, and of its rate; its second derivative
+    double size, rate, terms, bend;  ///< sizes of the terms of the gap, and of its rate; the guard's derivatives
   };
   /// Returns how a guard that is the gap of an open contact moves along a slope; nothing of other ones. The second
   /// derivative is a difference.
@@ -170,6 +170,8 @@ class Contacts {
   void correct_positions(const std::vector<int>& touching, std::vector<double>& x) const;
   void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x) const;
   void correct_velocities(const Eigen::VectorXd& velocity, Slips slips, std::vector<double>& x) const;
+  void drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
+                          std::vector<double>& x) const;
   void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;
   [[nodiscard]] std::vector<int> held_rows(const std::vector<double>& x) const;
 

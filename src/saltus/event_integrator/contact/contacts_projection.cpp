@@ -87,14 +87,21 @@ void Contacts::correct_velocities(const VectorXd& velocity, Slips slips, std::ve
   for (std::size_t r = held; r < rows.size(); ++r) change(static_cast<Eigen::Index>(r)) += velocity(rows[r]);
   const auto before = x;
   change_velocities(rows, change, x);
-  // A velocity that is held by itself is 0, not its rounding.
-  for (std::size_t r = 0; r < held; ++r) {
-    const auto row = values_.rows.row(rows[r]);
+  rows.resize(held);
+  drop_own_roundings(rows, before, x);
+}
+
+/// A velocity that is held by itself is 0, not its rounding.
+/// @param rows    those that have been brought to 0 from `before`, where the values are known
+void Contacts::drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
+                                  std::vector<double>& x) const {
+  for (const int r : rows) {
+    const auto row = values_.rows.row(r);
     if ((row.array() != 0.0).count() != 1) continue;
     Eigen::Index only = 0;
     static_cast<void>(row.cwiseAbs().maxCoeff(&only));
     const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
-    const double own = row(only) * before[k], moving = values_.velocity(rows[r]) - own;
+    const double own = row(only) * before[k], moving = values_.velocity(r) - own;
     if (std::abs(moving) <= 4.0 * rounding_unit * std::abs(own)) x[k] = 0.0;
   }
 }
