@@ -170,6 +170,8 @@ class Contacts {
   void correct_positions(const std::vector<int>& touching, std::vector<double>& x) const;
   void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x) const;
   void correct_velocities(const Eigen::VectorXd& velocity, Slips slips, std::vector<double>& x) const;
+  void put_at_rest(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
+                   std::vector<double>& x);
   void drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
                           std::vector<double>& x) const;
   void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;

@@ -69,17 +69,14 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
     if (point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
     if (basis.takes(i)) still.push_back(i);
   }
-  // What is at rest, along the ground, too, stays so, and is 0: a slip that begins from a rounding against it would end
-  // at once.
-  for (const int i : touching) {
-    for (int row = i; row < static_cast<int>(point.velocity.size()); row += point.contacts()) {
-      if (point.velocity(row) == 0.0 && basis.takes(row)) still.push_back(row);
+  if (!still.empty()) {
+    // What is at rest, along the ground, too, stays so.
+    for (const int i : touching) {
+      for (int row = i; row < static_cast<int>(point.velocity.size()); row += point.contacts()) {
+        if (point.velocity(row) == 0.0 && basis.takes(row)) still.push_back(row);
+      }
     }
-  }
-  if (!values_.velocity(still).isZero(0.0)) {
-    const auto moving = x;
     change_velocities(still, -values_.velocity(still), x);
-    drop_own_roundings(still, moving, x);
     point = point_at(moment.t, moment.alpha, x);
     point.velocity(still).setZero();
     drop_roundings(fastest, point);

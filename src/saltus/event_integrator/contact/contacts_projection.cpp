@@ -106,6 +106,24 @@ void Contacts::drop_own_roundings(const std::vector<int>& rows, const std::vecto
   }
 }
 
+/// What counts as 0 is 0, along the ground, too: a slip that begins from a rounding against it would end at once.
+void Contacts::put_at_rest(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
+                           std::vector<double>& x) {
+  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
+  std::vector<int> rows;
+  RowBasis basis(values_.rows);
+  for (const int i : resting) {
+    for (int row = i; row <= i + point.contacts(); row += point.contacts()) {
+      const bool counts = row == i || point.tangents[at(i)] == 1;
+      if (counts && point.velocity(row) == 0.0 && basis.takes(row)) rows.push_back(row);
+    }
+  }
+  if (values_.velocity(rows).isZero(0.0)) return;
+  const auto before = x;
+  change_velocities(rows, -values_.velocity(rows), x);
+  drop_own_roundings(rows, before, x);
+}
+
 /// Adds the tangential rows of slips in a plane that do not depend on the ones that are there.
 void Contacts::keep_slips(const std::vector<double>& x, std::vector<int>& rows) const {
   const auto m = static_cast<int>(contacts_.size());
