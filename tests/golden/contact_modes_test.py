@@ -75,6 +75,32 @@ restitution = {restitution}
     ("c2", "q2 + 0.30349288389500473*q3", "q3", 1.2660669441940207, 0.0),
     ("c3", "q0 + 0.4565571727427692*q1", "q1", 0.9046277949991803, 0.8542911283714169)))
 
+# Lands on a curved gap while it is held on another one.
+BESIDE = """[model]
+name = "lands beside"
+[states]
+q0 = 1.481201676640768
+q1 = 0.9767394208190523
+v0 = 0.3268784820048434
+v1 = 1.1360879237124515
+[mechanics]
+positions = ["q0", "q1"]
+velocities = ["v0", "v1"]
+mass = [[1.5369207801504705, 0.11259725018316588], [0.11259725018316588, 2.6343428049006667]]
+force = { v0 = -7.865568547885136, v1 = -2.517002886194417 }
+[[contacts]]
+name = "c0"
+gap = "q0 + 0.40727488816257174*q1^2/2"
+restitution = 0.2819010352963235
+[[contacts]]
+name = "c1"
+gap = "q1 - 0.43117144379465366*q0^2/2"
+tangent = { q0 = 1 }
+friction = 0.08698190331458933
+[simulate]
+until = 3
+"""
+
 
 class ContactModes(tool.ResultTest):
     def test_the_unit_of_mass_changes_nothing(self):
@@ -207,6 +233,9 @@ until = 5
         result = self.result(ONE_NORMAL + "[simulate]\nuntil = 3\nmax_steps = 2000\n")
         for value, other in zip(result["final"]["x"], expected):
             self.assertAlmostEqual(value, other, delta=1e-8)
+
+    def test_what_lands_beside_a_closed_gap_is_not_in_it(self):
+        self.assertLess(self.result(BESIDE)["penetration"], 1e-12)
 
     def test_slips_that_begin_at_rest_do_not_end_there(self):
         result = self.result(CORNER + "[simulate]\nuntil = 3\nmax_events = 1000\n")
