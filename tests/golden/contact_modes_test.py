@@ -5,6 +5,102 @@ import math
 import contacts_test
 import tool
 
+# Comes to its ground with no speed, and is pressed on from there.
+TOUCH = """[model]
+name = "touch-down"
+[states]
+z = 1
+vz = -2
+[mechanics]
+positions = ["z"]
+velocities = ["vz"]
+force = { vz = "if(t < 1, 2, -5)" }
+[[contacts]]
+name = "ground"
+gap = "z"
+restitution = 0.5
+[simulate]
+until = 2
+"""
+
+# Lands where three gaps have one normal, and goes on to where a fourth one closes.
+ONE_NORMAL = """[model]
+name = "gaps with one normal"
+[states]
+q0 = 0.7878681358938533
+q1 = 0.2362221948470239
+v0 = 0.7148254430534484
+v1 = 1.081754377947367
+[mechanics]
+positions = ["q0", "q1"]
+velocities = ["v0", "v1"]
+mass = [[1.1618960320809197, 0.4735680822745595], [0.4735680822745595, 1.098138054189938]]
+force = { v0 = -2.383858138071811, v1 = -10.149819798064264 }
+""" + "".join(f"""[[contacts]]
+name = "c{k}"
+gap = "{gap}^2/2"
+restitution = {restitution}
+""" for k, (gap, restitution) in enumerate((
+    ("q0 - 0.08338790961338405*q1", 0.8623275836621129), ("q1 + 0.3360085858433248*q0", 0.0),
+    ("q1 + 0.3257571678268575*q0", 0.29610722151376057), ("q1 - 0.03360495632346783*q0", 0.35759119719908483))))
+
+# Comes to rest in a corner of three curved gaps, where slips begin from rest.
+CORNER = """[model]
+name = "into a corner"
+[states]
+q0 = 0.8665778228745569
+q1 = 1.070685420943468
+q2 = 1.2101262323879287
+q3 = 0.20885278489384954
+v0 = -0.3318091152772426
+v1 = 0.9347786804640783
+v2 = 1.0206857100291271
+v3 = -0.6656960158152447
+[mechanics]
+positions = ["q0", "q1", "q2", "q3"]
+velocities = ["v0", "v1", "v2", "v3"]
+mass = [[1.0814581836110562, -0.27636356219233765, -0.41505441271440935, 0.7510932041414248],
+        [-0.27636356219233765, 1.8037133484003711, -0.4274080045004332, -0.2262905553411677],
+        [-0.41505441271440935, -0.4274080045004332, 1.3935266398845116, -0.3640510135814876],
+        [0.7510932041414248, -0.2262905553411677, -0.3640510135814876, 2.3678013985830773]]
+force = { v0 = -10.739123809134286, v1 = -7.695388853397256, v2 = -6.989969836156633, v3 = -3.715422712942297 }
+""" + "".join(f"""[[contacts]]
+name = "{name}"
+gap = "{gap}^2/2"
+tangent = {{ {along} = 1 }}
+friction = {friction}
+restitution = {restitution}
+""" for name, gap, along, friction, restitution in (
+    ("c0", "q3 - 0.0008779569559854705*q0", "q0", 0.6603014930115705, 0.0),
+    ("c2", "q2 + 0.30349288389500473*q3", "q3", 1.2660669441940207, 0.0),
+    ("c3", "q0 + 0.4565571727427692*q1", "q1", 0.9046277949991803, 0.8542911283714169)))
+
+# Lands on a curved gap while it is held on another one.
+BESIDE = """[model]
+name = "lands beside"
+[states]
+q0 = 1.481201676640768
+q1 = 0.9767394208190523
+v0 = 0.3268784820048434
+v1 = 1.1360879237124515
+[mechanics]
+positions = ["q0", "q1"]
+velocities = ["v0", "v1"]
+mass = [[1.5369207801504705, 0.11259725018316588], [0.11259725018316588, 2.6343428049006667]]
+force = { v0 = -7.865568547885136, v1 = -2.517002886194417 }
+[[contacts]]
+name = "c0"
+gap = "q0 + 0.40727488816257174*q1^2/2"
+restitution = 0.2819010352963235
+[[contacts]]
+name = "c1"
+gap = "q1 - 0.43117144379465366*q0^2/2"
+tangent = { q0 = 1 }
+friction = 0.08698190331458933
+[simulate]
+until = 3
+"""
+
 
 class ContactModes(tool.ResultTest):
     def test_the_unit_of_mass_changes_nothing(self):
@@ -123,6 +219,29 @@ until = 5
         below, _ = kinds("z = -0.1", code=3)
         self.assertEqual(below["status"]["termination"], "outside_class")
         self.assertIn("makes the gap of 'ground' -0.1", below["status"]["message"])
+
+    def test_a_touch_without_an_approach_is_no_impact(self):
+        """The height is (1 - t)^2 up to t = 1."""
+        for integrator in ("dopri5", "radau5", "taylor"):
+            with self.subTest(integrator):
+                (event,) = self.result(TOUCH, "--integrator", integrator)["events"]
+                self.assertEqual((event["kind"], event["contact_modes_after"]), ("contact", ["closed"]))
+                self.assertAlmostEqual(event["t"], 1, delta=1e-12)
+
+    def test_gaps_that_share_a_normal_close_together(self):
+        expected = self.result(ONE_NORMAL + "[simulate]\nuntil = 3\n", "--integrator", "radau5")["final"]["x"]
+        result = self.result(ONE_NORMAL + "[simulate]\nuntil = 3\nmax_steps = 2000\n")
+        for value, other in zip(result["final"]["x"], expected):
+            self.assertAlmostEqual(value, other, delta=1e-8)
+
+    def test_what_lands_beside_a_closed_gap_is_not_in_it(self):
+        self.assertLess(self.result(BESIDE)["penetration"], 1e-12)
+
+    def test_slips_that_begin_at_rest_do_not_end_there(self):
+        result = self.result(CORNER + "[simulate]\nuntil = 3\nmax_events = 1000\n")
+        self.assertEqual(result["final"]["contact_modes"], 3 * ["stick"])
+        for speed in result["final"]["x"][4:]:
+            self.assertAlmostEqual(speed, 0, delta=1e-12)
 
     def test_what_is_held_by_itself_is_zero(self):
         """A cart that sticks under its pendulum: its velocity is 0, not the rounding of a projection."""

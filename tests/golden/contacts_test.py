@@ -133,6 +133,7 @@ MALFORMED = {
     "mass of wrong size": ('potential = "10*z"', 'mass = [[1, 0]]', 13, "1 rows, and there are 2 velocities"),
     "mass with a short row": ('potential = "10*z"', 'mass = [[1, 0], [1]]', 13, "row 2 of the mass matrix has 1 entries"),
     "mass not symmetric": ('potential = "10*z"', 'mass = [[1, 0.5], [0.4, 1]]', 13, "not symmetric", "0.4", "0.5"),
+    "mass not symmetric later": ('potential = "10*z"', 'mass = [[1, "x"], [0, 1]]', 13, "not symmetric", "near the start"),
     "mass singular": ('potential = "10*z"', 'mass = [[1, 1], [1, 1]]', 13, "not positive definite", "row 2 ('vz')"),
     "mass of a velocity": ('potential = "10*z"', 'mass = [["1 + vx^2", 0], [0, 1]]', 13, "depends on 'vx'"),
     "potential of time": ('"10*z"', '"10*z*t"', 13, "depends on 't'"),

@@ -236,6 +236,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
   }
   const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, point, resting, found, x);
   determined_ = have_one_motion(point, resting, found, chosen);
+  put_at_rest(moment, point, resting, x);
   enter(moment, point, found[chosen], x);
   static_cast<void>(project(moment.t, moment.alpha, x, touching));
   bound_speeds(moment, x);

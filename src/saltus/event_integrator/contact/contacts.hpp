@@ -41,7 +41,7 @@ class Contacts {
   /// 0 to the rounding of bodies whose positions may all be 0.
   [[nodiscard]] double tolerated(int function, const std::vector<double>& x) const;
   struct GapMotion {
-    double size, rate, terms, bend;  ///< sizes of the terms of the gap, and of its rate; its second derivative
+    double size, rate, terms, bend;  ///< sizes of the terms of the gap, and of its rate; the guard's derivatives
   };
   /// Returns how a guard that is the gap of an open contact moves along a slope; nothing of other ones. The second
   /// derivative is a difference.
@@ -174,6 +174,10 @@ class Contacts {
   bool correct_positions(const std::vector<int>& touching, std::vector<double>& x);
   void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x);
   void correct_velocities(Slips slips, std::vector<double>& x);
+  void put_at_rest(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
+                   std::vector<double>& x);
+  void drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
+                          std::vector<double>& x) const;
   void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;
   void find_held_rows(const std::vector<double>& x);
 

@@ -48,11 +48,17 @@ bool Contacts::rises_by_nothing(const ContactMoment& moment, int contact, const 
          speed <= pull * roundings * std::abs(moment.t);
 }
 
-/// Whether a gap closes no faster than velocities are known, as its rate and acceleration vanish together: the rounding
-/// of a gap of (t_0 - t)^3 leaves the time open, and with it the speed v there, as large as a^2 = 2 v da/dt.
+/// Whether a gap closes no faster than velocities are known: than the rounding of the terms of its rate, and of what
+/// they change by in the time; or as its rate and acceleration vanish together. The rounding of a gap of (t_0 - t)^3
+/// leaves the time open, and with it the speed v there, as large as a^2 = 2 v da/dt.
 bool Contacts::closes_flatly(const ContactMoment& moment, int contact, const ContactPoint& point,
                              const std::vector<double>& x) const {
   const double speed = std::abs(point.normal_velocity(contact)), acceleration = point.acceleration(contact);
+  double terms = std::abs(acceleration) * std::max(std::abs(moment.t), moment.time_scale);
+  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+    terms += std::abs(values_.rows(contact, static_cast<Eigen::Index>(k)) * x[at(system_.velocities[k])]);
+  }
+  if (speed <= 64.0 * rounding_unit * terms) return true;
   if (speed > rests_below * slowest(moment, point, x)) return false;
   auto ahead = x;
   const double h = ahead_by * moment.time_scale;
@@ -139,8 +145,9 @@ auto Contacts::gap_motion(int function, const ContactMoment& moment, const std::
   auto ahead = x;
   for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * slope[i];
   kernel_.contacts(moment.t + h, ahead.data(), moment.alpha.data(), later);
-  GapMotion motion{0.0, here.velocity(*contact), 0.0, (later.velocity(*contact) - here.velocity(*contact)) / h};
-  double along_time = motion.rate;
+  // A guard is positive where its gap is negative.
+  GapMotion motion{0.0, -here.velocity(*contact), 0.0, (here.velocity(*contact) - later.velocity(*contact)) / h};
+  double along_time = here.velocity(*contact);
   for (std::size_t k = 0; k < system_.positions.size(); ++k) {
     const double normal = here.rows(*contact, index(k)), term = normal * x[at(system_.velocities[k])];
     motion.size += std::abs(normal * x[at(system_.positions[k])]);

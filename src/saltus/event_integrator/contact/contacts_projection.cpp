@@ -102,16 +102,40 @@ void Contacts::correct_velocities(Slips slips, std::vector<double>& x) {
   change = -values_.velocity(rows);
   for (std::size_t r = held.size(); r < rows.size(); ++r) change(index(r)) += velocity(rows[r]);
   change_velocities(rows, change, x);
-  // A velocity that is held by itself is 0, not its rounding.
-  for (std::size_t r = 0; r < held.size(); ++r) {
-    const auto row = values_.rows.row(rows[r]);
+  drop_own_roundings(held, before, x);
+}
+
+/// A velocity that is held by itself is 0, not its rounding.
+/// @param rows    those that have been brought to 0 from `before`, where the values are known
+void Contacts::drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
+                                  std::vector<double>& x) const {
+  for (const int r : rows) {
+    const auto row = values_.rows.row(r);
     if ((row.array() != 0.0).count() != 1) continue;
     Eigen::Index only = 0;
     static_cast<void>(row.cwiseAbs().maxCoeff(&only));
     const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
-    const double own = row(only) * before[k], moving = values_.velocity(rows[r]) - own;
+    const double own = row(only) * before[k], moving = values_.velocity(r) - own;
     if (std::abs(moving) <= 4.0 * rounding_unit * std::abs(own)) x[k] = 0.0;
   }
+}
+
+/// What counts as 0 is 0, along the ground, too: a slip that begins from a rounding against it would end at once.
+void Contacts::put_at_rest(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
+                           std::vector<double>& x) {
+  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
+  std::vector<int> rows;
+  RowBasis basis(values_.rows);
+  for (const int i : resting) {
+    for (int row = i; row <= i + point.contacts(); row += point.contacts()) {
+      const bool counts = row == i || point.tangents[at(i)] == 1;
+      if (counts && point.velocity(row) == 0.0 && basis.takes(row)) rows.push_back(row);
+    }
+  }
+  if (values_.velocity(rows).isZero(0.0)) return;
+  const auto before = x;
+  change_velocities(rows, -values_.velocity(rows), x);
+  drop_own_roundings(rows, before, x);
 }
 
 /// Adds the tangential rows of slips in a plane that do not depend on the ones that are there.

@@ -71,6 +71,17 @@ bool Run::begin_contacts_anew() {
   return true;
 }
 
+/// What puts the state on closed gaps moves it off those that have been located beside them: no body is in another one.
+void Run::put_on_gaps(const Located& located) {
+  const auto touching = contacts_.with_jumps([&](int jump) {
+    return std::any_of(located.functions.begin(), located.functions.end(), [&](std::size_t place) {
+      const auto& function = search_.functions()[place];
+      return function.kind == FunctionKind::user && function.index == kernel_.jump_guard(jump, 0);
+    });
+  });
+  if (!touching.empty()) static_cast<void>(contacts_.project(here_.t, here_.state.alpha, here_.x, touching));
+}
+
 /// All contacts whose modes end here, at once.
 bool Run::move_contacts() {
   const auto ended = contacts_.with_jumps([&](int jump) { return jumps_.holds(jump); });

@@ -255,6 +255,7 @@ Run::Step Run::handle(const Located& located) {
   const double t_begin = here_.t;
   here_.move_to(located.t, located.x.data());
   static_cast<void>(holding_.project(here_.t, here_.state.alpha, here_.x));
+  put_on_gaps(located);
   project_onto_roots(located);
   // A step may be as long as the mode.
   if (choices_.families().watches() && here_.t > t_begin) choices_.look(t_begin, steps_);

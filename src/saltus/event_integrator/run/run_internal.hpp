@@ -174,6 +174,7 @@ class Run {
   [[nodiscard]] bool only_slips_on() const;
   bool begin_contacts();
   [[nodiscard]] bool begin_contacts_anew();
+  void put_on_gaps(const Located& located);
   bool move_contacts();
   void choose_method();
   bool contact_modes_hold();

@@ -53,8 +53,12 @@ bool Run::stopped_by_two_fold() {
   return message.has_value();
 }
 
-/// Whether the steps got short because switches accumulate here, or because of a two-fold point.
+/// Whether the steps got short because switches accumulate here, because of a two-fold point, or of bodies that jam.
 bool Run::stopped_by_singularity() {
+  if (auto jam = contacts_.jam(contact_moment(), here_.x)) {
+    fail(Termination::outside_class, std::move(*jam));
+    return true;
+  }
   if (!switches_.series().shrinks(here_.t)) return stopped_by_two_fold();
   accumulates();
   return true;
@@ -192,10 +196,6 @@ Run::Step Run::reject(double error) {
   const double h = steps_.stepper().length();
   if (shorten(steps_.rejected(error))) return Step::shortened;
   if (stopped_by_singularity()) return Step::failed;
-  if (auto jam = contacts_.jam(contact_moment(), here_.x)) {
-    fail(Termination::outside_class, std::move(*jam));
-    return Step::failed;
-  }
   fail(Termination::step_size_too_small,
        fmt::format("the tolerance cannot be reached at {}: the step has fallen to {:.3g}; the solution may blow up "
                    "there, or rtol is below what doubles carry",
