@@ -111,7 +111,6 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
     terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * std::abs(x[at(system_.velocities[k])]);
   }
   const double small = small_velocity * fastest(moment, point, x), end = none_below * slowest(moment, point, x);
-  const double time = std::max(std::abs(moment.t), moment.time_scale);
   const auto is_over = [&](int i) {
     return slips(mode_of(i, x)) && point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
   };
@@ -126,10 +125,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
     const auto mode = mode_of(contact, x);
     const bool slip_ends = slip_has_ended[at(contact)];
     const bool held = row < m ? mode != ContactMode::open : mode == ContactMode::stick || slip_ends;
-    // Towards a gap forces change it by as much in the rounding of the time.
-    const double change = row < m ? std::abs(point.acceleration(row)) * time : 0.0;
-    if (held || std::abs(point.velocity(row)) <= 16.0 * rounding_unit * std::max(terms(row), change))
-      point.velocity(row) = 0.0;
+    if (held || std::abs(point.velocity(row)) <= 16.0 * rounding_unit * terms(row)) point.velocity(row) = 0.0;
   }
 }
 
@@ -158,9 +154,15 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   const ContactPoint before = closing ? point : ContactPoint{};
   if (closing) {
     const auto x_before = x;
-    if (!collide(moment, touching, std::nullopt, point, x)) {
+    const bool ends = collide(moment, touching, std::nullopt, point, x);
+    if (!ends && !close_by_rounding(moment, touching, before)) {
       return fmt::format("the impact of {} at t = {:.17g} has no end: bodies jam, or normals depend on each other",
                          names(touching), moment.t);
+    }
+    if (!ends) {
+      x = x_before;
+      point = before;
+      for (const int i : touching) point.velocity(i) = std::max(point.velocity(i), 0.0);
     }
     if (touch_only) copy_impulses(x_before, x);
     excluded.assign(contacts_.size(), {});

@@ -69,6 +69,14 @@ bool Contacts::closes_flatly(const ContactMoment& moment, int contact, const Con
   return acceleration * acceleration <= 4.0 * speed * rate;
 }
 
+/// Whether no gap closes faster than forces change its rate by in the rounding of the time.
+bool Contacts::close_by_rounding(const ContactMoment& moment, const std::vector<int>& touching,
+                                 const ContactPoint& point) {
+  const double rounding = 16.0 * rounding_unit * std::max(std::abs(moment.t), moment.time_scale);
+  return std::all_of(touching.begin(), touching.end(),
+                     [&](int i) { return point.normal_velocity(i) >= -rounding * std::abs(point.acceleration(i)); });
+}
+
 /// Contacts that an impact has closed as slowly as nothing would be left to rise by.
 void Contacts::note_last_bounces(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint before,
                                  const std::vector<double>& x) {

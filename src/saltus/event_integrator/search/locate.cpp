@@ -177,7 +177,9 @@ bool Locator::correct(const Hit& hit) {
   NewtonSlope slope{hit.slope};
   double h = hit.theta * dense_->h;
   double reach = 0.0;
-  for (int iteration = 0; iteration < 60; ++iteration) {
+  // Halving a step down to rounding takes 50, and the growth of `reach` comes before.
+  constexpr int most_iterations = 120;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
     if (!take(h)) {
       // Undefined: beyond the region where the field exists.
       bracket.beyond = h;
