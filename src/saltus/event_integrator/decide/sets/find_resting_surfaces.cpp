@@ -40,15 +40,28 @@ std::vector<NearPoint> points_near(const SwitchingContext& s, double t, const st
   return points;
 }
 
+/// Holds the functions at a point, and the sizes of what they are made of.
+struct SizedValues {
+  std::vector<double> values, magnitude, slope;
+  /// Whether a function is 0 to the rounding that points have which were displaced by 1e-3.
+  [[nodiscard]] bool is_zero(int j) const {
+    return std::abs(values[at(j)]) <= rate_accuracy * (magnitude[at(j)] + slope[at(j)]);
+  }
+};
+
+SizedValues sized_values(const SwitchingContext& s, double t, const std::vector<double>& x,
+                         const std::vector<double>& alpha) {
+  SizedValues sized;
+  for (auto* list : {&sized.values, &sized.magnitude, &sized.slope}) list->resize(at(s.kernel.event_functions()));
+  s.kernel.functions(t, x.data(), alpha.data(), sized.values.data());
+  s.kernel.scales(t, x.data(), alpha.data(), sized.magnitude.data(), sized.slope.data());
+  return sized;
+}
+
 bool stays_at_zero(const SwitchingContext& s, const std::vector<NearPoint>& points, const std::vector<double>& alpha,
                    int j) {
-  std::vector<double> values(at(s.kernel.event_functions())), magnitude(values.size()), slope(values.size());
-  return std::all_of(points.begin(), points.end(), [&](const NearPoint& point) {
-    s.kernel.functions(point.t, point.x.data(), alpha.data(), values.data());
-    s.kernel.scales(point.t, point.x.data(), alpha.data(), magnitude.data(), slope.data());
-    // The points are displaced by 1e-3, the first one is where the guards are to rounding.
-    return std::abs(values[at(j)]) <= rate_accuracy * (magnitude[at(j)] + slope[at(j)]);
-  });
+  return std::all_of(points.begin(), points.end(),
+                     [&](const NearPoint& point) { return sized_values(s, point.t, point.x, alpha).is_zero(j); });
 }
 
 /// f at a point as if nothing was held.
@@ -206,14 +219,14 @@ void add_kept_by_contacts(const SwitchingContext& s, Contacts& contacts, double 
     s.kernel.field(point.t, contacts.without_forces(point.x).data(), own.data(), f.data());
     return f;
   };
-  const std::vector<NearPoint> here{{t, x}};
+  const SizedValues here = sized_values(s, t, x, alpha);
   std::vector<NearPoint> points;
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     const bool kink = s.system.switching[at(j)].is_kink();
     const auto place = std::lower_bound(resting.surfaces.begin(), resting.surfaces.end(), j);
     if (place != resting.surfaces.end() && *place == j) continue;
     if (kink ? !s.kernel.inner(j).empty() : !are_plain_surfaces(s, {j})) continue;
-    if (!stays_at_zero(s, here, alpha, j)) continue;
+    if (!here.is_zero(j)) continue;
     if (points.empty()) points = points_near(s, t, x, onto_contacts);
     if (!stays_at_zero(s, points, alpha, j)) continue;
     if (!kink && !moves_nothing(s, points, alpha, j, free_field)) continue;
