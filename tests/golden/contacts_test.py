@@ -147,6 +147,8 @@ MALFORMED = {
     "drawn line and point": ('potential = "10*z"', 'draw = [{ line = [["x", "z"], [0, 0]], point = [0, 0] }]', 13,
                              "a line or a disc"),
     "drawn in space": ('potential = "10*z"', 'draw = [{ point = ["x", 0, "z"], radius = 1 }]', 13, "two coordinates"),
+    "drawn at a number": ('potential = "10*z"', 'draw = [{ point = 3, radius = 1 }]', 13, "a point of the plane"),
+    "drawn line of names": ('potential = "10*z"', 'draw = [{ line = ["x", "z"] }]', 13, "a point of the plane"),
     "drawn key misspelt": ('potential = "10*z"', 'draw = [{ pint = ["x", "z"], radius = 1 }]', 13, "did you mean 'point'"),
     "drawn with a velocity": ('potential = "10*z"', 'draw = [{ point = ["vx", "z"], radius = 1 }]', 13,
                               "what is drawn depends on 'vx'"),
@@ -459,8 +461,11 @@ until = 3
                 self.assertEqual(out, "")
                 first = [text for text in err.splitlines() if "error: " in text][0]
                 self.assertTrue(first.startswith(f"m{number}.toml:{line}:"), err)
+                _, all_mistakes = self.run_tool("check", file.name, code=2)
+                self.assertIn(f"m{number}.toml:{line}:", all_mistakes)
                 for part in expected:
                     self.assertIn(part, err)
+                    self.assertIn(part, all_mistakes)
 
 
 if __name__ == "__main__":

@@ -115,6 +115,36 @@ class TimeFreezing(FrozenTest):
             self.assertEqual(len(forces), 4)
             self.assertLess(max(abs(row[k]) for row in result["trajectory"]["outputs"] for k in forces), 1e6, output)
 
+    def test_forces_in_the_form_of_stewart_are_those_of_regions(self):
+        """Thrown up a slope with friction 0.4 a block turns: m g cos(0.6), 0.4 of it against the slip on either way."""
+        block = HEAD + """[states]
+x = 0
+z = 0
+vx = "-3*cos(0.6)"
+vz = "3*sin(0.6)"
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+potential = "9.81*z"
+[[contacts]]
+name = "slope"
+gap = "z*cos(0.6) + x*sin(0.6)"
+tangent = { x = "cos(0.6)", z = "-sin(0.6)" }
+friction = 0.4
+[simulate]
+until = 1.2
+"""
+        force = 9.81 * math.cos(0.6)
+        for form in ("stewart", "step"):
+            frozen = self.simulated(block, "fesd", "--set", f"simulate.fesd.reformulation={form}")
+            (turn,) = frozen["events"]
+            columns = [frozen["outputs"].index(name) for name in ("force(slope)", "friction(slope)")]
+            for t, row in zip(frozen["trajectory"]["t"], frozen["trajectory"]["outputs"]):
+                if t == turn["t"]:
+                    continue
+                self.assertAlmostEqual(row[columns[0]], force, delta=1e-9)
+                self.assertAlmostEqual(row[columns[1]], 0.4 * force * (1 if t < turn["t"] else -1), delta=1e-9)
+
     def test_ball_lands_slides_and_stops(self):
         event, frozen = self.assert_agree(BALL, 1e-8)
         self.assertAlmostEqual(frozen["events"][0]["impulse"][0][0], math.sqrt(20), delta=1e-9)
@@ -243,6 +273,11 @@ until = 2
             self.run_tool("simulate", "elastic-ball", "--method", "fesd", "--out", name, "--set", setting, code=0)
         self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
 
+    def test_numbers_are_looked_at_whatever_the_method_is(self):
+        file = self.write("bad.toml", BALL.replace("[simulate]", "[time_freezing]\na_n = 'x'\n[simulate]"))
+        for command in ("check", "simulate"):
+            self.assertIn("a_n must be a constant, found 'x'", self.run_tool(command, file, code=2)[1])
+
     def test_bad_input(self):
         for change, line in (
             (("[simulate]", "[time_freezing]\na_n = 0\n[simulate]"), "a_n is 0"),
@@ -254,6 +289,9 @@ until = 2
             (("[simulate]", "[time_freezing]\nstabilisation = { initial = 1, final = -1 }\n[simulate]"), "final is -1"),
             (("[simulate]", "[time_freezing]\nstabilisation = { final = 1 }\n[simulate]"), "no `initial`"),
             (("[simulate]", "[time_freezing]\nstabilisation = { initial = 1, fnal = 0 }\n[simulate]"), "'final'"),
+            (("[simulate]", "[time_freezing]\na_n = 'x'\n[simulate]"), "a_n must be a constant, found 'x'"),
+            (("[simulate]", "[[hysteresis]]\nname = 'h'\ninput = 'x'\non = 2\noff = 1\n[time_freezing]\nstabilisation = 'h'\n"
+              "[simulate]"), "stabilisation must be a constant, found 'h'"),
             (("[simulate]", "[time_freezing]\nclock = 'x'\n[simulate]"), "`clock` beside [[contacts]]"),
             (('gap = "z"', 'gap = "z - 0.1*t"'), "the gap of 'ground' depends on t, and time stands still"),
             (("vz = 0\n", "vz = 0\nclock = 0\n"), "a state with the name 'clock' beside [[contacts]]"),

@@ -187,7 +187,8 @@ class Build {
     statement_.switching.resize(description_.switching.size());
     if (freezing_) return declare_frozen(description_, scope_, recognition_, statement_, *freezing_);
     declare_hysteresis(description_, recognition_, statement_);
-    return std::nullopt;
+    const auto numbers = freezing_numbers(description_, scope_);  // for their mistakes
+    return numbers ? std::nullopt : MaybeError(numbers.error());
   }
 
   /// Initial values and bounds; they may use parameters, so all names must mean something first.

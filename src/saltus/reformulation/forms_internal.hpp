@@ -26,8 +26,8 @@ void add_group(GroupSizes group, Sizes& sizes);
 /// Makes parts, f, lifted and surface_alpha of `result`.
 [[nodiscard]] Collected fill_step_form(const model::System& system, const Unnested& unnested,
                                        std::optional<int> lifting, Reformulated& result);
-/// Makes the same in Stewart's form. `alpha` becomes what each surface's alpha is in theta.
-[[nodiscard]] Expected<Collected> fill_stewart_form(const model::System& system, const Unnested& unnested,
+/// Makes the same in Stewart's form; products of alphas in outputs become sums of theta there.
+[[nodiscard]] Expected<Collected> fill_stewart_form(const model::System& system, Unnested& unnested,
                                                     Reformulated& result);
 
 [[nodiscard]] Expected<Reformulated> reformulated(const model::System& system, const ReformulationOptions& options);

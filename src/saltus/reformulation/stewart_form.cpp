@@ -1,5 +1,6 @@
 // (28) of [nurkanovic2024]: sums of independent groups, each with the sign patterns of its switching functions.
 #include <algorithm>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ std::string listed(const std::vector<std::string>& names) {
 
 class StewartForm {
  public:
-  StewartForm(const model::System& system, const Unnested& unnested, Reformulated& result)
+  StewartForm(const model::System& system, Unnested& unnested, Reformulated& result)
       : system_(system), unnested_(unnested), result_(result), alpha_(unnested.surfaces.size()) {}
 
   Expected<Collected> run() {
@@ -90,7 +91,8 @@ class StewartForm {
       collected_.selection.push_back(theta.back());
       collected_.indicator.push_back(g);
     }
-    for (const auto& term : group.terms) add_term(term, part, theta, f);
+    for (const auto& term : group.terms) f[at(term.state)] += mean(term, part, theta);
+    take_means_of_outputs(part, theta);
     result_.dcs.parts.push_back(std::move(part));
     Counts counts;
     counts.theta = rows;
@@ -101,8 +103,7 @@ class StewartForm {
   }
 
   /// A term has a value for each corner of its own selections; the patterns that agree with the corner share it.
-  void add_term(const FieldTerm& term, const DcsPart& part, const std::vector<SXElem>& theta,
-                std::vector<SXElem>& f) const {
+  [[nodiscard]] SXElem mean(const FieldTerm& term, const DcsPart& part, const std::vector<SXElem>& theta) const {
     std::vector<int> columns;
     for (const int surface : term.surfaces) {
       columns.push_back(
@@ -117,13 +118,46 @@ class StewartForm {
       }
       weights[corner] += theta[at(i)];
     }
+    SXElem sum = 0.0;
     for (std::size_t corner = 0; corner < values.size(); ++corner) {
-      f[at(term.state)] += weighted(weights[corner], values[corner], system_.p);
+      sum += weighted(weights[corner], values[corner], system_.p);
     }
+    return sum;
+  }
+
+  /// A product of selections of a part is, like those in f, the weight of regions, not a product of their weights.
+  void take_means_of_outputs(const DcsPart& part, const std::vector<SXElem>& theta) {
+    std::unordered_set<const void*> symbols;
+    for (const int surface : part.surfaces) symbols.insert(unnested_.surface_symbols[at(surface)].get());
+    auto outputs = entries(unnested_.outputs);
+    for (SXElem& output : outputs) {
+      SXElem sum = 0.0;
+      for (const SXElem& value : additive_terms(output, symbols)) {
+        const FieldTerm term{.value = value, .surfaces = surfaces_in(value, part)};
+        sum += term.surfaces.size() > 1 && is_multi_affine(term) ? mean(term, part, theta) : value;
+      }
+      output = sum;
+    }
+    unnested_.outputs = column(outputs);
+  }
+
+  [[nodiscard]] std::vector<int> surfaces_in(const SXElem& value, const DcsPart& part) const {
+    std::vector<int> found;
+    for (const int surface : part.surfaces) {
+      if (SX::depends_on(SX(value), SX(unnested_.surface_symbols[at(surface)]))) found.push_back(surface);
+    }
+    return found;
+  }
+
+  [[nodiscard]] bool is_multi_affine(const FieldTerm& term) const {
+    return std::all_of(term.surfaces.begin(), term.surfaces.end(), [&](int surface) {
+      const SX alpha(unnested_.surface_symbols[at(surface)]);
+      return !SX::depends_on(SX::jacobian(SX(term.value), alpha), alpha);
+    });
   }
 
   const model::System& system_;
-  const Unnested& unnested_;
+  Unnested& unnested_;
   Reformulated& result_;
   std::vector<SXElem> alpha_;
   Collected collected_;
@@ -131,7 +165,7 @@ class StewartForm {
 
 }  // namespace
 
-Expected<Collected> fill_stewart_form(const model::System& system, const Unnested& unnested, Reformulated& result) {
+Expected<Collected> fill_stewart_form(const model::System& system, Unnested& unnested, Reformulated& result) {
   return StewartForm(system, unnested, result).run();
 }
 

@@ -1,6 +1,7 @@
 // Reader of [mechanics].
 #include <fmt/format.h>
 
+#include "saltus/expression/parser.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
 #include "saltus/io/toml/toml_words_internal.hpp"
 
@@ -125,11 +126,11 @@ class MechanicsReader {
 
   std::array<expression::NodePtr, 2> planar(const TomlValue& value) {
     auto coordinates = expressions(value, "a point of the plane, two expressions");
-    if (coordinates.size() != 2) {
+    if (coordinates.size() == 2) return {coordinates[0], coordinates[1]};
+    if (std::holds_alternative<TomlArray>(value.value)) {
       fail("a point of the plane has two coordinates", "write [\"x\", \"z\"]", value.location);
-      return {};
     }
-    return {coordinates[0], coordinates[1]};
+    return {expression::unreadable(value.location), expression::unreadable(value.location)};
   }
 
   void missing(const char* key, const char* remedy) {

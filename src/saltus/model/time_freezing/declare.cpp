@@ -23,30 +23,6 @@ std::optional<Error> find_mistake(const std::string& name, double value, Range r
                {location.line > 0 ? "in [time_freezing]" : "in time_freezing()"}};
 }
 
-std::optional<Error> take_numbers(const ClockDescription& stated, ModelScope& scope, FreezingNumbers& numbers) {
-  struct Key {
-    const char* name;
-    const expression::NodePtr& node;
-    double& number;
-    Range range = Range::positive;
-  };
-  double initial = 0.0, stiffness = 0.0;
-  for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n}, Key{"stiffness", stated.stiffness, stiffness},
-                          Key{"stabilisation", stated.stabilisation, numbers.stabilisation, Range::not_negative},
-                          Key{"stabilisation.initial", stated.stabilisation_initial, initial, Range::not_negative},
-                          Key{"transfer", stated.transfer, numbers.transfer}, Key{"eps_t", stated.eps_t, numbers.eps_t},
-                          Key{"correction", stated.correction, numbers.correction, Range::not_negative},
-                          Key{"penetration", stated.penetration, numbers.penetration, Range::positive_or_infinite}}) {
-    if (!key.node) continue;
-    const auto value = scope.value(*key.node, Reach::everything, key.name);
-    if (!value) return with_context(value.error(), "in [time_freezing]");
-    if (auto error = find_mistake(key.name, *value, key.range, key.node->location)) return error;
-    key.number = *value;
-  }
-  if (stated.stabilisation_initial) numbers.stabilisation_initial = initial;
-  return std::nullopt;
-}
-
 int declare_state(Recognition& recognition, Statement& statement, const std::string& name,
                   const SourceLocation& location = {}) {
   const auto index = static_cast<int>(statement.states.size());
@@ -69,6 +45,35 @@ void declare_stabilisation(Recognition& recognition, Statement& statement, Freez
 }
 
 }  // namespace
+
+Expected<FreezingNumbers> freezing_numbers(const Description& description, ModelScope& scope) {
+  FreezingNumbers numbers;
+  if (!description.clock) return numbers;
+  const ClockDescription& stated = *description.clock;
+  struct Key {
+    const char* name;
+    const expression::NodePtr& node;
+    double& number;
+    Range range = Range::positive;
+  };
+  double initial = 0.0, stiffness = 0.0;
+  for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n}, Key{"stiffness", stated.stiffness, stiffness},
+                          Key{"stabilisation", stated.stabilisation, numbers.stabilisation, Range::not_negative},
+                          Key{"stabilisation.initial", stated.stabilisation_initial, initial, Range::not_negative},
+                          Key{"transfer", stated.transfer, numbers.transfer}, Key{"eps_t", stated.eps_t, numbers.eps_t},
+                          Key{"correction", stated.correction, numbers.correction, Range::not_negative},
+                          Key{"penetration", stated.penetration, numbers.penetration, Range::positive_or_infinite}}) {
+    if (!key.node) continue;
+    const auto value = scope.value(*key.node, Reach::everything, key.name);
+    if (!value) return tl::unexpected(with_context(value.error(), "in [time_freezing]"));
+    if (auto error = find_mistake(key.name, *value, key.range, key.node->location)) {
+      return tl::unexpected(*error);
+    }
+    key.number = *value;
+  }
+  if (stated.stabilisation_initial) numbers.stabilisation_initial = initial;
+  return numbers;
+}
 
 std::optional<Error> find_mistake(const FreezingNumbers& numbers) {
   struct Key {
@@ -111,13 +116,14 @@ void declare_hidden(Recognition& recognition, Statement& statement, const std::v
 
 std::optional<Error> declare_frozen(const Description& description, ModelScope& scope, Recognition& recognition,
                                     Statement& statement, FreezingPlan& plan) {
-  if (description.clock) {
-    if (auto error = take_numbers(*description.clock, scope, plan.numbers)) return error;
-  }
+  // First the names: what is a number may be written by one of them, which is a mistake.
   for (const auto& entry : description.hysteresis) {
     plan.made.hysteresis.push_back({entry.name, declare_state(recognition, statement, entry.name, entry.location)});
     recognition.take_as_two_valued(statement.states.back().symbol);
   }
+  const auto numbers = freezing_numbers(description, scope);
+  if (!numbers) return numbers.error();
+  plan.numbers = *numbers;
   std::vector<ContactToFreeze> contacts;
   for (const auto& contact : description.contacts) {
     contacts.push_back({.name = contact.name, .in_plane = contact.tangents.size() == 2});

@@ -59,6 +59,9 @@ struct ContactToFreeze {
 void declare_hidden(Recognition& recognition, Statement& statement, const std::vector<ContactToFreeze>& contacts,
                     FreezingPlan& plan);
 
+/// Returns the numbers of [time_freezing], defaults for those that are not stated. All names are declared.
+[[nodiscard]] Expected<FreezingNumbers> freezing_numbers(const Description& description, ModelScope& scope);
+
 /// Appends the states of the plan: one for every hysteresis, then what is hidden, the clock last; `t` is the clock from
 /// now on. The values of parameters are known.
 [[nodiscard]] std::optional<Error> declare_frozen(const Description& description, ModelScope& scope,
