@@ -174,6 +174,9 @@ MALFORMED = {
                                                 "where the gap of the contact 'ground' closes"),
     "friction without tangent": ("tangent = { x = 1 }\n", "", 17, "friction and no `tangent`"),
     "three tangents": ("tangent = { x = 1 }", "tangents = [{ x = 1 }, { x = 1 }, { z = 1 }]", 15, "has 3 tangents"),
+    "tangent beside tangents": ("tangent = { x = 1 }", "tangent = { x = 1 }\ntangents = [{ x = 1 }]", 18,
+                                "`tangent` and `tangents` beside each other"),
+    "gap in an expression": ("[simulate]", "[outputs]\ny = 'gap(ground)'\n[simulate]", 20, "contacts by themselves"),
     "tangents in one direction": ("tangent = { x = 1 }", "tangents = [{ x = 1 }, { x = 2 }]", 15, "have one direction"),
     "tangents whose plane has the normal": ("tangent = { x = 1 }", "tangents = [{ x = 1 }, { x = 1, z = 1 }]", 15,
                                             "the plane of the tangents of 'ground' has the direction in which its gap opens"),
@@ -188,6 +191,13 @@ MALFORMED = {
 
 
 class Contacts(tool.ResultTest):
+    def test_the_energy_has_a_column_unless_its_name_is_taken(self):
+        for change in ("[outputs]\nenergy = \"0.5*(vx^2 + vz^2) + 10*z - 1\"\n[simulate]", None):
+            result = self.result(BALL if change is None else BALL.replace("[simulate]", change))
+            self.assertEqual(result["outputs"].count("energy"), 1)
+            energy = result["trajectory"]["outputs"][0][result["outputs"].index("energy")]
+            self.assertAlmostEqual(energy, 18.0 - (change is not None), delta=1e-12)
+
     def test_a_ball_lands_slides_and_stops(self):
         result = self.result(BALL, "--rtol", "1e-11", "--atol", "1e-13")
         self.assertEqual(result["states"], ["x", "z", "vx", "vz"])

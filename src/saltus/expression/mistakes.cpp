@@ -148,6 +148,10 @@ struct FunctionMistake {
   std::string_view remedy;
 };
 
+constexpr std::string_view contact_output =
+    "results have gap(NAME), force(NAME), friction(NAME) and impulse(NAME) of contacts by themselves; in an expression "
+    "write what the gap is";
+
 constexpr std::array function_mistakes{
     FunctionMistake{"sgn", "did you mean 'sign'?"},
     FunctionMistake{"signum", "did you mean 'sign'?"},
@@ -208,6 +212,10 @@ constexpr std::array function_mistakes{
     FunctionMistake{"AND", "write 'and' between two conditions"},
     FunctionMistake{"OR", "write 'or' between two conditions"},
     FunctionMistake{"NOT", "write 'not' in lower case"},
+    FunctionMistake{"gap", contact_output},
+    FunctionMistake{"force", contact_output},
+    FunctionMistake{"friction", contact_output},
+    FunctionMistake{"impulse", contact_output},
 };
 
 }  // namespace

@@ -32,8 +32,10 @@ class ContactReader {
     } else if (key == "gap") {
       contact_.gap = reader_.expression(value);
     } else if (key == "tangent") {
+      if (!contact_.tangents.empty()) return both(location);
       contact_.tangents.push_back(tangent(value));
     } else if (key == "tangents") {
+      if (!contact_.tangents.empty()) return both(location);
       const auto* list = std::get_if<TomlArray>(&value.value);
       if (list == nullptr) return reader_.wrong_type("a list of two tangents, [{ x = 1 }, { y = 1 }]", value);
       for (const auto& one : *list) contact_.tangents.push_back(tangent(one));
@@ -55,6 +57,9 @@ class ContactReader {
     return row;
   }
 
+  void both(const SourceLocation& location) {
+    fail("`tangent` and `tangents` beside each other", "write one tangent, or a list of two in `tangents`", location);
+  }
   void missing(const char* key, const char* remedy) {
     fail(fmt::format("this contact has no `{}`", key), remedy, contact_.location);
   }

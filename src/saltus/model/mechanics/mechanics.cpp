@@ -63,11 +63,21 @@ class MechanicsBuild {
     }
     set_dynamics(factors.solve(force));
     const SX kinetic = SX::mtimes(v_.T(), SX::mtimes(mechanics_.mass, v_)) / 2.0;
-    statement_.automatic_outputs.push_back({"energy", SX::densify(kinetic + mechanics_.potential).scalar()});
+    if (!is_taken("energy")) {
+      statement_.automatic_outputs.push_back({"energy", SX::densify(kinetic + mechanics_.potential).scalar()});
+    }
     return std::nullopt;
   }
 
  private:
+  /// Columns of results have the names of states, controls and outputs.
+  [[nodiscard]] bool is_taken(std::string_view name) const {
+    const auto in = [&](const auto& stated) {
+      return std::any_of(stated.begin(), stated.end(), [&](const auto& entry) { return entry.name == name; });
+    };
+    return in(statement_.states) || in(statement_.controls) || in(statement_.outputs);
+  }
+
   [[nodiscard]] std::optional<Error> check_reach(const SXElem& expression, const std::string& what,
                                                  const SourceLocation& location) {
     const auto node = recognition_.graph.add(expression);
