@@ -62,8 +62,8 @@ struct OcpClock {
 /// Every expression is an output of `system`: L, E, constraints.
 struct Ocp {
   System
-      system;  ///< controls: the user's, then one per kink of controls; outputs: the user's, then those of the problem
-  int user_controls = 0, user_outputs = 0;
+      system;  ///< controls: the user's, then one per kink of controls; outputs: the user's, those of the problem, others
+  int user_controls = 0, user_outputs = 0, problem_outputs = 0;
   /// Controls that are slacks of kinks of states and controls in the running cost: a value per stage.
   std::vector<int> stage_slacks;
   double from = 0.0;

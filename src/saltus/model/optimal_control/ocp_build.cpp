@@ -50,6 +50,7 @@ class OcpBuild {
     if (!system) return tl::unexpected(system.error());
     ocp_.system = std::move(*system);
     ocp_.user_outputs = quantities_.user_outputs();
+    ocp_.problem_outputs = quantities_.count();
     ocp_.user_controls = slacks_.user_controls();
     ocp_.stage_slacks = slacks_.stage_slacks();
     using Step = std::optional<Error> (OcpBuild::*)();

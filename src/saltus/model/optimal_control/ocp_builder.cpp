@@ -111,6 +111,7 @@ struct OcpBuilder::Parts {
   std::optional<Error> take_system() {
     auto& stated = *system.parts_;
     if (stated.error) return stated.error;
+    ocp.problem_outputs = outputs - ocp.user_outputs;
     auto physical = guarded([&] { return stated.as_written(); });
     if (!physical) return physical.error();
     if (!stated.stands_still()) {

@@ -33,6 +33,7 @@ class OcpQuantities {
   /// Returns the output that a quantity is in the system.
   [[nodiscard]] int output(int quantity) const { return user_outputs_ + quantity; }
   [[nodiscard]] int user_outputs() const { return user_outputs_; }
+  [[nodiscard]] int count() const { return static_cast<int>(expressions_.size()); }
 
  private:
   const Description& description_;

@@ -51,7 +51,7 @@ result::Result result_frame(const model::Ocp& ocp, const OptimizeOptions& option
     for (const auto& contact : system.freezing->contacts) result.contacts.push_back(contact.name);
   }
   result.controls.assign(system.control_names.begin(), system.control_names.begin() + ocp.user_controls);
-  result.outputs.assign(system.output_names.begin(), system.output_names.begin() + ocp.user_outputs);
+  for (const std::size_t column : shown_outputs(ocp)) result.outputs.push_back(system.output_names[column]);
   for (const auto& column : system.columns) result.switching_functions.push_back(column.name);
   for (const auto& group : system.mode_groups) {
     const bool is_shown = group.name.find('.') == std::string::npos;  // else freezing has made it

@@ -234,9 +234,12 @@ OptimizedPath path_of(const OcpSolution& solution, const std::vector<double>& ti
 
 /// What the problem has added to the model stays out of the result.
 void keep_those_of_the_user(const model::Ocp& ocp, OptimizedRun& run) {
+  const auto outputs = shown_outputs(ocp);
   run.trajectory.u.narrow(at(ocp.user_controls));
-  run.trajectory.outputs.narrow(at(ocp.user_outputs));
-  run.final.outputs.resize(at(ocp.user_outputs));
+  run.trajectory.outputs.keep_columns(outputs);
+  std::vector<double> shown;
+  for (const std::size_t column : outputs) shown.push_back(run.final.outputs[column]);
+  run.final.outputs = std::move(shown);
 }
 
 /// Rows and events of numerical time, in physical time.
@@ -251,6 +254,15 @@ void take_physical(const model::Ocp& ocp, const OcpSolution& solution, Recorder&
 }
 
 }  // namespace
+
+std::vector<std::size_t> shown_outputs(const model::Ocp& ocp) {
+  std::vector<std::size_t> columns;
+  const std::size_t hidden = ocp.system.freezing ? 1 : 0;  // the rate of the clock, the last one
+  for (std::size_t i = 0; i + hidden < ocp.system.output_names.size(); ++i) {
+    if (i < at(ocp.user_outputs) || i >= at(ocp.user_outputs + ocp.problem_outputs)) columns.push_back(i);
+  }
+  return columns;
+}
 
 Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& solution,
                                      const reformulation::ReformulationOptions& form, const ButcherTableau& tableau) {
@@ -298,9 +310,9 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   if (clock) return run;
   auto between = solution_of(pieces, tableau, std::move(*kernel), std::move(*functions), known);
   run.continuous = continuous(run.trajectory, std::move(between),
-                              [controls = at(ocp.user_controls), outputs = at(ocp.user_outputs)](auto& rows) {
+                              [controls = at(ocp.user_controls), outputs = shown_outputs(ocp)](auto& rows) {
                                 rows.u.narrow(controls);
-                                rows.outputs.narrow(outputs);
+                                rows.outputs.keep_columns(outputs);
                               });
   return run;
 }

@@ -17,7 +17,7 @@
 namespace saltus::pipeline {
 
 /// Holds what a simulation with `fesd` has, too:
-/// - rows at stages and ends of elements with controls and outputs of the user;
+/// - rows at stages and ends of elements with controls of the user and shown_outputs();
 /// - events where the active set changes;
 /// - the complementarities at the points of the elements.
 struct OptimizedRun {
@@ -30,6 +30,9 @@ struct OptimizedRun {
   std::shared_ptr<result::Continuous> continuous;  ///< null where time is frozen
   std::vector<std::string> switching_functions;    ///< of a frozen system: those that the result shows
 };
+
+/// Returns which outputs of the system a result shows: all but those of the problem and the rate of a hidden clock.
+[[nodiscard]] std::vector<std::size_t> shown_outputs(const model::Ocp& ocp);
 
 /// Reads the sides of the pairs of an element off its sums over the stages: the smaller one is zero. Where time is
 /// frozen by hand, rows, events and elements of the result are in physical time (the clock), frozen pieces left out of
