@@ -280,7 +280,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   warn_of_impacts_at_nodes(result, observers);
   if (result.status.termination != Termination::stopped_by_user && solution->w.allFinite()) {
     std::vector<Eigen::MatrixXd> gains;
-    if (options.closed_loop) {
+    if (options.closed_loop.value_or(ocp.plant || !result.contacts.empty())) {
       gains = solver::feedback_gains(problem, *solution, static_cast<int>(ocp.system.control_names.size()),
                                      static_cast<int>(result.states.size()), tracking_scales(ocp, options, run->path));
     }

@@ -63,7 +63,7 @@ std::optional<OptionProblem> problem_of_references(const OptimizeOptions& option
 }
 
 std::optional<OptionProblem> problem_of_plant(const OptimizeOptions& options, const model::OcpDescription& problem) {
-  if (options.closed_loop || problem.plant.empty()) return std::nullopt;
+  if (options.closed_loop.value_or(true) || problem.plant.empty()) return std::nullopt;
   auto found = misfit("closed_loop", "plant is what closed_loop simulates, and closed_loop is false",
                       "write closed_loop = true, or leave plant out");
   found.error.location = problem.plant.front().value->location;

@@ -83,8 +83,10 @@ constexpr std::array method_fields{
         "native", "Model functions as compiled code, as in a simulation."),
     choice_field<start_values_of, start_words, OptimizeOptions>(
         "start", "What selections and multipliers begin with: middle values, or those of a simulation of the guess."),
-    truth_field<closed_loop_of, OptimizeOptions>(
-        "closed_loop", "Simulate the controls with feedback from the states, too, beside the open loop."),
+    truth_or_none_field<closed_loop_of, auto_word, OptimizeOptions>(
+        "closed_loop",
+        "Simulate the controls with feedback from the states, too, beside the open loop; auto: where bodies touch, and "
+        "with `plant`."),
     choice_field<feedback_of, feedback_words, OptimizeOptions>(
         "feedback",
         "Gains of `closed_loop`: how the optimal controls change with the states at nodes, or a controller that tracks "

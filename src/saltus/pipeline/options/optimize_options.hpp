@@ -28,7 +28,7 @@ struct OptimizeOptions {
   Native native = Native::automatic;
   StartValues start = StartValues::neutral;
   double verification_tolerance = 1e-3;
-  bool closed_loop = false;                            ///< simulate the controls with feedback, too
+  std::optional<bool> closed_loop;                     ///< simulate with feedback, too; nothing: with contacts
   Feedback feedback = Feedback::optimal;               ///< of the closed loop
   std::optional<std::string> start_result{};           ///< file: initial_guess = { result = FILE } or --start
   std::shared_ptr<const result::Result> start_from{};  ///< that file as read, by whoever calls pipeline::optimize

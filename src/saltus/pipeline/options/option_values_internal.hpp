@@ -78,19 +78,22 @@ void set_truth(Options& options, std::string_view, const OptionValue& value) {
   access(options) = std::get<bool>(value);
 }
 
-/// Sets a number, or none where the value is a word.
+/// Sets a number or a truth, or none where the value is a word.
 template <auto access, class Options>
-void set_number_or_none(Options& options, std::string_view, const OptionValue& value) {
+void set_or_none(Options& options, std::string_view, const OptionValue& value) {
+  using Stated = typename MemberOf<access, Options>::value_type;
   auto& member = access(options);
   if (std::holds_alternative<std::string>(value)) {
     member.reset();
+  } else if constexpr (std::is_same_v<Stated, bool>) {
+    member = std::get<bool>(value);
   } else {
-    member = static_cast<typename MemberOf<access, Options>::value_type>(number_in(value));
+    member = static_cast<Stated>(number_in(value));
   }
 }
 
 template <auto access, const auto& none, class Options>
-void record_number_or_none(const Options& options, std::string_view key, OptionRecord& record) {
+void record_or_none(const Options& options, std::string_view key, OptionRecord& record) {
   const auto& member = access(options);
   record.emplace_back(key, member ? recorded(*member) : OptionValue(std::string(none.front())));
 }
@@ -124,8 +127,13 @@ constexpr FieldOf<Options> number_or_none_field(std::string_view key, const Numb
   return {key,
           {.words = none, .number = numbers},
           doc,
-          set_number_or_none<access, Options>,
-          record_number_or_none<access, none, Options>};
+          set_or_none<access, Options>,
+          record_or_none<access, none, Options>};
+}
+template <auto access, const auto& none, class Options = SimulateOptions>
+constexpr FieldOf<Options> truth_or_none_field(std::string_view key, std::string_view doc) {
+  return {
+      key, {.words = none, .truth = true}, doc, set_or_none<access, Options>, record_or_none<access, none, Options>};
 }
 template <auto access, class Options = SimulateOptions>
 constexpr FieldOf<Options> truth_field(std::string_view key, std::string_view doc) {
@@ -145,7 +153,7 @@ constexpr FieldOf<Options> choice_field(std::string_view key, std::string_view d
 inline constexpr Numbers any_number{}, positive_number{.above = 0.0}, not_negative_number{.from = 0.0},
     counting_number{.whole = true, .from = 1.0};
 /// The words of numbers that there may be none of.
-inline constexpr std::array<std::string_view, 1> none_word{"none"}, off_word{"off"};
+inline constexpr std::array<std::string_view, 1> none_word{"none"}, off_word{"off"}, auto_word{"auto"};
 
 /// Returns the fields of [simulate.fesd] and [simulate.timestepping].
 [[nodiscard]] std::span<const OptionField> element_fields();
