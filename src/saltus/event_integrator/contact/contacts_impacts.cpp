@@ -25,6 +25,15 @@ void drop_roundings(double size, ContactPoint& point) {
   }
 }
 
+/// What is left of a slip in a plane that an impact ends while it turns.
+void end_turning_slips(double fastest, ContactPoint& point) {
+  constexpr double left = 1e-10;
+  for (int i = 0; i < point.contacts(); ++i) {
+    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * fastest) continue;
+    for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
+  }
+}
+
 }  // namespace
 
 /// The impulses, and the velocities behind them.
@@ -98,11 +107,7 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
     point.velocity(still).setZero();
     drop_roundings(fastest, point);
   }
-  constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
-  for (int i = 0; i < point.contacts(); ++i) {
-    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * fastest) continue;
-    for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
-  }
+  end_turning_slips(fastest, point);
   return true;
 }
 

@@ -47,8 +47,8 @@ class Orders {
   }
 
   /// Whether all orders end alike, as the signs of what contacts do to each other say. Without restitution, and where
-  /// no impulse opens another contact, every process adds impulses up to the least ones that leave nothing closing, and
-  /// none beyond them.
+  /// no impulse opens another contact, there are least impulses that leave nothing closing. Every process adds impulses
+  /// up to them, and none beyond.
   [[nodiscard]] bool agree_by_signs() const {
     if (involved_.size() < 2) return true;
     if (has_friction_) return false;

@@ -19,9 +19,9 @@ struct OtherEnd {
   double velocity = 0.0, together = 0.0;
 };
 
-/// Compares impulses of all contacts at once with those of one contact behind the other, each until it closes no more,
-/// in all orders of up to three contacts; of more, each of those that close is the first once. Sequences without an end
-/// are followed to their limit. Orders that are too long, or have no limit, say nothing.
+/// Compares impulses of all contacts at once with those of one contact behind the other, each until it closes no more.
+/// That is done in all orders of up to three contacts; of more, each of those that close is the first once. Sequences
+/// without an end are followed to their limit. Orders that are too long, or have no limit, say nothing.
 ///
 /// @param touching  contacts whose gap is 0
 /// @param impulses  r, of the process of all contacts
