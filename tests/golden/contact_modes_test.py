@@ -101,6 +101,26 @@ friction = 0.08698190331458933
 until = 3
 """
 
+# Its second row loses its inertia where q = b.
+DIAGONAL = '[[1, 0], [0, "b - q"]]'
+MASS = f"""[model]
+name = "mass"
+[parameters]
+b = 0.7
+[states]
+q = 0
+a = 0
+v = 1
+w = 0.3
+[mechanics]
+positions = ["q", "a"]
+velocities = ["v", "w"]
+mass = {DIAGONAL}
+force = {{ w = "FORCE" }}
+[simulate]
+until = 3
+"""
+
 # Bounces of one contact accumulate while two others slip: in the limit all three are at rest.
 LIMIT = """[model]
 name = "three come to rest"
@@ -291,6 +311,22 @@ until = 5
             self.assertGreater(min(row[force] for row in result["trajectory"]["outputs"]), -1e-9, name)
         limit = next(event for event in result["events"] if event["kind"] == "accumulation")
         self.assertEqual(limit["contact_modes_after"], 3 * ["stick"])
+
+    def test_a_mass_that_is_lost_on_the_way_ends_the_run(self):
+        """The inertia b - q of the second row is used up where q = b, whatever turns it."""
+        for mass in (DIAGONAL, '[[1, 1], [1, "1 + b - q"]]'):
+            for force in ("-1", "0.1*(b - q)", "w - 1"):
+                for integrator in ("dopri5", "dop853", "radau5", "taylor"):
+                    with self.subTest(mass=mass, force=force, integrator=integrator):
+                        result = self.result(MASS.replace(DIAGONAL, mass).replace("FORCE", force), "--integrator", integrator, code=3)
+                        status = result["status"]
+                        self.assertEqual(status["termination"], "outside_class")
+                        self.assertIn("the mass matrix is not positive definite beyond", status["message"])
+                        self.assertIn("row 2 ('w')", status["message"])
+        jump = MASS.replace("FORCE", "-1") + '[[jumps]]\nat = [0.1]\nset = { q = 1 }\n'
+        status = self.result(jump, code=3)["status"]
+        self.assertEqual((status["termination"], status["time_reached"]), ("outside_class", 0.1))
+        self.assertIn("row 2 ('w')", status["message"])
 
     def test_what_is_held_by_itself_is_zero(self):
         """A cart that sticks under its pendulum: its velocity is 0, not the rounding of a projection."""

@@ -297,7 +297,7 @@ result::Event balls_in_a_row(const std::vector<double>& speed, double restitutio
   model.mechanics({.positions = {"q0", "q1", "q2"}, .velocities = {"v0", "v1", "v2"}});
   model.contact("first", q[1] - q[0] - 1.0, {.restitution = restitution});
   model.contact("second", q[2] - q[1] - 1.0, {.restitution = restitution});
-  return run_tightly(model, 0.1).events.at(0);
+  return run_tightly(model, 0.1).events[0];
 }
 
 /// One behind the other the last ball of a cradle takes all of the velocity. From both sides elastic balls exchange
@@ -332,7 +332,7 @@ TEST(OrdersOfImpacts, ACorner) {
     };
     model.contact("wall", x, options("z"));
     model.contact("ground", z, options("x"));
-    return run_tightly(model, 0.1).events.at(0);
+    return run_tightly(model, 0.1).events[0];
   };
   EXPECT_EQ(into_corner(0.0, 0.0).unique, true);
   EXPECT_EQ(into_corner(0.0, 0.7).unique, true);
