@@ -1,5 +1,5 @@
 // What does the resolution of an impact cost? Contacts of boxes: one without friction, one that slips and sticks, one
-// with two tangents whose slip turns, four corners at once.
+// with two tangents whose slip turns, four corners at once; and the comparison with one corner behind the other.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,6 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "saltus/event_integrator/contact/impact.hpp"
+#include "saltus/event_integrator/contact/impact_orders.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -52,12 +53,24 @@ void impacts(benchmark::State& state, int contacts, int tangents, double frictio
   if (!impact(point, touching)) state.SkipWithError("no impulses");
   for (auto _ : state) benchmark::DoNotOptimize(impact(point, touching));
 }
+void comparisons(benchmark::State& state, int contacts, int tangents, double friction) {
+  const ContactPoint point = body(contacts, tangents, friction);
+  std::vector<int> touching;
+  for (int i = 0; i < contacts; ++i) touching.push_back(i);
+  const auto impulses = impact(point, touching);
+  if (!impulses || !find_other_end(point, touching, *impulses)) state.SkipWithError("no other end");
+  for (auto _ : state) benchmark::DoNotOptimize(find_other_end(point, touching, *impulses));
+}
+
 BENCHMARK_CAPTURE(impacts, one_without_friction, 1, 0, 0.0);
 BENCHMARK_CAPTURE(impacts, one_slips, 1, 1, 0.1);
 BENCHMARK_CAPTURE(impacts, one_sticks, 1, 1, 1.0);
 BENCHMARK_CAPTURE(impacts, one_in_a_plane, 1, 2, 0.3)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(impacts, four_without_friction, 4, 0, 0.0)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(impacts, four_with_friction, 4, 1, 0.3)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(comparisons, two_without_friction, 2, 0, 0.0)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(comparisons, four_without_friction, 4, 0, 0.0)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(comparisons, four_with_friction, 4, 1, 0.3)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace saltus::event_integrator

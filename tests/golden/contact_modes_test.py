@@ -101,6 +101,67 @@ friction = 0.08698190331458933
 until = 3
 """
 
+# Its second row loses its inertia where q = b.
+DIAGONAL = '[[1, 0], [0, "b - q"]]'
+MASS = f"""[model]
+name = "mass"
+[parameters]
+b = 0.7
+[states]
+q = 0
+a = 0
+v = 1
+w = 0.3
+[mechanics]
+positions = ["q", "a"]
+velocities = ["v", "w"]
+mass = {DIAGONAL}
+force = {{ w = "FORCE" }}
+[simulate]
+until = 3
+"""
+
+# Bounces of one contact accumulate while two others slip: in the limit all three are at rest.
+LIMIT = """[model]
+name = "three come to rest"
+[states]
+q0 = 0
+q1 = 0
+q2 = 0
+q3 = 0
+v0 = -0.21767341868334866
+v1 = 0.9082304940790829
+v2 = -0.3022374403371426
+v3 = 0.2921173838467408
+[mechanics]
+positions = ["q0", "q1", "q2", "q3"]
+velocities = ["v0", "v1", "v2", "v3"]
+mass = [[0.6334939342403885, 0.5329189521701388, 0.5110203613712322, -0.3010220325567163],
+        [0.5329189521701388, 1.316788239917588, 0.7358865464496466, -0.09181789943388338],
+        [0.5110203613712322, 0.7358865464496466, 1.2635728936776935, -0.7758058742795614],
+        [-0.3010220325567163, -0.09181789943388338, -0.7758058742795614, 1.7166694650376564]]
+potential = """ + '"(q0^2 + q1^2 + q2^2 + q3^2)/2 + 0.0662967193507451*q0 + 0.8045999114125195*q1 - 0.8102382431987731*q2 - 0.22224001358585244*q3"' + """
+[[contacts]]
+name = "c0"
+gap = "0.21975415716220087 + 0.1*q0^2 - 0.6422862207734445*q0 + 0.689124476391674*q1 - 0.4703189848349361*q2 + 0.5501996323796665*q3"
+restitution = 0.2997479429768589
+friction = 0.9666432698325522
+tangent = { q0 = -0.2280552627941983, q1 = 0.836813538816175, q2 = 0.0405086535619501, q3 = -0.39622709893576213 }
+[[contacts]]
+name = "c1"
+gap = "0.1887657531213991 + 0.1*q0^2 + 0.9677469353130175*q0 + 0.8651021560760195*q1 - 0.06700162921401032*q2 + 0.15749320603315398*q3"
+friction = 0.36335758500695214
+tangents = [{ q0 = -0.16749494823058875, q1 = 0.3052903565551075, q2 = -0.5821924047503826, q3 = -0.11966795076323389 },
+            { q0 = -0.7208002974921193, q1 = 0.7458843041381535, q2 = 0.3364410429864457, q3 = -0.2775308141288655 }]
+[[contacts]]
+name = "c3"
+gap = "0.3205002507116627 + 0.1*q0^2 - 0.9714470033698948*q0 + 0.06019413247461314*q1 - 0.4917564911093504*q2 - 0.8474494912843089*q3"
+friction = 1.2982949493303861
+tangent = { q0 = -0.07526105708510311, q1 = -0.12427052751459255, q2 = 0.7803146047027671, q3 = 0.2999061341092746 }
+[simulate]
+until = 5
+"""
+
 
 class ContactModes(tool.ResultTest):
     def test_the_unit_of_mass_changes_nothing(self):
@@ -242,6 +303,30 @@ until = 5
         self.assertEqual(result["final"]["contact_modes"], 3 * ["stick"])
         for speed in result["final"]["x"][4:]:
             self.assertAlmostEqual(speed, 0, delta=1e-12)
+
+    def test_what_comes_to_rest_in_a_limit_does_not_slip_there(self):
+        result = self.result(LIMIT)
+        for name in ("c0", "c1", "c3"):
+            force = result["outputs"].index(f"force({name})")
+            self.assertGreater(min(row[force] for row in result["trajectory"]["outputs"]), -1e-9, name)
+        limit = next(event for event in result["events"] if event["kind"] == "accumulation")
+        self.assertEqual(limit["contact_modes_after"], 3 * ["stick"])
+
+    def test_a_mass_that_is_lost_on_the_way_ends_the_run(self):
+        """The inertia b - q of the second row is used up where q = b, whatever turns it."""
+        for mass in (DIAGONAL, '[[1, 1], [1, "1 + b - q"]]'):
+            for force in ("-1", "0.1*(b - q)", "w - 1"):
+                for integrator in ("dopri5", "dop853", "radau5", "taylor"):
+                    with self.subTest(mass=mass, force=force, integrator=integrator):
+                        result = self.result(MASS.replace(DIAGONAL, mass).replace("FORCE", force), "--integrator", integrator, code=3)
+                        status = result["status"]
+                        self.assertEqual(status["termination"], "outside_class")
+                        self.assertIn("the mass matrix is not positive definite beyond", status["message"])
+                        self.assertIn("row 2 ('w')", status["message"])
+        jump = MASS.replace("FORCE", "-1") + '[[jumps]]\nat = [0.1]\nset = { q = 1 }\n'
+        status = self.result(jump, code=3)["status"]
+        self.assertEqual((status["termination"], status["time_reached"]), ("outside_class", 0.1))
+        self.assertIn("row 2 ('w')", status["message"])
 
     def test_what_is_held_by_itself_is_zero(self):
         """A cart that sticks under its pendulum: its velocity is 0, not the rounding of a projection."""

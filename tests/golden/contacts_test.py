@@ -372,6 +372,21 @@ until = 2.5
             (self.folder / "m.toml").write_text(text, encoding="utf-8")
             _, err = self.run_tool("simulate", "m.toml", code=2)
             self.assertIn(words, err)
+        # One that depends on t is looked at where the run begins.
+        turning = BALL.replace("tangent = { x = 1 }", 'tangent = { x = "t - 1" }').replace("until = 2", "from = FROM\nuntil = 3")
+        (self.folder / "m.toml").write_text(turning.replace("FROM", "1"), encoding="utf-8")
+        for command in ("simulate", "check"):
+            _, err = self.run_tool(command, "m.toml", code=2)
+            self.assertRegex(err, r"^m.toml:\d+:.* the tangent of 'ground' is 0 at the start, t = 1\n")
+        late = turning.replace('"t - 1"', '"t"').replace("FROM", "2").replace("until = 3", "until = 4")
+        self.assertEqual(self.result(late)["events"][0]["kind"], "impact")  # at t = 0 it would be 0
+
+    def test_a_gap_without_a_value(self):
+        for gap in ("sqrt(z - 2)", "sqrt(z - 2 + 0*t)"):
+            (self.folder / "m.toml").write_text(BALL.replace('gap = "z"', f'gap = "{gap}"'), encoding="utf-8")
+            _, err = self.run_tool("simulate", "m.toml", code=2)
+            self.assertIn("the gap of 'ground' is not a number at the start", err)
+            self.assertIn("change them, or the expression", err)
 
     def test_gaps_that_depend_on_time_are_looked_at_where_the_run_begins(self):
         pad = BALL.replace('gap = "z"', 'gap = "z - 0.2*cos(t)"').replace("z = 1", "z = 0.05")

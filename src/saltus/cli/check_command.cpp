@@ -18,7 +18,7 @@
 #include "saltus/io/check/json_check.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
-#include "saltus/model/mechanics/gaps_at_start.hpp"
+#include "saltus/model/mechanics/contacts_at_start.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -68,7 +68,7 @@ ExitCode run_check(const CheckArguments& arguments) {
   if (const auto fit = io::check_options(input->file); !fit && input->file.simulate.until) {
     return refuse_model(arguments, fit.error(), *text);
   }
-  if (const auto apart = model::check_gaps_at_start(*system, input->file.simulate.from)) {
+  if (const auto apart = model::check_contacts_at_start(*system, input->file.simulate.from)) {
     return refuse_model(arguments, io::located(*apart, input->file), *text);
   }
   const auto optimization = optimize_overview(*input);

@@ -332,7 +332,10 @@ class Assembly {
   }
 
   void take_decisions() {
-    Decisions decisions{.noted = recognition_.decisions(), .discrete = discrete_, .targets = targets_};
+    Decisions decisions{.noted = recognition_.decisions(),
+                        .discrete = discrete_,
+                        .targets = targets_,
+                        .mass_pivots = statement_.mass_pivots};
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
       decisions.functions.emplace_back(surfaces_[i].psi, met(kept_[i]).name);
       if (classes_[i].role == SwitchingRole::kink) decisions.kinks.push_back(surfaces_[i]);

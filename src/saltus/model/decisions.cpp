@@ -162,4 +162,25 @@ std::optional<Error> find_stale(const System& system) {
   return system.decisions ? ChangedValues(system).find() : std::nullopt;
 }
 
+std::optional<std::string> find_indefinite_mass(const System& system, const std::vector<double>& x) {
+  if (!system.decisions) return std::nullopt;
+  const Tape& tape = system.decisions->tape;
+  Point point = blank_point(tape);
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    const auto& variable = tape.variables()[i];
+    const auto place = at(variable.index);
+    if (variable.kind == VariableKind::state || variable.kind == VariableKind::discrete) point[i] = x[place];
+    if (variable.kind == VariableKind::parameter) point[i] = system.parameter_values[place];
+  }
+  for (const auto& pivot : system.decisions->mass_pivots) {
+    TapeValues values;
+    evaluate(tape, tape.cone(std::span(&pivot.node, 1), Links::through_alpha), point, values);
+    const double value = values.value[at(pivot.node)];
+    if (!(value <= 0.0)) continue;
+    return fmt::format("row {} ('{}') has no positive mass (pivot {:.3g})", pivot.row + 1,
+                       system.state_names[at(pivot.velocity)], value);
+  }
+  return std::nullopt;
+}
+
 }  // namespace saltus::model

@@ -16,7 +16,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/decisions.hpp"
-#include "saltus/model/mechanics/gaps_at_start.hpp"
+#include "saltus/model/mechanics/contacts_at_start.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
@@ -283,7 +283,7 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   if (auto error = model::find_stale(system)) return tl::unexpected(*error);
   {
     const SymbolicLock lock;
-    if (auto error = model::check_gaps_at_start(system, options.from)) return tl::unexpected(*error);
+    if (auto error = model::check_contacts_at_start(system, options.from)) return tl::unexpected(*error);
   }
   const auto& other = system.frozen;
   if (options.method != Method::event && other && other->system && !other->system->freezing) {

@@ -247,4 +247,119 @@ TEST(ContactsWithOpenForces, AWallHoldsWhatFrictionHasHeldAtIt) {
   }
 }
 
+namespace {
+
+/// A rod falls flat on its two ends, at a distance of 1 from its centre; its mass is 1.
+Integration rod_on_its_ends(double inertia, double restitution) {
+  model::Builder model("rod");
+  const SX z = model.state("z", {0.0}), a = model.state("a", {0.0});
+  static_cast<void>(model.state("vz", {-1.0}));
+  static_cast<void>(model.state("w", {0.0}));
+  SX mass = SX::eye(2);
+  mass(1, 1) = inertia;
+  model.mechanics({.positions = {"z", "a"}, .velocities = {"vz", "w"}, .mass = mass});
+  model.contact("left", z - sin(a), {.restitution = restitution});
+  model.contact("right", z + sin(a), {.restitution = restitution});
+  return run_tightly(model, 0.1);
+}
+
+/// What an end does to the other one is c = (J - 1)/(J + 1) of what is done to it.
+TEST(OrdersOfImpacts, ARodLandsFlatInEveryOrderIfItsEndsPressEachOtherDown) {
+  for (const auto& [inertia, restitution] : {std::pair{1.0 / 3.0, 0.0}, std::pair{0.9, 0.0}, std::pair{1.0, 0.5}}) {
+    const auto run = rod_on_its_ends(inertia, restitution);
+    ASSERT_EQ(run.events.size(), 1U);
+    EXPECT_EQ(run.events[0].unique, true) << inertia << ": " << run.events[0].reason;
+    EXPECT_NEAR(run.events[0].x_after[2], restitution, 1e-14);
+  }
+}
+
+TEST(OrdersOfImpacts, ARodLandsFlatOrTipsIfItsEndsLiftEachOther) {
+  // J = 3, c = 1/2: behind the first impact the other end falls with 1 - c, and lifts the first one by (1 - c) c.
+  const auto tips = rod_on_its_ends(3.0, 0.0);
+  ASSERT_EQ(tips.events.size(), 1U);
+  EXPECT_EQ(tips.events[0].unique, false);
+  EXPECT_NEAR(tips.events[0].x_after[2], 0.0, 1e-14);
+  const std::string other =
+      "one behind the other ('left', 'right') they would end elsewhere: the rate of the gap of 'left' is 0.25, not 0";
+  EXPECT_NE(tips.events[0].reason.find(other), std::string::npos) << tips.events[0].reason;
+  // With restitution the ends of a thin one, c = -1/2, end apart as well.
+  const auto bounces = rod_on_its_ends(1.0 / 3.0, 0.5);
+  ASSERT_EQ(bounces.events.size(), 1U);
+  EXPECT_EQ(bounces.events[0].unique, false);
+}
+
+/// The first event of three equal balls in a row that touch.
+result::Event balls_in_a_row(const std::vector<double>& speed, double restitution) {
+  model::Builder model("cradle");
+  std::vector<SX> q;
+  for (std::size_t i = 0; i < 3; ++i) q.push_back(model.state("q" + std::to_string(i), {static_cast<double>(i)}));
+  for (std::size_t i = 0; i < 3; ++i) static_cast<void>(model.state("v" + std::to_string(i), {speed[i]}));
+  model.mechanics({.positions = {"q0", "q1", "q2"}, .velocities = {"v0", "v1", "v2"}});
+  model.contact("first", q[1] - q[0] - 1.0, {.restitution = restitution});
+  model.contact("second", q[2] - q[1] - 1.0, {.restitution = restitution});
+  return run_tightly(model, 0.1).events[0];
+}
+
+/// One behind the other the last ball of a cradle takes all of the velocity. From both sides elastic balls exchange
+/// theirs in either order, and balls without restitution stop.
+TEST(OrdersOfImpacts, BallsInARow) {
+  const auto cradle = balls_in_a_row({1.0, 0.0, 0.0}, 1.0);
+  EXPECT_EQ(cradle.unique, false);
+  EXPECT_NE(cradle.reason.find("('first', 'second')"), std::string::npos) << cradle.reason;
+  for (const double restitution : {0.0, 1.0}) {
+    const auto both = balls_in_a_row({1.0, 0.0, -1.0}, restitution);
+    EXPECT_EQ(both.unique, true) << both.reason;
+  }
+  EXPECT_EQ(balls_in_a_row({1.0, 0.0, 0.0}, 0.0).unique, true);
+  EXPECT_EQ(balls_in_a_row({1.0, 0.0, -1.0}, 0.5).unique, false);
+}
+
+/// A point mass flies into a corner. Impacts of two walls at right angles know nothing of each other; friction that
+/// ends all of the motion does so in every order, other friction does not.
+TEST(OrdersOfImpacts, ACorner) {
+  const auto into_corner = [](double friction, double restitution) {
+    model::Builder model("corner");
+    const SX x = model.state("x", {0.0}), z = model.state("z", {0.0});
+    static_cast<void>(model.state("vx", {-1.0}));
+    static_cast<void>(model.state("vz", {-0.5}));
+    model.mechanics({.positions = in_plane, .velocities = rates});
+    const auto options = [&](const char* along) {
+      model::ContactOptions result;
+      result.restitution = restitution;
+      result.friction = friction;
+      if (friction > 0.0) result.tangent = {{along, 1.0}};
+      return result;
+    };
+    model.contact("wall", x, options("z"));
+    model.contact("ground", z, options("x"));
+    return run_tightly(model, 0.1).events[0];
+  };
+  EXPECT_EQ(into_corner(0.0, 0.0).unique, true);
+  EXPECT_EQ(into_corner(0.0, 0.7).unique, true);
+  EXPECT_EQ(into_corner(0.3, 0.0).unique, true);
+  EXPECT_EQ(into_corner(0.3, 0.7).unique, false);
+}
+
+/// Ends of a rod lean on each other, ever less in turn, and friction holds them: the limit is rest.
+TEST(OrdersOfImpacts, FrictionHoldsWhatLandsInEveryOrder) {
+  model::Builder model("rod");
+  static_cast<void>(model.state("x", {0.0}));
+  const SX z = model.state("z", {0.0}), a = model.state("a", {0.0});
+  static_cast<void>(model.state("vx", {0.01}));
+  static_cast<void>(model.state("vz", {-1.0}));
+  static_cast<void>(model.state("w", {0.1}));
+  SX mass = SX::eye(3);
+  mass(2, 2) = 1.0 / 3.0;
+  model.mechanics(
+      {.positions = {"x", "z", "a"}, .velocities = {"vx", "vz", "w"}, .mass = mass, .potential = weight * z});
+  model.contact("left", z - sin(a), {.tangent = {{"x", 1.0}}, .friction = 0.5});
+  model.contact("right", z + sin(a), {.tangent = {{"x", 1.0}}, .friction = 0.5});
+  const auto run = run_tightly(model, 0.1);
+  ASSERT_FALSE(run.events.empty());
+  EXPECT_EQ(run.events[0].kind, EventKind::impact);
+  EXPECT_EQ(run.events[0].unique, true) << run.events[0].reason;
+  for (const std::size_t state : {3U, 4U, 5U}) EXPECT_NEAR(run.final.x[state], 0.0, 1e-14);
+}
+
+}  // namespace
 }  // namespace saltus::event_integrator::testing

@@ -76,7 +76,7 @@ class Shown {
       sticks = sticks || after[i] == result::ContactMode::stick;
     }
     if (event.surfaces.empty()) return false;
-    const bool is_determined = event.unique != false;
+    const std::string open = event.unique == false ? "; " + event.reason : "";
     event.kind = hit      ? EventKind::impact
                  : closes ? EventKind::contact
                  : opens  ? EventKind::lift_off
@@ -87,7 +87,7 @@ class Shown {
                    : opens  ? "the normal force ends"
                    : sticks ? "friction holds what has come to rest"
                             : "the tangential force reaches the edge of the friction cone, or the slip turns around";
-    if (!is_determined) event.reason += "; the forces of what touches leave more than one motion open";
+    event.reason += open;
     if (hit) event.impulse = std::move(impulse);
     return true;
   }

@@ -131,7 +131,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
 
 std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                              std::vector<double>& x) {
-  determined_ = true;
+  why_open_.clear();
   ContactPoint point = point_at(moment.t, moment.alpha, x);
   last_bounces_.clear();
   if (!ended.empty() &&
@@ -162,9 +162,13 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
     if (!ends) {
       x = x_before;
       point = before;
+      why_open_.clear();
       for (const int i : touching) point.velocity(i) = std::max(point.velocity(i), 0.0);
     }
-    if (touch_only) copy_impulses(x_before, x);
+    if (touch_only) {
+      copy_impulses(x_before, x);
+      why_open_.clear();
+    }
     excluded.assign(contacts_.size(), {});
   }
   auto problem = find_modes(moment, touching, std::move(excluded), point, x);
@@ -174,6 +178,7 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
 
 std::optional<std::string> Contacts::settle(const ContactMoment& moment, const std::vector<int>& jumps,
                                             std::vector<double>& x) {
+  why_open_.clear();
   std::vector<int> touching;
   const ContactPoint limit = point_at(moment.t, moment.alpha, x);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -188,18 +193,31 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
   clean(moment, point, x, {});
   // The limit is extrapolated, to the tolerances. Along the ground it goes on: impulses that vanish have no friction.
   const double none = rests_below * slowest(moment, point, x);
-  for (const int i : touching) {
-    point.velocity(i) = 0.0;
-    if (point.along(point.velocity, i).norm() > none) continue;
-    for (int k = 0; k < point.tangents[at(i)]; ++k) point.velocity(point.tangent_row(i, k)) = 0.0;
-  }
+  RowBasis at_rest(values_.rows);
+  const auto stop = [&](int row) {
+    point.velocity(row) = 0.0;
+    at_rest.takes(row);
+  };
+  const auto stop_slips = [&](auto condition) {
+    for (const int i : touching) {
+      for (int k = 0; condition(i) && k < point.tangents[at(i)]; ++k) stop(point.tangent_row(i, k));
+    }
+  };
+  for (const int i : touching) stop(i);
+  stop_slips([&](int i) { return point.along(point.velocity, i).norm() <= none; });
+  // What follows from velocities that are 0 is 0, too: a slip there would have the direction of a rounding.
+  stop_slips([&](int i) {
+    bool follows = true;
+    for (int k = 0; k < point.tangents[at(i)]; ++k) follows = follows && at_rest.holds(point.tangent_row(i, k));
+    return follows;
+  });
   if (auto problem = find_modes(moment, touching, std::vector<std::vector<ContactMode>>(contacts_.size()), point, x))
     return problem;
   // Gaps that close in one limit may have rates that are not 0 together.
   const ContactPoint behind = point_at(moment.t, moment.alpha, x);
-  const double at_rest = std::max(none, 1e-6 * fastest(moment, behind, x));
+  const double slow = std::max(none, 1e-6 * fastest(moment, behind, x));
   const auto moves = [&](int i) {
-    return mode_of(i, x) != ContactMode::open && std::abs(behind.normal_velocity(i)) > at_rest;
+    return mode_of(i, x) != ContactMode::open && std::abs(behind.normal_velocity(i)) > slow;
   };
   if (std::none_of(touching.begin(), touching.end(), moves)) return std::nullopt;
   return fmt::format("the gaps of {} close at t = {:.17g} and cannot stay closed together: bodies jam", names(touching),
@@ -237,7 +255,10 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
         names(touching), moment.t);
   }
   const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, point, resting, found, x);
-  determined_ = have_one_motion(point, resting, found, chosen);
+  if (!have_one_motion(point, resting, found, chosen)) {
+    if (!why_open_.empty()) why_open_ += "; ";
+    why_open_ += "the forces of what touches leave more than one motion open";
+  }
   put_at_rest(moment, point, resting, x);
   enter(moment, point, found[chosen], x);
   static_cast<void>(project(moment.t, moment.alpha, x, touching));
@@ -388,7 +409,7 @@ void Contacts::forget_impulses(std::vector<double>& x) const {
 
 std::optional<int> Contacts::jump_to_tell(const std::vector<double>& x) const {
   for (const auto& contact : contacts_) {
-    if (x[at(contact.impulse)] != 0.0 || (!determined_ && x[at(contact.closed)] != 0.0)) return contact.jump;
+    if (x[at(contact.impulse)] != 0.0 || (!why_open_.empty() && x[at(contact.closed)] != 0.0)) return contact.jump;
   }
   return std::nullopt;
 }

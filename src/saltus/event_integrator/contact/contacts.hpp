@@ -72,8 +72,8 @@ class Contacts {
   /// mode ends here; x is at the zero of what ended it. Returns what is wrong if nothing follows.
   [[nodiscard]] std::optional<std::string> resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                                    std::vector<double>& x);
-  /// Returns whether only one motion follows what was last resolved or settled.
-  [[nodiscard]] bool is_determined() const { return determined_; }
+  /// Returns why more than one motion follows what was last resolved or settled; nothing if only one does.
+  [[nodiscard]] const std::string& why_open() const { return why_open_; }
   /// Returns, by their jumps, the contacts whose bounces the last impact has ended: the next one would be nothing.
   [[nodiscard]] const std::vector<int>& last_bounces() const { return last_bounces_; }
   /// Ends the bounces of these contacts (by their jumps): their gaps close without an impact.
@@ -157,8 +157,10 @@ class Contacts {
   [[nodiscard]] std::optional<ContactMode> way_back(const ContactMoment& moment, int contact, bool ends,
                                                     const std::vector<double>& x) const;
   [[nodiscard]] bool touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const;
-  bool push(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
-            ContactPoint& point, std::vector<double>& x);
+  [[nodiscard]] std::optional<Eigen::VectorXd> push(const ContactMoment& moment, const std::vector<int>& touching,
+                                                    std::optional<int> pushed, ContactPoint& point,
+                                                    std::vector<double>& x);
+  void compare_orders(const ContactPoint& before, const std::vector<int>& touching, const Eigen::VectorXd& impulses);
   bool collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
                ContactPoint& point, std::vector<double>& x);
   [[nodiscard]] std::optional<std::string> find_modes(const ContactMoment& moment, const std::vector<int>& touching,
@@ -201,7 +203,7 @@ class Contacts {
     Eigen::LDLT<Eigen::MatrixXd> factors;
   };
   Projection projection_;  ///< work space: steps allocate nothing
-  bool determined_ = true;
+  std::string why_open_;
   std::vector<int> last_bounces_;
 };
 

@@ -1,11 +1,15 @@
 // Impacts of contacts, and what counts as one.
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/rounding_unit.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/contact/impact.hpp"
+#include "saltus/event_integrator/contact/impact_orders.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -21,13 +25,22 @@ void drop_roundings(double size, ContactPoint& point) {
   }
 }
 
+/// What is left of a slip in a plane that an impact ends while it turns.
+void end_turning_slips(double fastest, ContactPoint& point) {
+  constexpr double left = 1e-10;
+  for (int i = 0; i < point.contacts(); ++i) {
+    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * fastest) continue;
+    for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
+  }
+}
+
 }  // namespace
 
-/// The impulses, and the velocities behind them; false where there are none.
-bool Contacts::push(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
-                    ContactPoint& point, std::vector<double>& x) {
-  const auto impulses = impact(point, touching, pushed);
-  if (!impulses) return false;
+/// The impulses, and the velocities behind them.
+std::optional<VectorXd> Contacts::push(const ContactMoment& moment, const std::vector<int>& touching,
+                                       std::optional<int> pushed, ContactPoint& point, std::vector<double>& x) {
+  auto impulses = impact(point, touching, pushed);
+  if (!impulses) return impulses;
   const int m = point.contacts();
   const VectorXd change = values_.responses * *impulses;
   for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
@@ -41,7 +54,18 @@ bool Contacts::push(const ContactMoment& moment, const std::vector<int>& touchin
   const double size = point.velocity.cwiseAbs().maxCoeff();
   point = point_at(moment.t, moment.alpha, x);
   drop_roundings(size, point);
-  return true;
+  return impulses;
+}
+
+void Contacts::compare_orders(const ContactPoint& before, const std::vector<int>& touching, const VectorXd& impulses) {
+  const auto other = find_other_end(before, touching, impulses);
+  if (!other) return;
+  const std::string axis =
+      other->tangent && before.in_plane(other->contact) ? fmt::format(" {}", *other->tangent + 1) : "";
+  why_open_ = fmt::format("one behind the other ({}{}) they would end elsewhere: {} of {} is {:.6g}, not {:.6g}",
+                          names(other->order), other->are_more ? ", …" : "",
+                          other->tangent ? "the velocity along tangent" + axis : "the rate of the gap",
+                          names({other->contact}), other->velocity, other->together);
 }
 
 /// An impact. What would rise by nothing has no restitution: its impulses, too, are those of bodies that come to rest.
@@ -53,7 +77,8 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
   for (bool again = true; again;) {
     x = x_before;
     point = before;
-    if (!push(moment, touching, pushed, point, x)) return false;
+    const auto impulses = push(moment, touching, pushed, point, x);
+    if (!impulses) return false;
     again = false;
     for (const int i : touching) {
       double& restitution = before.restitution[at(i)];
@@ -61,6 +86,7 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
       restitution = 0.0;
       again = true;
     }
+    if (!again && !pushed) compare_orders(before, touching, *impulses);
   }
   // Without restitution it rises by what the others do to it, and their speeds are that small, too.
   std::vector<int> still;
@@ -81,11 +107,7 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
     point.velocity(still).setZero();
     drop_roundings(fastest, point);
   }
-  constexpr double left = 1e-10;  // of a slip that an impact ends while it turns
-  for (int i = 0; i < point.contacts(); ++i) {
-    if (!point.in_plane(i) || point.along(point.velocity, i).norm() > left * fastest) continue;
-    for (int tangent = 0; tangent < 2; ++tangent) point.velocity(point.tangent_row(i, tangent)) = 0.0;
-  }
+  end_turning_slips(fastest, point);
   return true;
 }
 

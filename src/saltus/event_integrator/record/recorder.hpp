@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -32,7 +33,7 @@ struct Passage {
 struct ExecutedJump {
   int jump = 0;
   std::vector<double> x, x_after;
-  bool unique = true;
+  std::string why_open;  ///< of contacts: why more than one motion follows; empty if only one does
 };
 
 class Recorder {

@@ -104,6 +104,7 @@ bool Run::enter(const Transition& transition) {
     field_(here_.t, here_.x.data(), here_.slope.data());
   }
   if (!is_finite(here_.slope)) {
+    if (stopped_by_mass()) return false;
     fail(
         Termination::evaluation_failed,
         fmt::format("the right-hand side of {} is not finite at {}; change the initial values, or guard the expression "

@@ -54,7 +54,7 @@ bool Run::begin_contacts() {
     executed.x = before;
     executed.jump = *jump;
     executed.x_after = here_.x;
-    executed.unique = contacts_.is_determined();
+    executed.why_open = contacts_.why_open();
   }
   return true;
 }

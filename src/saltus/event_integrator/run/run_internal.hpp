@@ -196,6 +196,7 @@ class Run {
   [[nodiscard]] std::string advice_on_steps();
   void accumulates();
   bool stopped_by_two_fold();
+  bool stopped_by_mass();
   bool stopped_by_singularity();
   bool shorten(double factor);
   void rows_until(double t_end);

@@ -50,12 +50,12 @@ bool Run::execute_jump() {
   executed.x = here_.x;
   executed.jump = jumps_.execute(jump_point(), here_.x);
   executed.x_after = here_.x;
-  executed.unique = true;
+  executed.why_open.clear();
   const bool by_contact = contacts_.owns(executed.jump);
   if (by_contact ? !move_contacts() : contacts_.are_moved(executed.x, here_.x) && !begin_contacts_anew()) return false;
   if (by_contact) {
     executed.x_after = here_.x;
-    executed.unique = contacts_.is_determined();
+    executed.why_open = contacts_.why_open();
   }
   if (!cells_.empty())
     event_.cell_change = std::max(event_.cell_change, cells_.locate(here_.t, here_.x.data(), here_.state.alpha));

@@ -10,6 +10,7 @@
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/undefined.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
+#include "saltus/model/decisions.hpp"
 
 namespace saltus::event_integrator {
 
@@ -53,8 +54,26 @@ bool Run::stopped_by_two_fold() {
   return message.has_value();
 }
 
-/// Whether the steps got short because switches accumulate here, because of a two-fold point, or of bodies that jam.
+/// Whether the steps got short because the mass matrix is positive definite up to here only.
+bool Run::stopped_by_mass() {
+  std::vector<double> x = here_.x;
+  for (double h = here_.smallest_step(); h <= 1e6 * here_.smallest_step(); h *= 4.0) {
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] = here_.x[i] + h * here_.slope[i];
+    const auto row = model::find_indefinite_mass(switching_context_.system, x);
+    if (!row) continue;
+    fail(Termination::outside_class,
+         fmt::format("the mass matrix is not positive definite beyond {}: {}; every velocity needs a positive mass or "
+                     "inertia wherever the bodies get",
+                     where(), *row));
+    return true;
+  }
+  return false;
+}
+
+/// Whether the steps got short because switches accumulate here, because of a two-fold point, of bodies that jam, or of
+/// their masses.
 bool Run::stopped_by_singularity() {
+  if (stopped_by_mass()) return true;
   if (auto jam = contacts_.jam(contact_moment(), here_.x)) {
     fail(Termination::outside_class, std::move(*jam));
     return true;

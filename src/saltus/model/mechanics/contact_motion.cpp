@@ -9,7 +9,7 @@
 
 #include "saltus/base/contains.hpp"
 #include "saltus/model/mechanics/contact_motion_internal.hpp"
-#include "saltus/model/mechanics/gaps_at_start.hpp"
+#include "saltus/model/mechanics/contacts_at_start.hpp"
 #include "saltus/model/mechanics/smooth_check_internal.hpp"
 #include "saltus/model/statement/start_values_internal.hpp"
 
@@ -88,51 +88,23 @@ class ContactMotion {
 
   /// They are not 0, not along the normal, and two of them span a plane at the start.
   std::optional<Error> check_tangents(const ContactStatement& contact) {
-    const auto along = [&](const SX& a, const SX& b) -> Expected<double> {
-      return at_start(SX::mtimes(SX::densify(a), SX::densify(b).T()));
-    };
-    const SX normal = SX::jacobian(contact.gap, q_);
-    std::vector<SX> rows;
-    for (casadi_int k = 0; k < contact.tangents.size1(); ++k) rows.push_back(contact.tangents(k, casadi::Slice()));
-    const auto have_one_direction = [&](const SX& a, const SX& b) -> Expected<bool> {
-      const auto first = along(a, a), mixed = along(a, b), second = along(b, b);
-      for (const auto* value : {&first, &mixed, &second}) {
-        if (!*value) return tl::unexpected(value->error());
-      }
-      return *first * *second > 0.0 && *first * *second - *mixed * *mixed <= 1e-12 * *first * *second;
-    };
-    const auto refused = [&](const std::string& message, const std::string& remedy) {
-      return contact_error(contact.location, fmt::format(fmt::runtime(message), contact.name), remedy);
-    };
-    for (const SX& tangent : rows) {
-      if (auto error = check_reach(tangent, contact)) return error;
-      const auto size = along(tangent, tangent);
-      if (!size) return with_location(size.error(), contact.location);
-      if (*size == 0.0) {
-        return refused("the tangent of '{}' is 0 at the start",
-                       "write the direction in which it slips, as tangent = { x = 1 }");
-      }
-      const auto along_normal = have_one_direction(tangent, normal);
-      if (!along_normal) return with_location(along_normal.error(), contact.location);
-      if (*along_normal) {
-        return refused("the tangent of '{}' has the direction in which its gap opens at the start",
-                       "a tangent lies along the surface: of a floor z = 0 it is { x = 1 }, not { z = 1 }");
+    for (casadi_int k = 0; k < contact.tangents.size1(); ++k) {
+      if (auto error = check_reach(contact.tangents(k, casadi::Slice()), contact)) return error;
+    }
+    const SX rows = SX::densify(SX::vertcat({SX::jacobian(contact.gap, q_), contact.tangents}));
+    if (SX::depends_on(rows, SX(statement_.time))) return std::nullopt;  // nobody knows yet when it starts
+    std::vector<std::vector<double>> values;
+    for (casadi_int i = 0; i < rows.size1(); ++i) {
+      auto& row = values.emplace_back();
+      for (casadi_int k = 0; k < rows.size2(); ++k) {
+        const auto value = at_start(rows(i, k));
+        if (!value) return with_location(value.error(), contact.location);
+        row.push_back(*value);
       }
     }
-    if (rows.size() < 2) return std::nullopt;
-    const auto parallel = have_one_direction(rows[0], rows[1]);
-    if (!parallel) return with_location(parallel.error(), contact.location);
-    if (*parallel) {
-      return refused("the tangents of '{}' have one direction at the start",
-                     "two tangents span the plane in which the contact slips; in one direction one is enough");
-    }
-    SX unit = SX::densify(SX::vertcat({normal, rows[0], rows[1]}));
-    unit = unit / SX::repmat(sqrt(SX::sum2(unit * unit)), 1, unit.size2());
-    const auto volume = at_start(SX::det(SX::mtimes(unit, unit.T())));
-    if (!volume) return with_location(volume.error(), contact.location);
-    if (*volume > 1e-12) return std::nullopt;
-    return refused("the plane of the tangents of '{}' has the direction in which its gap opens at the start",
-                   "tangents lie along the surface: of a floor z = 0 they are { x = 1 } and { y = 1 }");
+    auto error = check_tangents_at_start(contact.name, values);
+    if (error) error->location = contact.location;
+    return error;
   }
 
   /// Its rate and its derivatives are those of positions and t.

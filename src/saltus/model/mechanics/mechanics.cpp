@@ -51,8 +51,9 @@ class MechanicsBuild {
     }
     if (auto error = check_symmetry()) return error;
     if (auto error = take_drawing()) return error;
-    const SymbolicLdl factors(mechanics_.mass);
+    const SymbolicLdl factors(mechanics_.mass, q_);
     if (auto error = check_definite(factors.pivots())) return error;
+    if (auto error = note_pivots(factors.pivots())) return error;
     SX force = total_force();
     if (!mechanics_.contacts.empty()) {
       const MotionWithoutContacts motion{mechanics_.positions, mechanics_.velocities, factors, force};
@@ -161,6 +162,17 @@ class MechanicsBuild {
                       "or has no positive mass (pivot {})",
                       i + 1, name_of(mechanics_.velocities[static_cast<std::size_t>(i)]), *pivot),
           "every velocity needs a positive mass or inertia of its own");
+    }
+    return std::nullopt;
+  }
+
+  /// Those that may become negative on the way.
+  [[nodiscard]] std::optional<Error> note_pivots(const SX& pivots) {
+    for (casadi_int i = 0; i < pivots.numel(); ++i) {
+      if (!SX::depends_on(pivots(i), q_)) continue;
+      const auto node = recognition_.graph.add(SX(pivots(i)).scalar());
+      if (!node) return with_location(node.error(), mechanics_.mass_location);
+      statement_.mass_pivots.push_back({static_cast<int>(i), mechanics_.velocities[at(i)], *node});
     }
     return std::nullopt;
   }

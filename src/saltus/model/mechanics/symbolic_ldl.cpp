@@ -18,7 +18,8 @@ SXElem ldl_entry(const SX& matrix, casadi_int i, casadi_int j) {
 
 }  // namespace
 
-SymbolicLdl::SymbolicLdl(const SX& m) : lower_(SX::zeros(m.size1(), m.size1())), pivots_(SX::zeros(m.size1(), 1)) {
+SymbolicLdl::SymbolicLdl(const SX& m, const SX& moving)
+    : lower_(SX::zeros(m.size1(), m.size1())), pivots_(SX::zeros(m.size1(), 1)) {
   const casadi_int n = m.size1();
   const SX dense = SX::densify(m);
   for (casadi_int j = 0; j < n; ++j) {
@@ -37,6 +38,12 @@ SymbolicLdl::SymbolicLdl(const SX& m) : lower_(SX::zeros(m.size1(), m.size1())),
       lower_(i, j) = e.is_zero() ? SXElem(0.0) : e / pivot;
     }
   }
+  // NOTE: a root adds less than the rounding of a positive pivot, and is no number of a negative one.
+  constexpr double nothing = 1e-300;
+  divisors_ = pivots_;
+  for (casadi_int j = 0; j < n; ++j) {
+    if (SX::depends_on(pivots_(j), moving)) divisors_(j) = pivots_(j) + nothing * sqrt(pivots_(j));
+  }
 }
 
 SX SymbolicLdl::solve(const SX& right) const {
@@ -51,7 +58,7 @@ SX SymbolicLdl::solve(const SX& right) const {
     }
     for (casadi_int i = 0; i < n; ++i) {
       const SXElem e = ldl_entry(x, i, c);
-      x(i, c) = e.is_zero() ? e : e / ldl_entry(pivots_, i, 0);
+      x(i, c) = e.is_zero() ? e : e / ldl_entry(divisors_, i, 0);
     }
     for (casadi_int i = n - 1; i >= 0; --i) {
       SXElem e = ldl_entry(x, i, c);

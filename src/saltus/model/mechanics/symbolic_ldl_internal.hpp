@@ -8,17 +8,19 @@ namespace saltus::model {
 /// Holds M = L D L', L with ones on its diagonal: no square roots, no pivots, and no operation on an entry that is 0.
 class SymbolicLdl {
  public:
-  /// @param m  n x n; its lower triangle is read
-  explicit SymbolicLdl(const casadi::SX& m);
+  /// @param m       n x n; its lower triangle is read
+  /// @param moving  symbols of which a pivot may not be positive everywhere
+  SymbolicLdl(const casadi::SX& m, const casadi::SX& moving);
 
-  /// Returns M^-1 B. @param right  n x k
+  /// Returns M^-1 B, which is not finite where a pivot is negative. @param right  n x k
   [[nodiscard]] casadi::SX solve(const casadi::SX& right) const;
   /// Returns the entries of D: M is positive definite where all are positive.
   [[nodiscard]] const casadi::SX& pivots() const { return pivots_; }
 
  private:
-  casadi::SX lower_;   ///< n x n, below the diagonal
-  casadi::SX pivots_;  ///< n
+  casadi::SX lower_;     ///< n x n, below the diagonal
+  casadi::SX pivots_;    ///< n
+  casadi::SX divisors_;  ///< n: no number where a pivot is negative
 };
 
 /// Solves A^-1 b by elimination in the order of the rows: for matrices whose leading minors are not 0.

@@ -83,7 +83,9 @@ std::shared_ptr<const Decisions> on_tape_of_their_own(const Tape& tape, Decision
   for (const auto& [psi, name] : decisions.functions) roots.push_back(psi);
   for (const auto& kink : decisions.kinks) roots.insert(roots.end(), {kink.psi, kink.alpha});
   roots.insert(roots.end(), decisions.targets.begin(), decisions.targets.end());
-  if (std::none_of(roots.begin(), roots.end(), [&](int node) { return has_parameter(tape, node); })) return nullptr;
+  const bool any = std::any_of(roots.begin(), roots.end(), [&](int node) { return has_parameter(tape, node); });
+  if (!any && decisions.mass_pivots.empty()) return nullptr;
+  for (const auto& pivot : decisions.mass_pivots) roots.push_back(pivot.node);
   decisions.tape = tape.part(roots);
   const auto move = [&](int& node) { node = decisions.tape.place_of(node); };
   for (auto& decision : decisions.noted) {
@@ -96,6 +98,7 @@ std::shared_ptr<const Decisions> on_tape_of_their_own(const Tape& tape, Decision
     move(kink.alpha);
   }
   for (int& target : decisions.targets) move(target);
+  for (auto& pivot : decisions.mass_pivots) move(pivot.node);
   Selections discrete;
   for (const auto& [alpha, value] : decisions.discrete) {
     if (const int place = decisions.tape.place_of(alpha); place >= 0) discrete.emplace(place, value);

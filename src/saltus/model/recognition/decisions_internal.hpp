@@ -40,6 +40,12 @@ struct Decision {
 /// Returns a decision with its outcome for the values that parameters have on the tape, and that in its text.
 [[nodiscard]] Decision decided(const Tape& tape, Decision decision);
 
+/// Holds what has to stay positive of a mass matrix: a pivot of its factorisation that depends on positions.
+struct MassPivot {
+  int row = 0, velocity = 0;  ///< of the matrix; its state
+  int node = -1;
+};
+
 /// Holds all of a system, over a tape of its own that has their nodes only.
 struct Decisions {
   Tape tape{};
@@ -48,10 +54,11 @@ struct Decisions {
   std::vector<Surface> kinks{};                          ///< nothing jumps there
   Selections discrete{};
   std::vector<int> targets{};  ///< what could jump
+  std::vector<MassPivot> mass_pivots{};
 };
 
 /// Returns them over a tape of their own, without targets that are on no kink, or in which no parameter is; null where
-/// none is in any.
+/// none is in any, and there are no pivots.
 [[nodiscard]] std::shared_ptr<const Decisions> on_tape_of_their_own(const Tape& tape, Decisions decisions);
 
 }  // namespace saltus::model

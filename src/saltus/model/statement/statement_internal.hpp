@@ -132,6 +132,7 @@ struct Statement {
   std::vector<JumpStatement> jumps;
   ContactSystem contacts;
   std::vector<DrawnShape> drawing;
+  std::vector<MassPivot> mass_pivots;
   std::vector<OutputStatement> automatic_outputs;  ///< behind the others
   std::vector<std::string> warnings;
 };
