@@ -11,23 +11,25 @@
 namespace saltus::model {
 namespace {
 
-Error hysteresis_error(const HysteresisThresholds& thresholds, std::string message, std::string remedy) {
-  return {ErrorCode::invalid_model, std::move(message), std::move(remedy), thresholds.location, {}};
+Error hysteresis_error(const SourceLocation& location, std::string message, std::string remedy) {
+  return {ErrorCode::invalid_model, std::move(message), std::move(remedy), location, {}};
 }
 
 std::optional<Error> threshold_mistake(const HysteresisThresholds& thresholds) {
-  for (const auto& [what, value] : {std::pair{"on", thresholds.on}, std::pair{"off", thresholds.off}}) {
+  for (const auto& [what, value, location] : {std::tuple{"on", thresholds.on, &thresholds.on_location},
+                                              std::tuple{"off", thresholds.off, &thresholds.off_location}}) {
     if (std::isfinite(value)) continue;
-    return hysteresis_error(thresholds, fmt::format("`{}` of the hysteresis '{}' is {}", what, thresholds.name, value),
+    return hysteresis_error(*location, fmt::format("`{}` of the hysteresis '{}' is {}", what, thresholds.name, value),
                             "a threshold is a finite number; check the parameters in it");
   }
   if (thresholds.on == thresholds.off) {
     return hysteresis_error(
-        thresholds, fmt::format("`on` and `off` of the hysteresis '{}' are both {}", thresholds.name, thresholds.on),
+        thresholds.off_location,
+        fmt::format("`on` and `off` of the hysteresis '{}' are both {}", thresholds.name, thresholds.on),
         "give it two different thresholds, or write step(input - threshold)");
   }
   if (thresholds.initial != 0.0 && thresholds.initial != 1.0) {
-    return hysteresis_error(thresholds,
+    return hysteresis_error(thresholds.initial_location,
                             fmt::format("the hysteresis '{}' begins with {}", thresholds.name, thresholds.initial),
                             "`initial` is 0 or 1");
   }
@@ -57,11 +59,11 @@ std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& state
                                       const HysteresisThresholds& thresholds) {
   if (auto mistake = threshold_mistake(thresholds)) return mistake;
   const auto node = recognition.graph.add(input);
-  if (!node) return with_location(node.error(), thresholds.location);
+  if (!node) return with_location(node.error(), thresholds.input_location);
   const KindSet moving = recognition.graph.tape()[*node].reached;
   if ((moving & kind_bit(VariableKind::state)) == 0) {
     return hysteresis_error(
-        thresholds,
+        thresholds.input_location,
         fmt::format("the input of the hysteresis '{}' has no state that moves between jumps", thresholds.name),
         "`input` is an expression of such states; what changes at jumps only switches there: a jump "
         "for each threshold");
@@ -71,7 +73,8 @@ std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& state
                               kind_bit(VariableKind::cell);
   if ((moving & ~allowed) != 0) {
     return hysteresis_error(
-        thresholds, fmt::format("the input of the hysteresis '{}' depends on t or on a control", thresholds.name),
+        thresholds.input_location,
+        fmt::format("the input of the hysteresis '{}' depends on t or on a control", thresholds.name),
         "`input` is an expression of states and parameters; give time or the control a state of its own");
   }
   auto& stated = statement.states[at(state)];
@@ -111,7 +114,12 @@ std::optional<Error> state_all_hysteresis(const Description& description, ModelS
                                           const std::map<std::string, double>& initial, const StateHysteresis& take) {
   auto state = static_cast<int>(description.states.size());
   for (const auto& entry : description.hysteresis) {
-    HysteresisThresholds thresholds{.name = entry.name, .location = entry.location};
+    HysteresisThresholds thresholds{.name = entry.name,
+                                    .location = entry.location,
+                                    .input_location = entry.input->location,
+                                    .on_location = entry.on->location,
+                                    .off_location = entry.off->location};
+    thresholds.initial_location = entry.initial ? entry.initial->location : entry.location;
     for (const auto& [node, result, key] :
          {std::tuple{&entry.on, &thresholds.on, "on"}, std::tuple{&entry.off, &thresholds.off, "off"},
           std::tuple{&entry.initial, &thresholds.initial, "initial"}}) {

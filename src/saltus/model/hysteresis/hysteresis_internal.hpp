@@ -15,7 +15,7 @@ struct HysteresisThresholds {
   std::string name;
   double on = 0.0, off = 0.0;
   double initial = 0.0;  ///< 0 or 1
-  SourceLocation location{};
+  SourceLocation location{}, input_location{}, on_location{}, off_location{}, initial_location{};
 };
 
 /// Appends the discrete states of all [[hysteresis]] to the statement, behind those of [states]; their values are not

@@ -98,12 +98,12 @@ class ContactMotion {
       auto& row = values.emplace_back();
       for (casadi_int k = 0; k < rows.size2(); ++k) {
         const auto value = at_start(rows(i, k));
-        if (!value) return with_location(value.error(), contact.location);
+        if (!value) return with_location(value.error(), contact.tangent_location);
         row.push_back(*value);
       }
     }
     auto error = check_tangents_at_start(contact.name, values);
-    if (error) error->location = contact.location;
+    if (error) error->location = contact.tangent_location;
     return error;
   }
 
@@ -112,10 +112,10 @@ class ContactMotion {
     const SX row = SX::densify(tangent);
     for (const SXElem& entry : row.nonzeros()) {
       const auto node = recognition_.graph.add(entry);
-      if (!node) return with_location(node.error(), contact.location);
-      auto error =
-          check_smooth(recognition_, statement_, *node,
-                       {motion_.positions, true, fmt::format("the tangent of '{}'", contact.name), contact.location});
+      if (!node) return with_location(node.error(), contact.tangent_location);
+      auto error = check_smooth(
+          recognition_, statement_, *node,
+          {motion_.positions, true, fmt::format("the tangent of '{}'", contact.name), contact.tangent_location});
       if (error) return with_context(*error, "in [[contacts]]");
     }
     return std::nullopt;

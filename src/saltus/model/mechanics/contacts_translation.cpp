@@ -12,6 +12,11 @@ using casadi::SX;
 
 namespace {
 
+SourceLocation tangent_location(const ContactDescription& contact) {
+  const bool is_stated = !contact.tangents.empty() && !contact.tangents.front().empty();
+  return is_stated ? contact.tangents.front().front().location : contact.location;
+}
+
 class ContactTranslation {
  public:
   ContactTranslation(const ContactDescription& contact, ModelScope& scope, const Statement& statement,
@@ -21,6 +26,7 @@ class ContactTranslation {
   [[nodiscard]] Expected<ContactStatement> run() {
     ContactStatement stated{.name = contact_.name, .location = contact_.location};
     stated.gap_location = contact_.gap->location;
+    stated.tangent_location = tangent_location(contact_);
     stated.friction_location = contact_.friction ? contact_.friction->location : contact_.location;
     stated.restitution_location = contact_.restitution ? contact_.restitution->location : contact_.location;
     for (const auto& [node, result] :
@@ -85,7 +91,7 @@ Expected<std::vector<ContactStatement>> contacts_of(const Description& descripti
           Error{ErrorCode::invalid_model,
                 fmt::format("the contact '{}' has {} tangents", contact.name, contact.tangents.size()),
                 "a contact slips along one tangent, or in the plane of two",
-                contact.location,
+                tangent_location(contact),
                 {"in [[contacts]]"}});
     }
     auto stated = ContactTranslation(contact, scope, statement, mechanics).run();

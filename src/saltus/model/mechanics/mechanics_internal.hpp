@@ -18,7 +18,7 @@ struct ContactStatement {
   casadi::SX gap{};
   casadi::SX tangents{};  ///< 1 x n or 2 x n over the positions; 0 x 0 without
   casadi::SX friction = 0.0, restitution = 0.0;
-  SourceLocation location{}, gap_location{}, friction_location{}, restitution_location{};
+  SourceLocation location{}, gap_location{}, tangent_location{}, friction_location{}, restitution_location{};
 };
 
 /// Holds what is drawn, and where it is written.
