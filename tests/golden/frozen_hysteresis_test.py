@@ -109,7 +109,7 @@ dynamics = { v = 1, y = "if(first + second >= 2, 11, if(first + second == 1, fir
             self.assertAlmostEqual(a, b, delta=1e-8)
 
     def test_hysteresis_of_a_car_is_optimised(self):
-        text = (tool.SOURCE / "examples/contacts/turbo-hysteresis.toml").read_text(encoding="utf-8")
+        text = (tool.SOURCE / "models/optima/turbo-hysteresis.toml").read_text(encoding="utf-8")
         self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
         result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
         self.assertAlmostEqual(result["objective"], 10.2292578, delta=1e-5)
