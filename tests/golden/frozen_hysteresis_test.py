@@ -125,6 +125,16 @@ dynamics = { v = 1, y = "if(first + second >= 2, 11, if(first + second == 1, fir
         _, err = self.run_tool("optimize", file, "--quiet", "--start", "r.json", "--time-limit", "0.01", code=3)
         self.assertIn("time", err)
 
+    def test_a_finer_grid_starts_from_the_coarser_one(self):
+        for intervals, optimum in ((10, 10.2292578), (20, 10.1530809), (40, 10.1408047)):
+            words = ["--intervals", str(intervals), "--set", f"time_freezing.transfer={intervals / 10}"]
+            if intervals > 10:
+                words += ["--start", "r.json", "--set", "optimize.mpcc.sigma_initial=1e-3"]
+            self.run_tool("optimize", "turbo-hysteresis", *words, "--quiet", "--out", "r.json", code=0)
+            result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+            self.assertAlmostEqual(result["objective"], optimum, delta=1e-6)
+            self.assertLess(result["verification"]["interval_defect"], 1e-9)
+
 
 if __name__ == "__main__":
     tool.main()
