@@ -1,4 +1,4 @@
-"""The monoped of examples/contacts: one row of figures per run.
+"""The monoped of models/optima: one row of figures per run.
 
 python3 benchmarks/monoped/run.py SALTUS [--positions hip|foot] [--intervals 30 40 …]
     [--start rest|reference|RESULT.json] [--terminal-weight 1|T/N] [--rho 0.01|0.1]
@@ -21,7 +21,7 @@ import tempfile
 
 import reference
 
-MODELS = {"hip": pathlib.Path(__file__).parents[2] / "examples/contacts/monoped.toml",
+MODELS = {"hip": pathlib.Path(__file__).parents[2] / "models/optima/monoped.toml",
           "foot": pathlib.Path(__file__).parent / "foot.toml"}
 LINK = 0.2
 COLUMNS = ["N", "stage", "status", "objective", "iterations", "seconds", "ms per iteration", "primal", "complementarity",

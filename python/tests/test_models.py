@@ -38,7 +38,7 @@ def test_the_exact_solution(brake):
 
 
 def test_the_catalogue(source):
-    assert saltus.models() == sorted(file.stem for file in (source / "models").glob("*.toml"))
+    assert saltus.models() == sorted(file.stem for file in (source / "models").rglob("*.toml"))
     with pytest.raises(saltus.ModelError, match="did you mean 'stick-slip'"):
         saltus.catalogue("stick-slipp")
 

@@ -212,7 +212,7 @@ class Overview(tool.ToolTest):
         self.assertGreater(json.loads(out)["optimization"]["problem"]["variables"], 100)
 
     def test_every_model_of_the_catalogue_has_a_json(self):
-        for path in sorted((tool.SOURCE / "models").glob("*.toml")):
+        for path in sorted((tool.SOURCE / "models").rglob("*.toml")):
             out, _ = self.run_tool("check", path, "--json", code=0)
             report = json.loads(out)
             self.assertEqual((report["errors"], report["valid"]), ([], True), path)

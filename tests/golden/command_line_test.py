@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import subprocess
 
 import tool
@@ -287,7 +288,12 @@ class Models(tool.ToolTest):
         out, _ = self.run_tool("models", code=0)
         self.assertRegex(out, r"(?m)^stick-slip +a block on a moving belt sticks and slips$")
         names = [line.split()[0] for line in out.partition("\n\n")[0].splitlines()]
-        self.assertEqual(names, sorted(path.stem for path in (tool.SOURCE / "models").glob("*.toml")))
+        self.assertEqual(names, sorted(path.stem for path in (tool.SOURCE / "models").rglob("*.toml")))
+
+    def test_the_catalogue_tells_of_every_model(self):
+        rows = (tool.SOURCE / "docs/catalogue.md").read_text(encoding="utf-8")
+        told = re.findall(r"(?m)^\| `([a-z-]+)` \|", rows)
+        self.assertEqual(sorted(told), sorted(path.stem for path in (tool.SOURCE / "models").rglob("*.toml")))
 
     def test_prints_a_file(self):
         out, _ = self.run_tool("models", "crossing", code=0)

@@ -45,7 +45,7 @@ MONOPED = (
 
 class ContactOptima(time_freezing_test.FrozenTest):
     def test_monoped_has_its_masses_and_forces(self):
-        text = (tool.SOURCE / "examples/contacts/monoped.toml").read_text(encoding="utf-8")
+        text = (tool.SOURCE / "models/optima/monoped.toml").read_text(encoding="utf-8")
         forces = tomllib.loads(text)["mechanics"]["force"]
         outputs = ["M13", "M14", "M23", "M24", "M33", "M34", "M44"]
         table = "".join(f'm_{i} = "{name}"\n' for i, name in enumerate(outputs))

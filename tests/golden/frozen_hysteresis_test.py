@@ -109,7 +109,7 @@ dynamics = { v = 1, y = "if(first + second >= 2, 11, if(first + second == 1, fir
             self.assertAlmostEqual(a, b, delta=1e-8)
 
     def test_hysteresis_of_a_car_is_optimised(self):
-        text = (tool.SOURCE / "examples/contacts/turbo-hysteresis.toml").read_text(encoding="utf-8")
+        text = (tool.SOURCE / "models/optima/turbo-hysteresis.toml").read_text(encoding="utf-8")
         self.run_tool("optimize", self.write("m.toml", text), "--quiet", "--out", "r.json", code=0)
         result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
         self.assertAlmostEqual(result["objective"], 10.2292578, delta=1e-5)
@@ -124,6 +124,16 @@ dynamics = { v = 1, y = "if(first + second >= 2, 11, if(first + second == 1, fir
         file = self.write("m.toml", text)
         _, err = self.run_tool("optimize", file, "--quiet", "--start", "r.json", "--time-limit", "0.01", code=3)
         self.assertIn("time", err)
+
+    def test_a_finer_grid_starts_from_the_coarser_one(self):
+        for intervals, optimum in ((10, 10.2292578), (20, 10.1530809), (40, 10.1408047)):
+            words = ["--intervals", str(intervals), "--set", f"time_freezing.transfer={intervals / 10}"]
+            if intervals > 10:
+                words += ["--start", "r.json", "--set", "optimize.mpcc.sigma_initial=1e-3"]
+            self.run_tool("optimize", "turbo-hysteresis", *words, "--quiet", "--out", "r.json", code=0)
+            result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+            self.assertAlmostEqual(result["objective"], optimum, delta=1e-6)
+            self.assertLess(result["verification"]["interval_defect"], 1e-9)
 
 
 if __name__ == "__main__":

@@ -77,7 +77,7 @@ class Schema(tool.ToolTest):
         self.assertNotIn("sensitivity", tables)
 
     def test_it_takes_every_model(self):
-        files = sorted([*(tool.SOURCE / "models").glob("*.toml"), *(tool.SOURCE / "examples").rglob("*.toml")])
+        files = sorted([*(tool.SOURCE / "models").rglob("*.toml"), *(tool.SOURCE / "examples").rglob("*.toml")])
         self.assertGreaterEqual(len(files), 90)
         for path in files:
             self.assertEqual(self.problems(tomllib.loads(path.read_text(encoding="utf-8")), self.schema, path.stem), [])

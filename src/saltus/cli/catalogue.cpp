@@ -31,8 +31,10 @@ std::vector<fs::path> model_folders() {
   std::vector<fs::path> folders;
   if (const char* chosen = std::getenv("SALTUS_MODELS"); chosen != nullptr && *chosen != '\0')
     folders.emplace_back(chosen);
-  folders.push_back(shared_folder() / "models");
-  folders.emplace_back(fs::path(SALTUS_SOURCE_DIR) / "models");
+  for (const auto& root : {shared_folder(), fs::path(SALTUS_SOURCE_DIR)}) {
+    folders.push_back(root / "models");
+    folders.push_back(root / "models" / "optima");
+  }
   return folders;
 }
 

@@ -18,8 +18,8 @@ struct CatalogueEntry {
 /// of its own.
 void set_shared_folder(const std::filesystem::path& folder);
 
-/// Returns all models of the catalogue by name, from $SALTUS_MODELS, then <executable>/../share/saltus/models, then the
-/// source tree; the first of a name counts.
+/// Returns all models of the catalogue by name, from $SALTUS_MODELS, then <executable>/../share/saltus/models and its
+/// folder optima, then those of the source tree; the first of a name counts.
 [[nodiscard]] std::vector<CatalogueEntry> catalogue();
 
 /// Returns the file that MODEL of the command line means: a path, or the name of a catalogue entry.
