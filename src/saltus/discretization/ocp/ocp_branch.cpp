@@ -5,7 +5,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/element_expressions_internal.hpp"
-#include "saltus/discretization/ocp/element_sides_internal.hpp"
+#include "saltus/discretization/ocp/element_trial_internal.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
@@ -156,17 +156,9 @@ mpcc::BranchClosure::Freedom freedom_of(const OcpStructure& made, const ElementS
 /// ClosingGap: selections that stay where they are, at a bound.
 void hold_closing_gaps(const OcpStructure& made, const ElementSides& modes, std::size_t e,
                        mpcc::BranchClosure& closure) {
-  const auto& kernel = made.kernel;
-  const auto is_zero = [&](int pair) { return modes.of(e, at(pair)) == ActiveSide::G; };
-  const auto hold = [&](int number) {
-    const auto& pair = kernel.pairs[at(number)];
-    for (int m = 0; m < kernel.layout.stages; ++m) {
-      const int selection = made.element[e].variable(kernel.layout.selection.at(m, pair.selection));
-      (pair.complement ? closure.at_upper : closure.at_lower).push_back(selection);
-    }
-  };
-  for (const auto& gap : kernel.closing_gaps) {
-    if (is_zero(gap.closing)) hold(is_zero(gap.closed) ? gap.closed : gap.open);
+  if (made.kernel.closing_gaps.empty()) return;
+  for (const auto& held : held_while_closing(made.kernel, modes.modes(e))) {
+    (held.at_upper ? closure.at_upper : closure.at_lower).push_back(made.element[e].variable(held.local));
   }
 }
 

@@ -23,8 +23,9 @@ class SurfaceStates {
   [[nodiscard]] Modes with(Modes modes, std::size_t surface, int state) const;
   /// Gives the selections of an element their values on one side of a surface.
   void select(std::size_t element, std::size_t surface, int state, mpcc::VectorView w) const;
-  /// Returns whether both sides of the surface are the same point at the right end of an element.
-  [[nodiscard]] bool is_reached(std::size_t element, std::size_t surface, mpcc::ConstVectorView w) const;
+  /// Returns whether both sides of the surface are the same point.
+  /// @param lambda  all multipliers there
+  [[nodiscard]] bool is_on(std::size_t surface, const std::vector<double>& lambda) const;
   /// Returns whether they are in the whole element.
   [[nodiscard]] bool is_held(std::size_t element, std::size_t surface, mpcc::ConstVectorView w) const;
 
@@ -35,8 +36,6 @@ class SurfaceStates {
     int first_pair = 0;  ///< step: of the selection; else of the part
   };
   [[nodiscard]] static bool is_step(const Surface& surface) { return surface.part->form == reformulation::Form::step; }
-  /// @param lambda  places of all multipliers of a point
-  [[nodiscard]] bool is_on(std::size_t surface, const std::vector<int>& lambda, mpcc::ConstVectorView w) const;
   /// Returns the region on the other side of the surface.
   [[nodiscard]] static int mirrored(const Surface& surface, int region);
 
