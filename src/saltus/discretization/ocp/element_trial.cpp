@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/QR>
 
@@ -98,8 +99,7 @@ void ElementTrial::begin_at(const std::vector<double>& left, Eigen::Ref<Eigen::V
 
 std::optional<Eigen::VectorXd> ElementTrial::solve(const std::vector<double>& left, std::size_t interval,
                                                    const Modes& modes, double length) const {
-  auto& kernel = made_.kernel;
-  auto& element = kernel.element;
+  const auto& kernel = made_.kernel;
   std::vector<double> z = left;
   for (const int place : made_.interval[interval].shared) z.push_back(value_at(place, w_, made_.constants));
   z[left.size() + at(kernel.shared.controls + kernel.shared.parameters + kernel.shared.held + 1)] = 1.0;
@@ -108,26 +108,46 @@ std::optional<Eigen::VectorXd> ElementTrial::solve(const std::vector<double>& le
   Eigen::Map<Eigen::VectorXd> local(z.data() + first, kernel.layout.size);
   begin_at(left, local);
   local[kernel.layout.h] = length;
-  const std::vector<bool> is_held = hold(modes, local);
+  std::vector<bool> is_held = hold(modes, local);
+  do {
+    if (!solve(z, first, is_held)) return std::nullopt;
+  } while (hold_beyond(local, is_held));
+  return local.tail(kernel.layout.size - 1);
+}
 
+/// Where selections are not unique, those of the smallest step may be beyond their bounds: there they stay.
+bool ElementTrial::hold_beyond(Eigen::Ref<Eigen::VectorXd> local, std::vector<bool>& is_held) const {
+  bool are_beyond = false;
+  const auto& selection = made_.kernel.layout.selection;
+  for (int i = selection.first; i < selection.end(); ++i) {
+    const double inside = std::clamp(local[i], 0.0, 1.0);
+    if (is_held[at(i)] || std::abs(local[i] - inside) <= allowed) continue;
+    local[i] = inside;
+    are_beyond = is_held[at(i)] = true;
+  }
+  return are_beyond;
+}
+
+bool ElementTrial::solve(std::vector<double>& z, std::size_t first, const std::vector<bool>& is_held) const {
+  auto& element = made_.kernel.element;
   const auto& pattern = element.jacobian_pattern();
+  Eigen::Map<Eigen::VectorXd> local(z.data() + first, made_.kernel.layout.size);
   std::vector<double> rows(at(element.equations() + 2 * element.pairs())), entries(at(pattern.entries()));
   const Eigen::Map<const Eigen::VectorXd> errors(rows.data(), element.equations());
   double objective = 0.0;
   for (int step = 0; step < largest_steps; ++step) {
     element.values(z.data(), made_.local_parameters.data(), &objective, rows.data());
-    if (!errors.allFinite()) return std::nullopt;
-    if (errors.lpNorm<Eigen::Infinity>() <= solved) return local.tail(kernel.layout.size - 1);
+    if (!errors.allFinite()) return false;
+    if (errors.lpNorm<Eigen::Infinity>() <= solved) return true;
     element.jacobian(z.data(), made_.local_parameters.data(), entries.data());
-    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(element.equations(), kernel.layout.size);
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(element.equations(), local.size());
     for (int e = 0; e < pattern.entries(); ++e) {
-      const int column = pattern.column[at(e)] - static_cast<int>(first);
-      if (pattern.row[at(e)] >= element.equations() || column < 0 || is_held[at(column)]) continue;
-      jacobian(pattern.row[at(e)], column) += entries[at(e)];
+      const int row = pattern.row[at(e)], column = pattern.column[at(e)] - static_cast<int>(first);
+      if (row < element.equations() && column >= 0 && !is_held[at(column)]) jacobian(row, column) += entries[at(e)];
     }
     local -= jacobian.completeOrthogonalDecomposition().solve(errors);
   }
-  return std::nullopt;
+  return false;
 }
 
 bool ElementTrial::is_admissible(const Eigen::VectorXd& own) const {

@@ -39,6 +39,9 @@ class ElementTrial {
 
  private:
   [[nodiscard]] std::vector<bool> hold(const Modes& modes, Eigen::Ref<Eigen::VectorXd> local) const;
+  [[nodiscard]] bool hold_beyond(Eigen::Ref<Eigen::VectorXd> local, std::vector<bool>& is_held) const;
+  /// @param first  of the element's variables among the local ones
+  [[nodiscard]] bool solve(std::vector<double>& local, std::size_t first, const std::vector<bool>& is_held) const;
   void begin_at(const std::vector<double>& left, Eigen::Ref<Eigen::VectorXd> local) const;
 
   const OcpStructure& made_;

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include "saltus/base/contains.hpp"
@@ -68,14 +69,20 @@ class TouchedSides {
     return (!node.before.empty() && is_at_edge(node.element - 1)) || (!node.after.empty() && is_at_edge(node.element));
   }
 
+  /// Whether both sides of a pair are zero in the whole element.
   [[nodiscard]] bool is_at_edge(std::size_t e) const {
     const auto& kernel = made_.kernel;
+    const auto& [lambda, selection] = std::tie(kernel.layout.lambda, kernel.layout.selection);
+    const auto left = trial_.lambda(trial_.left_of(e));
     for (std::size_t k = 0; k < kernel.pairs.size(); ++k) {
-      if (modes_.of(e, k) != mpcc::ActiveSide::H) continue;
-      double largest = 0.0;
+      const auto& pair = kernel.pairs[k];
+      double largest = left[k];
+      for (int point = 0; point < lambda.count; ++point) {
+        largest = std::max(largest, w_[made_.element[e].variable(lambda.at(point, static_cast<int>(k)))]);
+      }
       for (int m = 0; m < kernel.layout.stages; ++m) {
-        const double value = w_[made_.element[e].variable(kernel.layout.selection.at(m, kernel.pairs[k].selection))];
-        largest = std::max(largest, kernel.pairs[k].complement ? 1.0 - value : value);
+        const double value = w_[made_.element[e].variable(selection.at(m, pair.selection))];
+        largest = std::max(largest, pair.complement ? 1.0 - value : value);
       }
       if (largest <= on_surface) return true;
     }
@@ -86,12 +93,19 @@ class TouchedSides {
   void extend(const Node& node, const std::vector<double>& left, const Modes& before, const Items& chain,
               std::vector<mpcc::BranchMove>& moves) const {
     if (chain.size() == largest_chain) return;
+    std::vector<std::vector<double>> ends;
     for (const auto& modes : candidates(trial_.lambda(left), before, node.after)) {
       double length = inserted_share;
       auto own = trial_.solve(left, node.interval, modes, length);
+      const bool stands = own && trial_.stands_still(left, *own);
+      if (stands) own = solve_to_end(left, node.interval, modes, length);
       if (!own || !trial_.is_admissible(*own)) continue;
-      const bool stands = trial_.stands_still(left, *own);
-      if (stands && !(own = solve_to_end(left, node.interval, modes, length))) continue;
+      // Modes that say the same of an impact, and of what follows it: one of them is enough.
+      if (stands || !chain.empty()) {
+        const auto end = trial_.right_of(*own);
+        if (std::any_of(ends.begin(), ends.end(), [&](const auto& other) { return is_same(end, other); })) continue;
+        ends.push_back(end);
+      }
       Items longer = chain;
       longer.push_back({node.element > 0 ? node.element - 1 : 0, length, modes, *own});
       if (stands) {
@@ -101,6 +115,10 @@ class TouchedSides {
         if (chain.empty()) replace(node, modes, moves);
       }
     }
+  }
+
+  [[nodiscard]] static bool is_same(const std::vector<double>& a, const std::vector<double>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) { return std::abs(x - y) <= on_surface; });
   }
 
   /// Sides of the surfaces that are reached: all of few, two of many at once.
