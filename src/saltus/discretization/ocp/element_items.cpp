@@ -51,9 +51,9 @@ void ElementItems::add(std::vector<std::pair<std::size_t, Items>> changes, std::
   moves.push_back(std::move(move));
 }
 
-void ElementItems::add_solved(std::size_t k, Items items, std::vector<mpcc::BranchMove>& moves) const {
-  if (!fit(items, made_.interval[k].elements)) return;
-  make_equal(items);
+bool ElementItems::add_solved(std::size_t k, Items items, std::vector<mpcc::BranchMove>& moves) const {
+  if (!fit(items, made_.interval[k].elements)) return false;
+  const bool have_room = make_equal(k, items);
   const ElementTrial trial(made_, w_);
   auto left = trial.left_of(at(made_.interval[k].first_element));
   for (auto& item : items) {
@@ -63,15 +63,22 @@ void ElementItems::add_solved(std::size_t k, Items items, std::vector<mpcc::Bran
     left = trial.right_of(item.own);
   }
   add({{k, std::move(items)}}, moves);
+  return have_room;
 }
 
-/// Neighbours of equal modes have equal lengths in a branch.
-void ElementItems::make_equal(Items& items) {
+/// Neighbours of equal modes have equal lengths in a branch; false if these are longer than an element may be.
+bool ElementItems::make_equal(std::size_t k, Items& items) const {
+  const auto& lengths = made_.interval[k].lengths;
+  const double longest = lengths.empty() ? 1.0 : made_.w_bounds.upper[lengths.front()] + small_share;
+  const double sum = length_of(items);
+  bool have_room = true;
   for (auto first = items.begin(); first != items.end();) {
     const auto end = std::find_if(first, items.end(), [&](const Item& item) { return item.modes != first->modes; });
     const double mean = length_of({first, end}) / static_cast<double>(end - first);
+    have_room = have_room && mean <= longest * sum;
     for (; first != end; ++first) first->length = mean;
   }
+  return have_room;
 }
 
 /// Joins neighbours of equal modes, or halves the longest in which time goes on, until there are so many.

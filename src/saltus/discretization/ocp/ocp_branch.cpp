@@ -209,6 +209,18 @@ void OcpProblem::complete(mpcc::VectorView w) {
   }
 }
 
+std::vector<int> OcpProblem::crowded_intervals(ConstVectorView w, const Eigen::VectorXd& upper,
+                                               double tolerance) const {
+  const auto& made = *implementation_->structure;
+  std::set<int> crowded = implementation_->crowded;
+  for (const auto& element : made.element) {
+    const int h = element.length;
+    if (h < 0 || upper.size() <= h || !(upper[h] > tolerance)) continue;
+    if (w[h] > made.w_bounds.upper[h] - vanished) crowded.insert(element.interval);
+  }
+  return {crowded.begin(), crowded.end()};
+}
+
 std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, ConstVectorView w) const {
   const auto& made = *implementation_->structure;
   std::vector<mpcc::BranchMove> moves;
@@ -237,7 +249,8 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
     return c;
   };
   add_void_sides(made, modes, w, functions, moves);
-  add_touched_sides(made, modes, w, moves);
+  implementation_->crowded.clear();
+  add_touched_sides(made, modes, w, implementation_->crowded, moves);
   add_reached_regions(made, modes, w, moves);
   return moves;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "saltus/discretization/ocp/element_sides_internal.hpp"
@@ -50,10 +51,12 @@ void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::C
                     const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& functions,
                     std::vector<mpcc::BranchMove>& moves);
 
-/// Adds moves of surfaces that are reached and not crossed where an element ends, and of several crossed at once: an
-/// element between has their sides one by one.
+/// Adds moves of modes in which the motion can go on from where an element ends: an element of them is inserted, or
+/// several up to the end of an impact, or what follows has them. Of surfaces crossed at once an element between has the
+/// sides one by one.
+/// @param crowded  intervals that have no element left for such a move are added
 void add_touched_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                       std::vector<mpcc::BranchMove>& moves);
+                       std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves);
 
 /// Adds moves of regions by indicators that a state comes to at the end of the horizon, or is held at until then: it
 /// goes on through them, to the line between them and another one.

@@ -26,8 +26,8 @@ constexpr std::size_t largest_combined = 4;
 
 class TouchedSides {
  public:
-  TouchedSides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w)
-      : made_(made), modes_(modes), w_(w), states_(made), items_(made, modes, w), trial_(made, w) {}
+  TouchedSides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w, std::set<int>& crowded)
+      : made_(made), modes_(modes), w_(w), crowded_(crowded), states_(made), items_(made, modes, w), trial_(made, w) {}
 
   void add_to(std::vector<mpcc::BranchMove>& moves) const {
     for (std::size_t e = 0; e <= made_.element.size(); ++e) add_continued(e, moves);
@@ -45,9 +45,8 @@ class TouchedSides {
 
   void add_continued(std::size_t e, std::vector<mpcc::BranchMove>& moves) const {
     const bool is_first = e == 0, is_last = e == made_.element.size();
-    Node node{.element = e,
-              .before = is_first ? Modes{} : modes_.modes(e - 1),
-              .after = is_last ? Modes{} : modes_.modes(e)};
+    Node node{
+        .element = e, .before = is_first ? Modes{} : modes_.modes(e - 1), .after = is_last ? Modes{} : modes_.modes(e)};
     const auto left = trial_.left_of(e);
     if (!is_touched(node, trial_.lambda(left))) return;
     const auto begin_in = [&](std::size_t k) {
@@ -93,23 +92,23 @@ class TouchedSides {
   void extend(const Node& node, const std::vector<double>& left, const Modes& before, const Items& chain,
               std::vector<mpcc::BranchMove>& moves) const {
     if (chain.size() == largest_chain) return;
-    std::vector<std::vector<double>> ends;
+    std::vector<std::vector<double>> impacts;
     for (const auto& modes : candidates(trial_.lambda(left), before, node.after)) {
       double length = inserted_share;
       auto own = trial_.solve(left, node.interval, modes, length);
       const bool stands = own && trial_.stands_still(left, *own);
       if (stands) own = solve_to_end(left, node.interval, modes, length);
       if (!own || !trial_.is_admissible(*own)) continue;
-      // Modes that say the same of an impact, and of what follows it: one of them is enough.
-      if (stands || !chain.empty()) {
-        const auto end = trial_.right_of(*own);
-        if (std::any_of(ends.begin(), ends.end(), [&](const auto& other) { return is_same(end, other); })) continue;
-        ends.push_back(end);
+      const auto right = trial_.right_of(*own);
+      // Several modes may say the same of an impact.
+      if (stands && std::any_of(impacts.begin(), impacts.end(), [&](auto& other) { return is_same(right, other); })) {
+        continue;
       }
       Items longer = chain;
       longer.push_back({node.element > 0 ? node.element - 1 : 0, length, modes, *own});
       if (stands) {
-        extend(node, trial_.right_of(*own), modes, longer, moves);
+        impacts.push_back(right);
+        extend(node, right, modes, longer, moves);
       } else {
         insert(node, longer, moves);
         if (chain.empty()) replace(node, modes, moves);
@@ -171,7 +170,7 @@ class TouchedSides {
   void insert(const Node& node, const Items& chain, std::vector<mpcc::BranchMove>& moves) const {
     Items items = items_.of_interval(node.interval);
     items.insert(items.begin() + node.place, chain.begin(), chain.end());
-    items_.add_solved(node.interval, items, moves);
+    if (!items_.add_solved(node.interval, items, moves)) crowded_.insert(static_cast<int>(node.interval));
   }
 
   /// Instead of what follows, where that stays on the surfaces: until then the motion is the same.
@@ -234,6 +233,7 @@ class TouchedSides {
   const OcpStructure& made_;
   const ElementSides& modes_;
   mpcc::ConstVectorView w_;
+  std::set<int>& crowded_;
   SurfaceStates states_;
   ElementItems items_;
   ElementTrial trial_;
@@ -242,8 +242,8 @@ class TouchedSides {
 }  // namespace
 
 void add_touched_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                       std::vector<mpcc::BranchMove>& moves) {
-  TouchedSides(made, modes, w).add_to(moves);
+                       std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves) {
+  TouchedSides(made, modes, w, crowded).add_to(moves);
 }
 
 }  // namespace saltus::discretization
