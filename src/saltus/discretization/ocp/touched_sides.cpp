@@ -170,7 +170,19 @@ class TouchedSides {
   void insert(const Node& node, const Items& chain, std::vector<mpcc::BranchMove>& moves) const {
     Items items = items_.of_interval(node.interval);
     items.insert(items.begin() + node.place, chain.begin(), chain.end());
-    if (!items_.add_solved(node.interval, items, moves)) crowded_.insert(static_cast<int>(node.interval));
+    const bool have_room = items_.add_solved(node.interval, items, moves);
+    if (!have_room && is_another_motion(node, chain.front())) crowded_.insert(static_cast<int>(node.interval));
+  }
+
+  /// Whether neither what was before nor what follows says the same.
+  [[nodiscard]] bool is_another_motion(const Node& node, const Item& first) const {
+    const auto left = trial_.left_of(node.element);
+    for (const Modes* modes : {&node.before, &node.after}) {
+      if (modes->empty()) continue;
+      const auto own = trial_.solve(left, node.interval, *modes, first.length);
+      if (own && is_same(trial_.right_of(*own), trial_.right_of(first.own))) return false;
+    }
+    return true;
   }
 
   /// Instead of what follows, where that stays on the surfaces: until then the motion is the same.
