@@ -215,7 +215,8 @@ std::vector<int> OcpProblem::crowded_intervals(ConstVectorView w, const Eigen::V
   std::set<int> crowded = implementation_->crowded;
   for (const auto& element : made.element) {
     const int h = element.length;
-    if (h < 0 || upper.size() <= h || !(upper[h] > tolerance)) continue;
+    // A bound of 1 is none: the others are as short as they can be.
+    if (h < 0 || upper.size() <= h || made.w_bounds.upper[h] >= 1.0 || !(upper[h] > tolerance)) continue;
     if (w[h] > made.w_bounds.upper[h] - vanished) crowded.insert(element.interval);
   }
   return {crowded.begin(), crowded.end()};

@@ -174,15 +174,16 @@ class TouchedSides {
     if (!have_room && is_another_motion(node, chain.front())) crowded_.insert(static_cast<int>(node.interval));
   }
 
-  /// Whether neither what was before nor what follows says the same.
+  /// Whether neither what was before nor what follows, in this interval, says the same.
   [[nodiscard]] bool is_another_motion(const Node& node, const Item& first) const {
     const auto left = trial_.left_of(node.element);
-    for (const Modes* modes : {&node.before, &node.after}) {
-      if (modes->empty()) continue;
-      const auto own = trial_.solve(left, node.interval, *modes, first.length);
-      if (own && is_same(trial_.right_of(*own), trial_.right_of(first.own))) return false;
-    }
-    return true;
+    const auto is_told = [&](std::size_t e) {
+      if (at(made_.element[e].interval) != node.interval) return false;
+      const auto own = trial_.solve(left, node.interval, modes_.modes(e), first.length);
+      return own && is_same(trial_.right_of(*own), trial_.right_of(first.own));
+    };
+    return !(node.element > 0 && is_told(node.element - 1)) &&
+           !(node.element < made_.element.size() && is_told(node.element));
   }
 
   /// Instead of what follows, where that stays on the surfaces: until then the motion is the same.
