@@ -95,6 +95,8 @@ class Descent {
         is_equal(branch().objective, next.objective)) {
       next = run_.solve_branch(sides, next.w, branch_iterations, message, branch().objective);
     }
+    // From another start it may get there.
+    if (next.report.termination == Termination::iteration_limit) visited_.erase(sides);
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
     // A certified point is not given up for digits of its objective.
     const auto& of = run_.solution.certificate;

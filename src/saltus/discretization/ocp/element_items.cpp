@@ -2,6 +2,7 @@
 #include <iterator>
 
 #include "saltus/discretization/ocp/element_items_internal.hpp"
+#include "saltus/discretization/ocp/element_trial_internal.hpp"
 
 namespace saltus::discretization {
 
@@ -50,6 +51,36 @@ void ElementItems::add(std::vector<std::pair<std::size_t, Items>> changes, std::
   moves.push_back(std::move(move));
 }
 
+bool ElementItems::add_solved(std::size_t k, Items items, std::vector<mpcc::BranchMove>& moves) const {
+  if (!fit(items, made_.interval[k].elements)) return false;
+  const bool have_room = make_equal(k, items);
+  const ElementTrial trial(made_, w_);
+  auto left = trial.left_of(at(made_.interval[k].first_element));
+  for (auto& item : items) {
+    auto own = trial.solve(left, k, item.modes, item.length);
+    if (!own) break;
+    item.own = std::move(*own);
+    left = trial.right_of(item.own);
+  }
+  add({{k, std::move(items)}}, moves);
+  return have_room;
+}
+
+/// Neighbours of equal modes have equal lengths in a branch; false if these are longer than an element may be.
+bool ElementItems::make_equal(std::size_t k, Items& items) const {
+  const auto& lengths = made_.interval[k].lengths;
+  const double longest = lengths.empty() ? 1.0 : made_.w_bounds.upper[lengths.front()] + small_share;
+  const double sum = length_of(items);
+  bool have_room = true;
+  for (auto first = items.begin(); first != items.end();) {
+    const auto end = std::find_if(first, items.end(), [&](const Item& item) { return item.modes != first->modes; });
+    const double mean = length_of({first, end}) / static_cast<double>(end - first);
+    have_room = have_room && mean <= longest * sum;
+    for (; first != end; ++first) first->length = mean;
+  }
+  return have_room;
+}
+
 /// Joins neighbours of equal modes, or halves the longest in which time goes on, until there are so many.
 bool ElementItems::fit(Items& items, int elements) const {
   while (items.size() > at(elements)) {
@@ -93,7 +124,11 @@ void ElementItems::write(std::size_t k, const Items& items, mpcc::BranchMove& mo
     modes_.write(items[n].modes, e, move.sides);
     const int size = made_.kernel.layout.size - 1;
     move.start.segment(made_.element[e].first, size) = w_.segment(made_.element[items[n].element].first, size);
-    if (items[n].modes != modes_.modes(items[n].element)) begin_at_end(items[n].element, e, move.start);
+    if (items[n].own.size() > 0) {
+      move.start.segment(made_.element[e].first, size) = items[n].own;
+    } else if (items[n].modes != modes_.modes(items[n].element)) {
+      begin_at_end(items[n].element, e, move.start);
+    }
     if (made_.element[e].length >= 0) move.start[made_.element[e].length] = items[n].length / sum;
   }
 }

@@ -13,6 +13,7 @@ struct Item {
   std::size_t element = 0;
   double length = 0.0;
   ElementSides::Sides modes{};
+  Eigen::VectorXd own{};  ///< its variables, where it has been solved anew
 };
 using Items = std::vector<Item>;
 
@@ -28,11 +29,15 @@ class ElementItems {
   [[nodiscard]] double value(int place) const { return value_at(place, w_, made_.constants); }
   /// Adds the move to these items in these intervals, if they fit.
   void add(std::vector<std::pair<std::size_t, Items>> changes, std::vector<mpcc::BranchMove>& moves) const;
+  /// Adds the move to these items in one interval, if they fit, its elements solved anew, one after the other.
+  /// @return whether they have room: they fit, and none begins longer than it may be
+  bool add_solved(std::size_t k, Items items, std::vector<mpcc::BranchMove>& moves) const;
   [[nodiscard]] static double length_of(const Items& items);
 
  private:
   [[nodiscard]] int speed_of(std::size_t k) const;
   [[nodiscard]] bool fit(Items& items, int elements) const;
+  [[nodiscard]] bool make_equal(std::size_t k, Items& items) const;
   void begin_at_end(std::size_t from, std::size_t to, Eigen::VectorXd& start) const;
   void write(std::size_t k, const Items& items, mpcc::BranchMove& move) const;
 

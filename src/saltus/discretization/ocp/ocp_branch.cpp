@@ -5,7 +5,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/element_expressions_internal.hpp"
-#include "saltus/discretization/ocp/element_sides_internal.hpp"
+#include "saltus/discretization/ocp/element_trial_internal.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
@@ -156,17 +156,9 @@ mpcc::BranchClosure::Freedom freedom_of(const OcpStructure& made, const ElementS
 /// ClosingGap: selections that stay where they are, at a bound.
 void hold_closing_gaps(const OcpStructure& made, const ElementSides& modes, std::size_t e,
                        mpcc::BranchClosure& closure) {
-  const auto& kernel = made.kernel;
-  const auto is_zero = [&](int pair) { return modes.of(e, at(pair)) == ActiveSide::G; };
-  const auto hold = [&](int number) {
-    const auto& pair = kernel.pairs[at(number)];
-    for (int m = 0; m < kernel.layout.stages; ++m) {
-      const int selection = made.element[e].variable(kernel.layout.selection.at(m, pair.selection));
-      (pair.complement ? closure.at_upper : closure.at_lower).push_back(selection);
-    }
-  };
-  for (const auto& gap : kernel.closing_gaps) {
-    if (is_zero(gap.closing)) hold(is_zero(gap.closed) ? gap.closed : gap.open);
+  if (made.kernel.closing_gaps.empty()) return;
+  for (const auto& held : held_while_closing(made.kernel, modes.modes(e))) {
+    (held.at_upper ? closure.at_upper : closure.at_lower).push_back(made.element[e].variable(held.local));
   }
 }
 
@@ -217,6 +209,19 @@ void OcpProblem::complete(mpcc::VectorView w) {
   }
 }
 
+std::vector<int> OcpProblem::crowded_intervals(ConstVectorView w, const Eigen::VectorXd& upper,
+                                               double tolerance) const {
+  const auto& made = *implementation_->structure;
+  std::set<int> crowded = implementation_->crowded;
+  for (const auto& element : made.element) {
+    const int h = element.length;
+    // A bound of 1 is none: the others are as short as they can be.
+    if (h < 0 || upper.size() <= h || made.w_bounds.upper[h] >= 1.0 || !(upper[h] > tolerance)) continue;
+    if (w[h] > made.w_bounds.upper[h] - vanished) crowded.insert(element.interval);
+  }
+  return {crowded.begin(), crowded.end()};
+}
+
 std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, ConstVectorView w) const {
   const auto& made = *implementation_->structure;
   std::vector<mpcc::BranchMove> moves;
@@ -245,7 +250,8 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
     return c;
   };
   add_void_sides(made, modes, w, functions, moves);
-  add_touched_sides(made, modes, w, moves);
+  implementation_->crowded.clear();
+  add_touched_sides(made, modes, w, implementation_->crowded, moves);
   add_reached_regions(made, modes, w, moves);
   return moves;
 }

@@ -119,10 +119,17 @@ class OcpProblem final : public mpcc::Problem {
   /// - A switch at the end of an interval can as well be in the interval before or behind it, in an element that has
   ///   vanished.
   /// - An element that has vanished can as well have the modes of a neighbour.
+  /// - Where an element ends on a surface, the motion can go on in other modes, in an element or more that are
+  /// inserted.
   /// - Between two elements of equal modes and others a switch can be written with one element more. It is on the side
   ///   whose lengths are at their bound.
   [[nodiscard]] std::vector<mpcc::BranchMove> equal_branches(const std::vector<mpcc::ActiveSide>& sides,
                                                              mpcc::ConstVectorView w) const override;
+  /// Returns intervals whose number of elements holds the objective up. One that is as long as it may be presses
+  /// against that, or the last equal_branches() has found a motion for which there is none left.
+  /// @param upper  multipliers of upper bounds at w
+  [[nodiscard]] std::vector<int> crowded_intervals(mpcc::ConstVectorView w, const Eigen::VectorXd& upper,
+                                                   double tolerance) const;
 
  private:
   struct Implementation;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct OcpProblem::Implementation {
   std::vector<int> mean_lengths;  ///< of heuristic_mean: variables; their mean is 1 over the number of their interval
   std::vector<double> mean_values;
   std::optional<FollowedParameter> stabilisation;
+  std::set<int> crowded;  ///< OcpProblem::crowded_intervals
   std::vector<std::string> path_names, terminal_names, state_names;
 
   Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp);

@@ -71,24 +71,25 @@ void SurfaceStates::select(std::size_t element, std::size_t number, int state, m
   }
 }
 
-bool SurfaceStates::is_reached(std::size_t element, std::size_t number, mpcc::ConstVectorView w) const {
-  return is_on(number, made_.left_lambda(static_cast<int>(element) + 1), w);
-}
-
 bool SurfaceStates::is_held(std::size_t element, std::size_t number, mpcc::ConstVectorView w) const {
-  const auto& lambda = made_.kernel.layout.lambda;
-  if (!is_on(number, made_.left_lambda(static_cast<int>(element)), w)) return false;
-  for (int point = 0; point < lambda.count; ++point) {
+  const auto& block = made_.kernel.layout.lambda;
+  const auto is_on_at = [&](const std::vector<int>& places) {
+    std::vector<double> lambda;
+    for (const int place : places) lambda.push_back(value_at(place, w, made_.constants));
+    return is_on(number, lambda);
+  };
+  if (!is_on_at(made_.left_lambda(static_cast<int>(element)))) return false;
+  for (int point = 0; point < block.count; ++point) {
     std::vector<int> places;
-    for (int k = 0; k < lambda.size; ++k) places.push_back(made_.element[element].variable(lambda.at(point, k)));
-    if (!is_on(number, places, w)) return false;
+    for (int k = 0; k < block.size; ++k) places.push_back(made_.element[element].variable(block.at(point, k)));
+    if (!is_on_at(places)) return false;
   }
   return true;
 }
 
-bool SurfaceStates::is_on(std::size_t number, const std::vector<int>& lambda, mpcc::ConstVectorView w) const {
+bool SurfaceStates::is_on(std::size_t number, const std::vector<double>& lambda) const {
   const Surface& surface = surfaces_[number];
-  const auto is_zero = [&](int pair) { return value_at(lambda[at(pair)], w, made_.constants) <= on_surface; };
+  const auto is_zero = [&](int pair) { return lambda[at(pair)] <= on_surface; };
   if (is_step(surface)) return is_zero(surface.first_pair) && is_zero(surface.first_pair + 1);
   for (int region = 0; region < surface.part->count; ++region) {
     if (is_zero(surface.first_pair + region) && is_zero(surface.first_pair + mirrored(surface, region))) return true;

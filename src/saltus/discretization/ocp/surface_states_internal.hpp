@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <vector>
 
 #include "saltus/discretization/ocp/element_sides_internal.hpp"
@@ -23,8 +24,9 @@ class SurfaceStates {
   [[nodiscard]] Modes with(Modes modes, std::size_t surface, int state) const;
   /// Gives the selections of an element their values on one side of a surface.
   void select(std::size_t element, std::size_t surface, int state, mpcc::VectorView w) const;
-  /// Returns whether both sides of the surface are the same point at the right end of an element.
-  [[nodiscard]] bool is_reached(std::size_t element, std::size_t surface, mpcc::ConstVectorView w) const;
+  /// Returns whether both sides of the surface are the same point.
+  /// @param lambda  all multipliers there
+  [[nodiscard]] bool is_on(std::size_t surface, const std::vector<double>& lambda) const;
   /// Returns whether they are in the whole element.
   [[nodiscard]] bool is_held(std::size_t element, std::size_t surface, mpcc::ConstVectorView w) const;
 
@@ -35,8 +37,6 @@ class SurfaceStates {
     int first_pair = 0;  ///< step: of the selection; else of the part
   };
   [[nodiscard]] static bool is_step(const Surface& surface) { return surface.part->form == reformulation::Form::step; }
-  /// @param lambda  places of all multipliers of a point
-  [[nodiscard]] bool is_on(std::size_t surface, const std::vector<int>& lambda, mpcc::ConstVectorView w) const;
   /// Returns the region on the other side of the surface.
   [[nodiscard]] static int mirrored(const Surface& surface, int region);
 
@@ -51,10 +51,12 @@ void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::C
                     const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& functions,
                     std::vector<mpcc::BranchMove>& moves);
 
-/// Adds moves of surfaces that are reached and not crossed where an element ends, and of several crossed at once: an
-/// element between has their sides one by one.
+/// Adds moves of modes in which the motion can go on from where an element ends: an element of them is inserted, or
+/// several up to the end of an impact, or what follows has them. Of surfaces crossed at once an element between has the
+/// sides one by one.
+/// @param crowded  intervals that have no element left for such a move are added
 void add_touched_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                       std::vector<mpcc::BranchMove>& moves);
+                       std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves);
 
 /// Adds moves of regions by indicators that a state comes to at the end of the horizon, or is held at until then: it
 /// goes on through them, to the line between them and another one.

@@ -123,6 +123,17 @@ void take_point(discretization::OcpProblem& problem, const solver::Solution& sol
   statistics.linear_algebra_seconds = solution.solver_seconds;
 }
 
+/// What to write for a solution that is nearer to the simulation.
+std::string finer_grid(const OptimizeOptions& options, bool has_missed) {
+  const long elements = *std::max_element(options.elements.begin(), options.elements.end());
+  const auto finer = fmt::format("elements = {} or control_intervals = {}", elements + (elements + 1) / 2,
+                                 2 * options.control_intervals);
+  const long stages = options.element.stages;
+  if (!has_missed) return fmt::format("try stages = {}, or {}", stages + 1, finer);
+  return fmt::format("a switch was missed there: try {}{}", finer,
+                     stages > 1 ? "" : fmt::format(", or stages = {}", stages + 1));
+}
+
 /// completed only if the other engine agrees.
 void judge(const result::Verification& verification, const OptimizeOptions& options, result::Status& status) {
   const double tolerance = options.verification_tolerance;
@@ -137,16 +148,11 @@ void judge(const result::Verification& verification, const OptimizeOptions& opti
     status.termination = Termination::completed;
     return;
   }
-  const bool missed = verification.switches_missed > 0;
-  const long stages = options.element.stages;
   status.message = fmt::format(
       "the event-driven simulation of interval {} differs by {:.3g} of the range of '{}' (verification_tolerance = "
-      "{:.3g}); "
-      "{}",
+      "{:.3g}); {}",
       verification.interval, verification.interval_defect, verification.state, tolerance,
-      !missed      ? "take more stages or more elements"
-      : stages > 1 ? "a switch was missed there: take more elements or more intervals (or fewer stages)"
-                   : "a switch was missed there: take more stages, elements or intervals");
+      finer_grid(options, verification.switches_missed > 0));
 }
 
 std::optional<solver::Start> same_structure(const discretization::OcpProblem& problem, const OptimizeOptions& options) {
@@ -210,6 +216,18 @@ void warn_of_impacts_at_nodes(const result::Result& run, const OptimizeObservers
       "impacts at t = {:.6g} lie at ends of control intervals: beside them nothing that has room was better; "
       "compare with an element or an interval more",
       fmt::join(times, ", ")));
+}
+
+/// The certificate is one of the discretised problem, in which an interval has so many elements.
+void warn_of_crowded_intervals(const discretization::OcpProblem& problem, const solver::Solution& solution,
+                               const OptimizeOptions& options, const OptimizeObservers& observers) {
+  const auto crowded = problem.crowded_intervals(solution.w, solution.multipliers.upper, options.mpcc.tolerance);
+  if (crowded.empty()) return;
+  observers.on_warning(fmt::format(
+      "interval{} {} (from 0 on): another motion from there needs an element more than there is; the certificate is "
+      "that of these elements: try elements = {}",
+      crowded.size() == 1 ? "" : "s", fmt::join(crowded, ", "),
+      *std::max_element(options.elements.begin(), options.elements.end()) + 1));
 }
 
 void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
@@ -278,6 +296,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     add_impulses(*bodies, result);
   }
   warn_of_impacts_at_nodes(result, observers);
+  warn_of_crowded_intervals(problem, *solution, options, observers);
   if (result.status.termination != Termination::stopped_by_user && solution->w.allFinite()) {
     std::vector<Eigen::MatrixXd> gains;
     if (options.closed_loop.value_or(ocp.plant || !result.contacts.empty())) {

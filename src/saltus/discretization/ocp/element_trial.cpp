@@ -1,0 +1,168 @@
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/QR>
+
+#include "saltus/discretization/ocp/element_trial_internal.hpp"
+
+namespace saltus::discretization {
+namespace {
+
+using mpcc::ActiveSide;
+
+constexpr int largest_steps = 15;
+/// Of the equations of an element that is solved.
+constexpr double solved = 1e-10;
+/// By which selections and multipliers may be beyond their bounds.
+constexpr double allowed = 1e-8;
+
+}  // namespace
+
+std::vector<HeldSelection> held_while_closing(const OcpKernel::Implementation& kernel,
+                                              const ElementSides::Sides& modes) {
+  std::vector<HeldSelection> held;
+  const auto is_zero = [&](int pair) { return modes[at(pair)] == ActiveSide::G; };
+  for (const auto& gap : kernel.closing_gaps) {
+    if (!is_zero(gap.closing)) continue;
+    const auto& pair = kernel.pairs[at(is_zero(gap.closed) ? gap.closed : gap.open)];
+    for (int m = 0; m < kernel.layout.stages; ++m) {
+      held.push_back({kernel.layout.selection.at(m, pair.selection), pair.complement});
+    }
+  }
+  return held;
+}
+
+std::vector<double> ElementTrial::left_of(std::size_t number) const {
+  const auto& kernel = made_.kernel;
+  std::vector<int> places;
+  if (number < made_.element.size()) {
+    places = made_.element[number].left;
+  } else {
+    places = right_state(made_, made_.element.back());
+    if (kernel.depends_on_time) places.push_back(made_.element.back().variable(kernel.layout.end_time.first));
+    const auto lambda = made_.left_lambda(static_cast<int>(number));
+    places.insert(places.end(), lambda.begin(), lambda.end());
+  }
+  std::vector<double> values;
+  for (const int place : places) values.push_back(value_at(place, w_, made_.constants));
+  return values;
+}
+
+std::vector<double> ElementTrial::right_of(const Eigen::VectorXd& own) const {
+  const auto& layout = made_.kernel.layout;
+  std::vector<double> values;
+  for (int i = 0; i < made_.kernel.states; ++i) values.push_back(own[layout.right_state() + i - 1]);
+  if (made_.kernel.depends_on_time) values.push_back(own[layout.end_time.first - 1]);
+  for (int i = 0; i < layout.lambda.size; ++i) values.push_back(own[layout.lambda.at(layout.lambda.count - 1, i) - 1]);
+  return values;
+}
+
+std::vector<double> ElementTrial::lambda(const std::vector<double>& left) const {
+  return {left.end() - made_.kernel.layout.lambda.size, left.end()};
+}
+
+std::vector<bool> ElementTrial::hold(const Modes& modes, Eigen::Ref<Eigen::VectorXd> local) const {
+  const auto& kernel = made_.kernel;
+  const auto& layout = kernel.layout;
+  std::vector<bool> is_held(at(layout.size), false);
+  const auto set = [&](int variable, double value) {
+    is_held[at(variable)] = true;
+    local[variable] = value;
+  };
+  set(layout.h, local[layout.h]);
+  for (std::size_t k = 0; k < kernel.pairs.size(); ++k) {
+    const auto& pair = kernel.pairs[k];
+    if (modes[k] == ActiveSide::G) {
+      for (int m = 0; m < layout.stages; ++m) set(layout.selection.at(m, pair.selection), pair.complement ? 1.0 : 0.0);
+    } else {
+      for (int point = 0; point < layout.lambda.count; ++point) {
+        set(layout.lambda.at(point, static_cast<int>(k)), 0.0);
+      }
+    }
+  }
+  for (const auto& held : held_while_closing(kernel, modes)) set(held.local, held.at_upper ? 1.0 : 0.0);
+  return is_held;
+}
+
+void ElementTrial::begin_at(const std::vector<double>& left, Eigen::Ref<Eigen::VectorXd> local) const {
+  const auto& kernel = made_.kernel;
+  const auto& layout = kernel.layout;
+  const Eigen::Map<const Eigen::VectorXd> state(left.data(), kernel.states);
+  const auto fill = [&](const VariableBlock& block) {
+    for (int group = 0; group < block.count; ++group) local.segment(block.at(group), block.size) = state;
+  };
+  if (kernel.options.representation == Representation::integral) fill(layout.stage);
+  fill(layout.end_state);
+  for (int i = layout.selection.first; i < layout.selection.end(); ++i) local[i] = 0.5;
+  if (layout.end_time.count > 0) local[layout.end_time.first] = left[at(kernel.states)];
+}
+
+std::optional<Eigen::VectorXd> ElementTrial::solve(const std::vector<double>& left, std::size_t interval,
+                                                   const Modes& modes, double length) const {
+  const auto& kernel = made_.kernel;
+  std::vector<double> z = left;
+  for (const int place : made_.interval[interval].shared) z.push_back(value_at(place, w_, made_.constants));
+  z[left.size() + at(kernel.shared.controls + kernel.shared.parameters + kernel.shared.held + 1)] = 1.0;
+  const std::size_t first = z.size();
+  z.resize(first + at(kernel.layout.size), 0.0);
+  Eigen::Map<Eigen::VectorXd> local(z.data() + first, kernel.layout.size);
+  begin_at(left, local);
+  local[kernel.layout.h] = length;
+  std::vector<bool> is_held = hold(modes, local);
+  do {
+    if (!solve(z, first, is_held)) return std::nullopt;
+  } while (hold_beyond(local, is_held));
+  return local.tail(kernel.layout.size - 1);
+}
+
+/// Where selections are not unique, those of the smallest step may be beyond their bounds: there they stay.
+bool ElementTrial::hold_beyond(Eigen::Ref<Eigen::VectorXd> local, std::vector<bool>& is_held) const {
+  bool are_beyond = false;
+  const auto& selection = made_.kernel.layout.selection;
+  for (int i = selection.first; i < selection.end(); ++i) {
+    const double inside = std::clamp(local[i], 0.0, 1.0);
+    if (is_held[at(i)] || std::abs(local[i] - inside) <= allowed) continue;
+    local[i] = inside;
+    are_beyond = is_held[at(i)] = true;
+  }
+  return are_beyond;
+}
+
+bool ElementTrial::solve(std::vector<double>& z, std::size_t first, const std::vector<bool>& is_held) const {
+  auto& element = made_.kernel.element;
+  const auto& pattern = element.jacobian_pattern();
+  Eigen::Map<Eigen::VectorXd> local(z.data() + first, made_.kernel.layout.size);
+  std::vector<double> rows(at(element.equations() + 2 * element.pairs())), entries(at(pattern.entries()));
+  const Eigen::Map<const Eigen::VectorXd> errors(rows.data(), element.equations());
+  double objective = 0.0;
+  for (int step = 0; step < largest_steps; ++step) {
+    element.values(z.data(), made_.local_parameters.data(), &objective, rows.data());
+    if (!errors.allFinite()) return false;
+    if (errors.lpNorm<Eigen::Infinity>() <= solved) return true;
+    element.jacobian(z.data(), made_.local_parameters.data(), entries.data());
+    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(element.equations(), local.size());
+    for (int e = 0; e < pattern.entries(); ++e) {
+      const int row = pattern.row[at(e)], column = pattern.column[at(e)] - static_cast<int>(first);
+      if (row < element.equations() && column >= 0 && !is_held[at(column)]) jacobian(row, column) += entries[at(e)];
+    }
+    local -= jacobian.completeOrthogonalDecomposition().solve(errors);
+  }
+  return false;
+}
+
+bool ElementTrial::is_admissible(const Eigen::VectorXd& own) const {
+  const auto& layout = made_.kernel.layout;
+  const auto selections = own.segment(layout.selection.first - 1, layout.selection.end() - layout.selection.first);
+  const auto lambdas = own.segment(layout.lambda.first - 1, layout.lambda.end() - layout.lambda.first);
+  if (lambdas.size() > 0 && lambdas.minCoeff() < -allowed) return false;
+  return selections.size() == 0 || (selections.minCoeff() >= -allowed && selections.maxCoeff() <= 1.0 + allowed);
+}
+
+bool ElementTrial::stands_still(const std::vector<double>& left, const Eigen::VectorXd& own) const {
+  const int clock = made_.kernel.clock;
+  if (clock < 0) return false;
+  const double length = value_at(made_.horizon, w_, made_.constants) / made_.intervals;
+  return right_of(own)[at(clock)] - left[at(clock)] <= vanished * small_share * length;
+}
+
+}  // namespace saltus::discretization

@@ -1,0 +1,51 @@
+// One element by itself: which variables it has behind a given left end, in given modes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/discretization/ocp/element_sides_internal.hpp"
+
+namespace saltus::discretization {
+
+/// Holds a selection that stays at a bound while a gap closes (ClosingGap): a local variable.
+struct HeldSelection {
+  int local = 0;
+  bool at_upper = false;
+};
+[[nodiscard]] std::vector<HeldSelection> held_while_closing(const OcpKernel::Implementation& kernel,
+                                                            const ElementSides::Sides& modes);
+
+/// Solves elements one by one, with the controls and parameters of a point.
+class ElementTrial {
+ public:
+  using Modes = ElementSides::Sides;
+  ElementTrial(const OcpStructure& made, mpcc::ConstVectorView w) : made_(made), w_(w) {}
+
+  /// Returns what is left of element `number`: state, time if it matters, multipliers.
+  [[nodiscard]] std::vector<double> left_of(std::size_t number) const;
+  /// Returns the same of what follows an element.
+  [[nodiscard]] std::vector<double> right_of(const Eigen::VectorXd& own) const;
+  /// Returns multipliers at a left end.
+  [[nodiscard]] std::vector<double> lambda(const std::vector<double>& left) const;
+  /// Returns the variables of an element but its length, if its equations have a solution.
+  /// @param length  in parts of a control interval
+  [[nodiscard]] std::optional<Eigen::VectorXd> solve(const std::vector<double>& left, std::size_t interval,
+                                                     const Modes& modes, double length) const;
+  /// Returns whether selections and multipliers are within their bounds.
+  [[nodiscard]] bool is_admissible(const Eigen::VectorXd& own) const;
+  /// Returns whether the clock stands.
+  [[nodiscard]] bool stands_still(const std::vector<double>& left, const Eigen::VectorXd& own) const;
+
+ private:
+  [[nodiscard]] std::vector<bool> hold(const Modes& modes, Eigen::Ref<Eigen::VectorXd> local) const;
+  [[nodiscard]] bool hold_beyond(Eigen::Ref<Eigen::VectorXd> local, std::vector<bool>& is_held) const;
+  /// @param first  of the element's variables among the local ones
+  [[nodiscard]] bool solve(std::vector<double>& local, std::size_t first, const std::vector<bool>& is_held) const;
+  void begin_at(const std::vector<double>& left, Eigen::Ref<Eigen::VectorXd> local) const;
+
+  const OcpStructure& made_;
+  mpcc::ConstVectorView w_;
+};
+
+}  // namespace saltus::discretization
