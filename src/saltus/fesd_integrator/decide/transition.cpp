@@ -219,21 +219,23 @@ void Transition::put(const Group& group, const std::vector<int>& pattern, std::v
   for (std::size_t k = 0; k < pattern.size(); ++k) modes[at(group.members[k])] = pattern[k];
 }
 
-/// The patterns of a group that its rates do not exclude while the other groups are as in `modes`; the one with the
-/// largest margin into `guess`.
+/// The patterns of a group that its rates do not exclude while the other groups are as in `modes`; of those that are
+/// regular, or else of all, the one with the largest margin into `guess`.
 std::vector<Transition::Option> Transition::options_of(const Decision& decision, const Group& group,
                                                        const std::vector<int>& modes, std::vector<int>& guess) {
   std::vector<Option> options;
-  double best = -2.0;
+  std::pair best{false, -2.0};
   for (const auto& pattern : group.patterns) {
     auto trial = modes;
     put(group, pattern, trial);
     Continuation candidate{make_set(decision, trial), {}};
     const double value = margin(decision, group, candidate);
     if (value < -undecided) continue;
-    options.push_back({pattern, value});
-    if (value <= best) continue;
-    best = value;
+    options.push_back({.pattern = pattern, .margin = value, .regular = projected_.regular()});
+    // A set with selections that no equation determines says nothing of the other groups.
+    const std::pair likelier{projected_.regular(), value};
+    if (likelier <= best) continue;
+    best = likelier;
     put(group, pattern, guess);
   }
   return options;
@@ -247,7 +249,7 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
     auto trial = guess;
     put(group, option.pattern, trial);
     Continuation candidate{make_set(decision, trial), {}};
-    if (option.margin <= undecided || group.dependent) {
+    if (option.margin <= undecided || group.dependent || !option.regular) {
       if (margin(decision, group, candidate) < -undecided) continue;
       option.regular = projected_.regular();
       try_elements(decision, group, candidate, option);
