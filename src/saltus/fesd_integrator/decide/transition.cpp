@@ -61,8 +61,14 @@ bool Transition::stands_for(const Option& option, const Option& other, const Gro
   return other.trial == Trial::stays && !(regular && stands_still(other, option, group));
 }
 
+/// Whether an option moves and slides as another one does: what differs has not moved at all in it.
+bool Transition::stays_beside(const Option& option, const Option& other, const Group& group) {
+  return option.trial == Trial::stays && are_near(option.motion, other.motion) && stands_still(option, other, group) &&
+         !slides_beside(option, other) && !slides_beside(other, option);
+}
+
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
-    : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver) {
+    : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver), rests_(kernel) {
   kernel.size(values_);
   part_of_.resize(kernel.selections());
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -173,9 +179,11 @@ Transition::Trial Transition::try_element(const Decision& decision, const Group&
     if (value < -rounding) return Trial::fails;
     if (value > rounding) continue;
     stays = true;
-    const bool is_side = condition.kind == Condition::Kind::side;
-    if (is_side && decision.before != nullptr && value == watch_.left_value(candidate.set, condition))
-      still.push_back(condition.selection);
+    if (condition.kind != Condition::Kind::side || decision.before == nullptr) continue;
+    // What has no rate at all may have the roundings of Newton's method.
+    const double moved = std::abs(value - watch_.left_value(candidate.set, condition));
+    const bool stands = rate_[at(condition.selection)] == 0.0 && moved <= watch_.noise(condition);
+    if (moved == 0.0 || stands) still.push_back(condition.selection);
   }
   return stays ? Trial::stays : Trial::holds;
 }
@@ -212,7 +220,7 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     all.ended = -1;
     return continuations(all);
   }
-  return found.empty() && depends_ ? continuations(decision, Rule::enumeration) : found;
+  return found.empty() && (depends_ || rests_.any()) ? continuations(decision, Rule::enumeration) : found;
 }
 
 void Transition::put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes) {
@@ -262,7 +270,9 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
   }
   std::vector<std::vector<int>> admissible;
   for (const Option& option : passed) {
-    const auto known = [&](const Option& other) { return stands_for(other, option, group); };
+    const auto known = [&](const Option& other) {
+      return stands_for(other, option, group) || (&other < &option && stays_beside(option, other, group));
+    };
     if (std::none_of(passed.begin(), passed.end(), known)) admissible.push_back(option.pattern);
   }
   return admissible;
