@@ -144,34 +144,6 @@ class TimeFreezing(FrozenTest):
         for event, t in zip(frozen["events"], (0.1, 0.5)):
             self.assertAlmostEqual(event["t"], t, delta=1e-9)
 
-    def test_bodies_at_rest_at_the_start_beside_what_is_idle(self):
-        # What a wall far away, or a hysteresis that waits, does has no equation there.
-        bodies = HEAD + """[states]
-x = 0
-y0 = 0
-y1 = 0
-vx = 1
-v0 = 0
-v1 = 0
-[mechanics]
-positions = ["x", "y0", "y1"]
-velocities = ["vx", "v0", "v1"]
-force = { v0 = -10, v1 = -9.81 }
-[[contacts]]
-name = "g0"
-gap = "y0"
-"""
-        second = '[[contacts]]\nname = "g1"\ngap = "y1"\n'
-        hysteresis = '[[hysteresis]]\nname = "h"\ninput = "x"\non = 0.3\noff = -0.1\n'
-        wall = '[[contacts]]\nname = "wall"\ngap = "x + 1"\n'
-        for more in (second + wall, hysteresis, second + hysteresis, second + wall + hysteresis):
-            for speed in (0, 1):
-                model = bodies.replace("vx = 1", f"vx = {speed}") + more + "[simulate]\nuntil = 1\n"
-                for stages in (2, 3):
-                    with self.subTest(more=more, speed=speed, stages=stages):
-                        _, frozen = self.assert_agree(model, 1e-12, "--set", f"simulate.fesd.stages={stages}")
-                        self.assertEqual(frozen["final"]["contact_modes"][0], "closed")
-
     def test_an_impact_ends_whatever_force_and_steps_are(self):
         landing = LANDING[:LANDING.index("[optimize]")] + "[simulate]\nuntil = 0.6\n"
         for force in (1, 9.81, 100):
