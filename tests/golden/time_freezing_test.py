@@ -96,8 +96,8 @@ class TimeFreezing(FrozenTest):
     def test_events_of_runs_that_fail_do_not_depend_on_the_rows(self):
         found = set()
         for rows in ("auto", "steps", "{ points = 2 }", "{ every = 0.01 }"):
-            self.run_tool("simulate", "falling-rod", "--method", "fesd", "--set", f"simulate.output={rows}", "--quiet",
-                          "--out", "r.events.csv", "--out", "r.json", code=3)
+            self.run_tool("simulate", "falling-rod", "--method", "fesd", "--set", f"simulate.output={rows}", "--set",
+                          "simulate.max_steps=70", "--quiet", "--out", "r.events.csv", "--out", "r.json", code=3)
             final = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["final"]
             found.add((json.dumps(final), (self.folder / "r.events.csv").read_text(encoding="utf-8")))
         self.assertEqual(len(found), 1)
@@ -109,7 +109,7 @@ class TimeFreezing(FrozenTest):
     def test_where_time_stands_still_there_are_no_forces(self):
         for output in ("auto", "{ every = 0.001 }"):
             self.run_tool("simulate", "falling-rod", "--method", "fesd", "--set", f"simulate.output={output}", "--quiet",
-                          "--out", "r.json", code=3)
+                          "--out", "r.json", code=0)
             result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
             forces = [k for k, name in enumerate(result["outputs"]) if name.startswith(("force", "friction"))]
             self.assertEqual(len(forces), 4)

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "compiled.hpp"
@@ -74,6 +75,37 @@ TEST(Transition, TwoFunctionsThatAreZeroAtTheStartAreAskedBesideEachOther) {
     const auto found = continuations(model, 0.0, {0.0, 0.0}, std::nullopt, {});
     ASSERT_GE(found.size(), 1U) << (form == Form::step ? "step" : "stewart");
     EXPECT_EQ(found[0].set.modes(), form == Form::step ? (Modes{1, 1}) : (Modes{0, -1, 0, -1}));
+  }
+}
+
+TEST(Transition, WhatIsHeldAtTheStartIsFoundBesideWhatIsIdle) {
+  // Heights and their rates in frozen time, with forces that stop the fall; w moves nothing.
+  model::Builder builder("two bodies at rest");
+  const SX y[] = {builder.state("y1", {0.0}), builder.state("y2", {0.0})};
+  const SX v[] = {builder.state("v1", {0.0}), builder.state("v2", {0.0})};
+  const SX far = builder.state("far", {1.0}), w = builder.state("w", {0.0});
+  SX acts[2], moves = 1.0;
+  for (int i = 0; i < 2; ++i) {
+    acts[i] = (1.0 - builder.step(y[i])) * (1.0 - builder.step(v[i]));
+    moves *= 1.0 - acts[i];
+  }
+  for (int i = 0; i < 2; ++i) {
+    builder.dynamics(fmt::format("y{}", i + 1), v[i] * moves);
+    builder.dynamics(fmt::format("v{}", i + 1), -10.0 * moves + 100.0 * acts[i]);
+  }
+  builder.dynamics("far", -0.1);
+  builder.dynamics("w", (1.0 - builder.step(far)) * (1.0 - builder.step(w)));
+  const Compiled model(builder);
+  const auto found = continuations(model, 0.0, model.facts.initial_state, std::nullopt, {});
+  ASSERT_FALSE(found.empty());
+  for (const Continuation& each : found) {
+    int closed = 0, held = 0;
+    for (std::size_t j = 0; j < model.facts.selections.size(); ++j) {
+      const char kind = model.facts.selections[j].name[0];
+      closed += kind == 'y' && each.set.modes()[j] == -1 ? 1 : 0;
+      held += kind == 'v' && each.set.modes()[j] == 0 ? 1 : 0;
+    }
+    EXPECT_EQ(std::pair(closed, held), std::pair(2, 2));
   }
 }
 

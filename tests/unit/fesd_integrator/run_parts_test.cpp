@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "compiled.hpp"
+#include "saltus/fesd_integrator/element/rest_projection.hpp"
 #include "saltus/fesd_integrator/run/decision_count_internal.hpp"
 #include "saltus/fesd_integrator/run/part_length_internal.hpp"
 #include "saltus/fesd_integrator/run/position_internal.hpp"
-#include "saltus/fesd_integrator/run/rest_projection_internal.hpp"
 #include "saltus/fesd_integrator/run/run_status_internal.hpp"
 #include "saltus/fesd_integrator/run/safeguarded_secant_internal.hpp"
 #include "saltus/fesd_integrator/run/switch_locator_internal.hpp"

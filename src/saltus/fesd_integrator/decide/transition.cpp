@@ -61,8 +61,14 @@ bool Transition::stands_for(const Option& option, const Option& other, const Gro
   return other.trial == Trial::stays && !(regular && stands_still(other, option, group));
 }
 
+/// Whether an option moves and slides as another one does: what differs has not moved at all in it.
+bool Transition::stays_beside(const Option& option, const Option& other, const Group& group) {
+  return option.trial == Trial::stays && are_near(option.motion, other.motion) && stands_still(option, other, group) &&
+         !slides_beside(option, other) && !slides_beside(other, option);
+}
+
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
-    : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver) {
+    : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver), rests_(kernel) {
   kernel.size(values_);
   part_of_.resize(kernel.selections());
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -173,9 +179,11 @@ Transition::Trial Transition::try_element(const Decision& decision, const Group&
     if (value < -rounding) return Trial::fails;
     if (value > rounding) continue;
     stays = true;
-    const bool is_side = condition.kind == Condition::Kind::side;
-    if (is_side && decision.before != nullptr && value == watch_.left_value(candidate.set, condition))
-      still.push_back(condition.selection);
+    if (condition.kind != Condition::Kind::side || decision.before == nullptr) continue;
+    // What has no rate at all may have the roundings of Newton's method.
+    const double moved = std::abs(value - watch_.left_value(candidate.set, condition));
+    const bool stands = rate_[at(condition.selection)] == 0.0 && moved <= watch_.noise(condition);
+    if (moved == 0.0 || stands) still.push_back(condition.selection);
   }
   return stays ? Trial::stays : Trial::holds;
 }
@@ -212,28 +220,30 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     all.ended = -1;
     return continuations(all);
   }
-  return found.empty() && depends_ ? continuations(decision, Rule::enumeration) : found;
+  return found.empty() && (depends_ || rests_.any()) ? continuations(decision, Rule::enumeration) : found;
 }
 
 void Transition::put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes) {
   for (std::size_t k = 0; k < pattern.size(); ++k) modes[at(group.members[k])] = pattern[k];
 }
 
-/// The patterns of a group that its rates do not exclude while the other groups are as in `modes`; the one with the
-/// largest margin into `guess`.
+/// The patterns of a group that its rates do not exclude while the other groups are as in `modes`; of those that are
+/// regular, or else of all, the one with the largest margin into `guess`.
 std::vector<Transition::Option> Transition::options_of(const Decision& decision, const Group& group,
                                                        const std::vector<int>& modes, std::vector<int>& guess) {
   std::vector<Option> options;
-  double best = -2.0;
+  std::pair best{false, -2.0};
   for (const auto& pattern : group.patterns) {
     auto trial = modes;
     put(group, pattern, trial);
     Continuation candidate{make_set(decision, trial), {}};
     const double value = margin(decision, group, candidate);
     if (value < -undecided) continue;
-    options.push_back({pattern, value});
-    if (value <= best) continue;
-    best = value;
+    options.push_back({.pattern = pattern, .margin = value, .regular = projected_.regular()});
+    // A set with selections that no equation determines says nothing of the other groups.
+    const std::pair likelier{projected_.regular(), value};
+    if (likelier <= best) continue;
+    best = likelier;
     put(group, pattern, guess);
   }
   return options;
@@ -247,7 +257,7 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
     auto trial = guess;
     put(group, option.pattern, trial);
     Continuation candidate{make_set(decision, trial), {}};
-    if (option.margin <= undecided || group.dependent) {
+    if (option.margin <= undecided || group.dependent || !option.regular) {
       if (margin(decision, group, candidate) < -undecided) continue;
       option.regular = projected_.regular();
       try_elements(decision, group, candidate, option);
@@ -260,7 +270,9 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
   }
   std::vector<std::vector<int>> admissible;
   for (const Option& option : passed) {
-    const auto known = [&](const Option& other) { return stands_for(other, option, group); };
+    const auto known = [&](const Option& other) {
+      return stands_for(other, option, group) || (&other < &option && stays_beside(option, other, group));
+    };
     if (std::none_of(passed.begin(), passed.end(), known)) admissible.push_back(option.pattern);
   }
   return admissible;

@@ -8,6 +8,7 @@
 
 #include "saltus/base/components.hpp"
 #include "saltus/discretization/stage_kernel.hpp"
+#include "saltus/fesd_integrator/decide/rests.hpp"
 #include "saltus/fesd_integrator/element/active_set.hpp"
 #include "saltus/fesd_integrator/element/element.hpp"
 #include "saltus/fesd_integrator/element/projected_field.hpp"
@@ -97,9 +98,9 @@ class Transition {
   void keep_sliding(const Decision& decision, std::vector<std::vector<int>>& groups, std::vector<int>& modes);
   [[nodiscard]] bool find_groups(const Decision& decision, Rule rule, std::vector<int>& modes);
   enum class Asked { all, changed };
-  [[nodiscard]] std::vector<std::vector<int>> combinations(const Group& group, const Decision& decision,
-                                                           Asked asked) const;
-  void find_patterns(const Decision& decision, Group& group) const;
+  [[nodiscard]] std::vector<std::vector<int>> combinations(const Group& group, const Decision& decision, Asked asked,
+                                                           Rule rule) const;
+  void find_patterns(const Decision& decision, Group& group, Rule rule) const;
   [[nodiscard]] double margin(const Decision& decision, const Group& group, Continuation& candidate);
   [[nodiscard]] double margin_from(const std::vector<double>& unknown, const Decision& decision, const Group& group,
                                    Continuation& candidate);
@@ -123,6 +124,7 @@ class Transition {
   [[nodiscard]] static bool slides_beside(const Option& sliding, const Option& beside);
   [[nodiscard]] static bool stands_still(const Option& beside, const Option& sliding, const Group& group);
   [[nodiscard]] static bool stands_for(const Option& option, const Option& other, const Group& group);
+  [[nodiscard]] static bool stays_beside(const Option& option, const Option& other, const Group& group);
   [[nodiscard]] ElementSolver::Outcome solve_trial(const Decision& decision, const Continuation& candidate,
                                                    double length);
   [[nodiscard]] bool follows_from_trial(const Continuation& candidate) const;
@@ -141,7 +143,8 @@ class Transition {
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
   std::vector<int> kept_;  ///< functions that slide on unasked
-  bool depends_ = false;   ///< whether a group of the current decision is dependent
+  Rests rests_;
+  bool depends_ = false;  ///< whether a group of the current decision is dependent
   SelectionMargins margins_;
   bool finite_ = true;
   std::vector<double> rate_, size_, noise_;

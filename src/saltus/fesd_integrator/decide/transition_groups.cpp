@@ -92,6 +92,10 @@ std::vector<std::vector<int>> Transition::find_influences(const Decision& decisi
     for (std::size_t j = 0; j < n; ++j) size_[j] = std::max(size_[j], sum[j]);
     join_by_influence(members, components);
   }
+  for (std::size_t k = 0; k < members.size(); ++k) {
+    const auto governor = std::find(members.begin(), members.end(), rests_.governor(members[k]));
+    if (governor != members.end()) components.join(k, at(governor - members.begin()));
+  }
   return components.lists_of(members);
 }
 
@@ -134,6 +138,7 @@ bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<in
   depends_ = false;
   const auto members = find_zeros(decision, modes);
   if (!members || members->empty()) return members.has_value();
+  rests_.find({decision.t, decision.x, decision.held, decision.size}, parts_, *members);
   auto groups = find_influences(decision, modes, *members);
   const bool by_parts = kernel_.pattern().is_sparse && decision.before != nullptr && decision.ended >= 0;
   if (by_parts) keep_sliding(decision, groups, modes);
@@ -143,15 +148,15 @@ bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<in
     if (rule == Rule::dependent && find_dependent(decision, modes, entry)) {
       depends_ = true;
     } else {
-      find_patterns(decision, entry);
+      find_patterns(decision, entry, rule);
     }
   }
   return true;
 }
 
 /// Every combination of what members may be; empty where that is too many.
-std::vector<std::vector<int>> Transition::combinations(const Group& group, const Decision& decision,
-                                                       Asked asked) const {
+std::vector<std::vector<int>> Transition::combinations(const Group& group, const Decision& decision, Asked asked,
+                                                       Rule rule) const {
   const auto every = decision.before == nullptr ? std::array{1, -1, 0} : std::array{0, 1, -1};
   std::vector<std::vector<int>> patterns{{}};
   for (const int j : group.members) {
@@ -163,6 +168,7 @@ std::vector<std::vector<int>> Transition::combinations(const Group& group, const
         if (mode != 0 && (!is_asked || (region && mode == 1))) continue;
         longer.push_back(pattern);
         longer.back().push_back(mode);
+        if (rule == Rule::dependent && !rests_.allow(group.members, longer.back())) longer.pop_back();
       }
       if (longer.size() > most_patterns) return {};
     }
@@ -173,10 +179,10 @@ std::vector<std::vector<int>> Transition::combinations(const Group& group, const
 
 /// All combinations, or of too many members those in which what slid before and did not end slides on: others may
 /// continue the solution, too.
-void Transition::find_patterns(const Decision& decision, Group& group) const {
-  group.patterns = combinations(group, decision, Asked::all);
+void Transition::find_patterns(const Decision& decision, Group& group, Rule rule) const {
+  group.patterns = combinations(group, decision, Asked::all, rule);
   if (group.patterns.empty() && decision.before != nullptr && decision.ended >= 0) {
-    group.patterns = combinations(group, decision, Asked::changed);
+    group.patterns = combinations(group, decision, Asked::changed, rule);
     group.decided = false;
   }
   auto& patterns = group.patterns;

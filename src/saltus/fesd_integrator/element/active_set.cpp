@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::fesd_integrator {
@@ -64,6 +65,13 @@ void ActiveSet::set_balances(std::vector<switching::Balance> balances) {
   for (const auto& balance : balances_) {
     for (const std::size_t k : balance.rows) undetermined_[at(sliding_[k].selection)] = true;
   }
+}
+
+void ActiveSet::set_resting(std::vector<int> functions) {
+  resting_ = std::move(functions);
+  std::erase_if(conditions_, [&](const Condition& condition) {
+    return condition.kind == Condition::Kind::side && contains(resting_, condition.selection);
+  });
 }
 
 double ActiveSet::side(int selection, const double* indicator) const {

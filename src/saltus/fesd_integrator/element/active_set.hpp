@@ -53,6 +53,10 @@ class ActiveSet {
   [[nodiscard]] const std::vector<switching::Balance>& balances() const { return balances_; }
   void set_balances(std::vector<switching::Balance> balances);
   [[nodiscard]] bool is_determined(int selection) const { return balances_.empty() || !undetermined_[at(selection)]; }
+  /// Returns functions on a side whose value stays zero while these surfaces slide (a gap whose rate is held at zero):
+  /// nothing asks for their side. They belong to a place, too.
+  [[nodiscard]] const std::vector<int>& resting() const { return resting_; }
+  void set_resting(std::vector<int> functions);
   [[nodiscard]] bool operator==(const ActiveSet& other) const { return modes_ == other.modes_; }
 
   /// Finds all selections from the unknown ones (one per entry of sliding()).
@@ -94,6 +98,7 @@ class ActiveSet {
   std::vector<Sliding> sliding_;
   std::vector<Condition> conditions_;
   std::vector<switching::Balance> balances_;
+  std::vector<int> resting_;
   std::vector<bool> undetermined_;  ///< per selection; empty without balances
 };
 

@@ -9,6 +9,7 @@
 #include "saltus/base/contracts.hpp"
 #include "saltus/fesd_integrator/element/element_equations_internal.hpp"
 #include "saltus/fesd_integrator/element/element_polynomial_internal.hpp"
+#include "saltus/fesd_integrator/element/rest_projection.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
@@ -25,12 +26,24 @@ struct ElementSolver::Implementation {
       : tableau(std::move(tableau_in)),
         n_x(static_cast<Index>(kernel.states())),
         polynomial(tableau),
-        equations(kernel, tableau) {}
+        equations(kernel, tableau),
+        rest(kernel) {}
+
+  /// The method holds the rate of what rests: its value drifts by the error of the method, which is taken back here.
+  void put_to_rest(std::span<const ActiveSet> sets, const double* held, Element& element) {
+    const ActiveSet& set = sets.front();
+    if (sets.size() > 1 || set.resting().empty()) return;
+    const double* const last = element.stage_selections.data() + element.stage_selections.size() - set.modes().size();
+    const RestProjection::Place place{element.t + element.h, held, element.size, {last, last + set.modes().size()}};
+    auto end = element.end;
+    if (rest.onto_surfaces(set, place, end)) element.end = std::move(end);
+  }
 
   discretization::ButcherTableau tableau;
   Index n_x;
   ElementPolynomial polynomial;
   ElementEquations equations;
+  RestProjection rest;
 };
 
 ElementSolver::ElementSolver(const discretization::StageKernel& kernel, discretization::ButcherTableau tableau)
@@ -71,6 +84,7 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     before = *change;
   }
   if (!equations.finish(held, element)) return Outcome::not_converged;
+  implementation_->put_to_rest(sets, held, element);
   return ConstVector(element.end.data(), static_cast<Index>(element.end.size())).allFinite() ? Outcome::solved
                                                                                              : Outcome::not_finite;
 }

@@ -40,10 +40,11 @@ struct Element {
 ///   c_s != 1, one set: the end is projected, x_1 = x_0 + h sum_l b_l f_l + f_alpha mu, surfaces = 0 at x_1;
 ///   Lobatto IIIA: the selections of the first stage are those of the element's left end, they are in no equation;
 ///   explicit methods, one set: the surfaces are zero at the stage after, behind the last at the end (half-explicit).
+/// Functions that rest are zero at the end, too (RestProjection).
 /// With a warp t_l = t_0 + h phi(c_l), and f(t_l, ...) comes with the factor phi'(c_l); the nodes are those of tau.
 ///
 /// Newton's method with exact derivatives, to rounding; steps of least norm where the selections are not unique.
-/// No allocation in solve() once elements have their size. One solver per thread.
+/// No allocation in solve() once elements have their size, where nothing rests. One solver per thread.
 class ElementSolver {
  public:
   /// The kernel must outlive the solver.

@@ -19,7 +19,7 @@ Point& Position::left_end() {
 }
 
 std::vector<int> Position::on_surfaces() const {
-  std::vector<int> list;
+  std::vector<int> list = set_.resting();
   for (const Sliding& entry : set_.sliding()) {
     list.push_back(entry.selection);
     if (entry.reference >= 0) list.push_back(entry.reference);

@@ -1,3 +1,5 @@
+#include "saltus/fesd_integrator/element/rest_projection.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -6,39 +8,37 @@
 #include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/element/dense_system_internal.hpp"
 #include "saltus/fesd_integrator/element/selection_margins.hpp"
-#include "saltus/fesd_integrator/run/rest_projection_internal.hpp"
 
 namespace saltus::fesd_integrator {
 
 RestProjection::RestProjection(const discretization::StageKernel& kernel) : kernel_(kernel) { kernel.size(values_); }
 
-/// Of the surfaces that slide: n_sliding by n_x.
+/// Of the surfaces that slide, then of the functions that rest, by n_x.
 Eigen::MatrixXd RestProjection::gradients_of(const ActiveSet& set, std::size_t n_x) const {
   DenseMatrices memory;
   const double* const indicator_x = field_view(values_, memory).indicator_x;
-  Eigen::MatrixXd gradients(index(set.sliding().size()), index(n_x));
+  const std::size_t slide = set.sliding().size();
+  Eigen::MatrixXd gradients(index(slide + set.resting().size()), index(n_x));
   for (std::size_t i = 0; i < n_x; ++i) {
-    for (std::size_t k = 0; k < set.sliding().size(); ++k) {
-      gradients(index(k), index(i)) = set.surface(k, indicator_x + i * kernel_.selections());
+    const double* const column = indicator_x + i * kernel_.selections();
+    for (std::size_t k = 0; k < slide; ++k) gradients(index(k), index(i)) = set.surface(k, column);
+    for (std::size_t k = 0; k < set.resting().size(); ++k) {
+      gradients(index(slide + k), index(i)) = column[at(set.resting()[k])];
     }
   }
   return gradients;
 }
 
 std::optional<double> RestProjection::step(const ActiveSet& set, double size, std::vector<double>& x) {
-  const std::size_t n_x = x.size(), count = set.sliding().size();
+  const std::size_t n_x = x.size(), slide = set.sliding().size(), count = slide + set.resting().size();
   const Eigen::MatrixXd gradients = gradients_of(set, n_x);
   DenseSystem system;
-  system.reserve(static_cast<Eigen::Index>(count));
-  system.reset(static_cast<Eigen::Index>(count));
-  auto matrix = system.matrix();
+  system.reserve(index(count));
+  system.reset(index(count));
+  system.matrix() = gradients * gradients.transpose();
   for (std::size_t k = 0; k < count; ++k) {
-    for (std::size_t l = 0; l < count; ++l) {
-      for (std::size_t i = 0; i < n_x; ++i) {
-        matrix(index(k), index(l)) += gradients(index(k), index(i)) * gradients(index(l), index(i));
-      }
-    }
-    system.right()(static_cast<Eigen::Index>(k)) = -set.surface(k, values_.indicator.data());
+    system.right()(index(k)) =
+        k < slide ? -set.surface(k, values_.indicator.data()) : -values_.indicator[at(set.resting()[k - slide])];
   }
   if (!system.solve(1e-13 * size)) return std::nullopt;
   double change = 0.0;

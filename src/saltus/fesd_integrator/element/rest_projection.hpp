@@ -1,4 +1,4 @@
-// The point where switches that accumulate come to rest: on the surfaces of a set, and at rest on them.
+// States put onto surfaces: ends of elements where gaps rest, and where switches that accumulate come to rest.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace saltus::fesd_integrator {
 
-/// Projects states by Newton's method of least norm onto the surfaces of a set that slide, sigma(t, x) = 0. Those that
+/// Projects states by Newton's method of least norm onto the surfaces of a set that slide, sigma(t, x) = 0, and onto
+/// the zeros of functions that rest. Those of the surfaces that
 /// no selection moves at once are projected onto d sigma / dt = 0, too.
 class RestProjection {
  public:
