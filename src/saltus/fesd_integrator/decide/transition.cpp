@@ -225,16 +225,19 @@ std::vector<Transition::Option> Transition::options_of(const Decision& decision,
                                                        const std::vector<int>& modes, std::vector<int>& guess) {
   std::vector<Option> options;
   double best = -2.0;
-  for (const auto& pattern : group.patterns) {
+  for (const auto& face : group.patterns) {
     auto trial = modes;
-    put(group, pattern, trial);
-    Continuation candidate{make_set(decision, trial), {}};
-    const double value = margin(decision, group, candidate);
-    if (value < -undecided) continue;
-    options.push_back({pattern, value});
-    if (value <= best) continue;
-    best = value;
-    put(group, pattern, guess);
+    put(group, face, trial);
+    for (auto& pattern : supports_of(decision, group, face, trial)) {
+      put(group, pattern, trial);
+      Continuation candidate{make_set(decision, trial), {}};
+      const double value = margin(decision, group, candidate);
+      if (value < -undecided) continue;
+      options.push_back({std::move(pattern), value});
+      if (value <= best) continue;
+      best = value;
+      put(group, options.back().pattern, guess);
+    }
   }
   return options;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saltus/base/components.hpp"
@@ -97,6 +98,18 @@ class Transition {
   void keep_sliding(const Decision& decision, std::vector<std::vector<int>>& groups, std::vector<int>& modes);
   [[nodiscard]] bool find_groups(const Decision& decision, Rule rule, std::vector<int>& modes);
   enum class Asked { all, changed };
+  /// What is enumerated: a mode of a member, or the side of a surface between regions, the first of which it names.
+  struct Choice {
+    enum class Kind { function, region, surface } kind = Kind::function;
+    std::size_t member = 0;
+    int surface = 0;
+    bool is_asked = true;  ///< if it slid before and did not end, it may be taken to slide on
+  };
+  [[nodiscard]] std::vector<Choice> choices_of(const Decision& decision, const Group& group) const;
+  [[nodiscard]] static std::vector<int> modes_before(const Decision& decision, const Part& part);
+  void leave_side(const Group& group, const Choice& choice, int mode, std::vector<int>& pattern) const;
+  [[nodiscard]] std::pair<int, int> rank(const Decision& decision, const Group& group,
+                                         const std::vector<int>& pattern) const;
   [[nodiscard]] std::vector<std::vector<int>> combinations(const Group& group, const Decision& decision,
                                                            Asked asked) const;
   void find_patterns(const Decision& decision, Group& group) const;
@@ -114,6 +127,16 @@ class Transition {
     std::vector<double> selections = {}, motion = {};  ///< if rates do not decide; of all states
     bool regular = true;                               ///< whether first derivatives determine the selections
   };
+  /// Weights of regions, the motion they make, and whether no others do.
+  struct Weights {
+    std::vector<double> selections, motion;
+    bool determined = false;
+  };
+  [[nodiscard]] std::optional<Weights> find_weights(const Decision& decision, double t, const std::vector<double>& x,
+                                                    const ActiveSet& set);
+  [[nodiscard]] std::vector<std::vector<int>> supports_of(const Decision& decision, const Group& group,
+                                                          const std::vector<int>& pattern,
+                                                          const std::vector<int>& modes);
   static void put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes);
   [[nodiscard]] std::vector<Option> options_of(const Decision& decision, const Group& group,
                                                const std::vector<int>& modes, std::vector<int>& guess);
