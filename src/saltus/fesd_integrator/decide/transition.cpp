@@ -212,32 +212,64 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     all.ended = -1;
     return continuations(all);
   }
-  return found.empty() && depends_ ? continuations(decision, Rule::enumeration) : found;
+  if (found.empty() && depends_) found = continuations(decision, Rule::enumeration);
+  return found.empty() && skipped_ ? continuations(decision, Rule::everything) : found;
 }
 
 void Transition::put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes) {
   for (std::size_t k = 0; k < pattern.size(); ++k) modes[at(group.members[k])] = pattern[k];
 }
 
+std::optional<Transition::Option> Transition::option_of(const Decision& decision, const Group& group,
+                                                        const std::vector<int>& pattern,
+                                                        const std::vector<int>& modes) {
+  auto trial = modes;
+  put(group, pattern, trial);
+  Continuation candidate{make_set(decision, trial), {}};
+  const double value = margin(decision, group, candidate);
+  if (value < -undecided) return std::nullopt;
+  Option option{pattern, value};
+  option.motion = projected_.values().f;
+  return option;
+}
+
 /// The patterns of a group that its rates do not exclude while the other groups are as in `modes`; the one with the
-/// largest margin into `guess`.
-std::vector<Transition::Option> Transition::options_of(const Decision& decision, const Group& group,
+/// largest margin into `guess`. Regions whose weights are not determined are asked where no fewer of them have the same
+/// motion.
+std::vector<Transition::Option> Transition::options_of(const Decision& decision, const Group& group, Rule rule,
                                                        const std::vector<int>& modes, std::vector<int>& guess) {
+  std::vector<std::pair<std::size_t, Option>> found;
+  std::vector<std::pair<std::size_t, Support>> open;
+  const auto ask = [&](std::size_t place, const std::vector<int>& pattern) {
+    if (auto option = option_of(decision, group, pattern, modes)) found.emplace_back(place, std::move(*option));
+  };
+  for (std::size_t i = 0; i < group.patterns.size(); ++i) {
+    auto trial = modes;
+    put(group, group.patterns[i], trial);
+    for (Support& support : supports_of(decision, group, group.patterns[i], trial)) {
+      if (support.determined || rule == Rule::everything) {
+        ask(i, support.pattern);
+      } else {
+        open.emplace_back(i, std::move(support));
+      }
+    }
+  }
+  for (const auto& [i, support] : open) {
+    const bool is_known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
+      Option all;
+      all.pattern = support.pattern;
+      return slides_beside(all, other.second) && are_near(other.second.motion, support.motion);
+    });
+    skipped_ = skipped_ || is_known;
+    if (!is_known) ask(i, support.pattern);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Option> options;
   double best = -2.0;
-  for (const auto& face : group.patterns) {
-    auto trial = modes;
-    put(group, face, trial);
-    for (auto& pattern : supports_of(decision, group, face, trial)) {
-      put(group, pattern, trial);
-      Continuation candidate{make_set(decision, trial), {}};
-      const double value = margin(decision, group, candidate);
-      if (value < -undecided) continue;
-      options.push_back({std::move(pattern), value});
-      if (value <= best) continue;
-      best = value;
-      put(group, options.back().pattern, guess);
-    }
+  for (auto& [place, option] : found) {
+    if (option.margin > best) put(group, option.pattern, guess);
+    best = std::max(best, option.margin);
+    options.push_back(std::move(option));
   }
   return options;
 }
@@ -286,13 +318,14 @@ std::optional<Continuation> Transition::continuation_in(const Decision& decision
 
 std::vector<Continuation> Transition::continuations(const Decision& decision, Rule rule) {
   std::vector<int> modes;
+  skipped_ = false;
   finite_ = find_groups(decision, rule, modes);
   if (!finite_) return {};
   // A first guess at every group, so that each is asked with the others in place: what has the largest margin.
   std::vector<std::vector<Option>> options;
   std::vector<int> guess = modes;
   for (const Group& group : groups_) {
-    options.push_back(options_of(decision, group, modes, guess));
+    options.push_back(options_of(decision, group, rule, modes, guess));
     if (options.back().empty()) return {};
   }
   std::vector<std::vector<std::vector<int>>> admissible;

@@ -75,7 +75,7 @@ class Transition {
     bool dependent = false;                  ///< these are by the complementarity problem, the likeliest one first
     bool decided = true;                     ///< which has one motion as its solution
   };
-  enum class Rule { dependent, enumeration };
+  enum class Rule { dependent, enumeration, everything };
   [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision, Rule rule);
   [[nodiscard]] bool find_dependent(const Decision& decision, const std::vector<int>& modes, Group& group);
   /// The members of a group whose selections move the state, and those that follow them.
@@ -127,18 +127,35 @@ class Transition {
     std::vector<double> selections = {}, motion = {};  ///< if rates do not decide; of all states
     bool regular = true;                               ///< whether first derivatives determine the selections
   };
-  /// Weights of regions, the motion they make, and whether no others do.
+  /// Equations of weights; `negligible` is what they may be missed by.
+  struct WeightEquations {
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd right, negligible;
+  };
+  /// Weights of regions, and the motion they make.
   struct Weights {
     std::vector<double> selections, motion;
-    bool determined = false;
   };
+  /// Regions that are active, whether first derivatives determine their weights, and if not a motion they have.
+  struct Support {
+    std::vector<int> pattern;
+    bool determined = true;
+    std::vector<double> motion = {};
+  };
+  [[nodiscard]] WeightEquations weight_equations(const Decision& decision, const ActiveSet& set,
+                                                 const std::vector<int>& active) const;
   [[nodiscard]] std::optional<Weights> find_weights(const Decision& decision, double t, const std::vector<double>& x,
                                                     const ActiveSet& set);
-  [[nodiscard]] std::vector<std::vector<int>> supports_of(const Decision& decision, const Group& group,
-                                                          const std::vector<int>& pattern,
-                                                          const std::vector<int>& modes);
+  [[nodiscard]] std::optional<std::vector<int>> fewer_regions(const Group& group, const std::vector<int>& pattern,
+                                                              const Weights& weights, const ActiveSet& face) const;
+  [[nodiscard]] std::vector<int> without_negative(const Decision& decision, const Group& group,
+                                                  const std::vector<int>& pattern, const ActiveSet& face);
+  [[nodiscard]] std::vector<Support> supports_of(const Decision& decision, const Group& group,
+                                                 const std::vector<int>& pattern, const std::vector<int>& modes);
+  [[nodiscard]] std::optional<Option> option_of(const Decision& decision, const Group& group,
+                                                const std::vector<int>& pattern, const std::vector<int>& modes);
   static void put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes);
-  [[nodiscard]] std::vector<Option> options_of(const Decision& decision, const Group& group,
+  [[nodiscard]] std::vector<Option> options_of(const Decision& decision, const Group& group, Rule rule,
                                                const std::vector<int>& modes, std::vector<int>& guess);
   [[nodiscard]] std::vector<std::vector<int>> admissible_of(const Decision& decision, const Group& group,
                                                             std::vector<Option> options, const std::vector<int>& guess);
@@ -165,6 +182,7 @@ class Transition {
   std::vector<int> modes_at_zero_;
   std::vector<int> kept_;  ///< functions that slide on unasked
   bool depends_ = false;   ///< whether a group of the current decision is dependent
+  bool skipped_ = false;   ///< whether patterns were not asked, as fewer of their regions move in the same way
   SelectionMargins margins_;
   bool finite_ = true;
   std::vector<double> rate_, size_, noise_;

@@ -178,8 +178,8 @@ std::vector<Transition::Choice> Transition::choices_of(const Decision& decision,
     const Part& part = parts_[at(part_of_[at(j)])];
     const bool was_fixed = decision.before != nullptr && decision.before->modes()[at(j)] != 0;
     if (part.surfaces == 0) {
-      choices.push_back({part.simplex ? Choice::Kind::region : Choice::Kind::function, k, 0,
-                         j == decision.ended || was_fixed});
+      choices.push_back(
+          {part.simplex ? Choice::Kind::region : Choice::Kind::function, k, 0, j == decision.ended || was_fixed});
       continue;
     }
     if (k > 0 && part_of_[at(group.members[k - 1])] == part_of_[at(j)]) continue;

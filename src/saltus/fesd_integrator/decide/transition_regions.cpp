@@ -1,8 +1,10 @@
 // Weights of regions that are sign patterns: of those that keep the same surfaces at zero as many as determine them.
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
+
+#include <Eigen/QR>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
@@ -16,101 +18,170 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Whether regions on both sides of one surface alone are told apart; all other differences are sums of these.
+/// Whether regions are on the two sides of one surface; all other differences are sums of these.
 bool are_beside(const Part& part, int a, int b) {
   int different = 0;
   for (int k = 0; k < part.surfaces; ++k) different += part.side(a, k) != part.side(b, k) ? 1 : 0;
   return part.surfaces == 0 || different == 1;
 }
 
-}  // namespace
-
-/// Weights >= 0 of the active regions of a set at (t, x) that keep its surfaces at zero; nullopt if there are none.
-std::optional<Transition::Weights> Transition::find_weights(const Decision& decision, double t,
-                                                            const std::vector<double>& x, const ActiveSet& set) {
-  const std::size_t n = kernel_.selections(), n_x = kernel_.states();
+std::vector<int> active_regions(std::span<const Part> parts, const ActiveSet& set) {
   std::vector<int> active;
-  for (const Part& part : parts_) {
+  for (const Part& part : parts) {
     for (int j = part.first; part.simplex && j < part.first + part.count; ++j) {
       if (set.modes()[at(j)] == 0) active.push_back(j);
     }
   }
-  std::vector<std::size_t> rows;
+  return active;
+}
+
+/// How many of the surfaces of a set are independent.
+Index independent_surfaces(const ActiveSet& set, const FieldView& view) {
+  constexpr double unequal = 1e-9;
+  MatrixXd gradients(index(set.sliding().size()), index(view.n_x));
   for (std::size_t k = 0; k < set.sliding().size(); ++k) {
-    const Sliding& entry = set.sliding()[k];
-    if (entry.reference < 0) return std::nullopt;
-    if (are_beside(parts_[at(part_of_[at(entry.selection)])], entry.selection, entry.reference)) rows.push_back(k);
+    for (std::size_t i = 0; i < view.n_x; ++i) {
+      gradients(index(k), index(i)) = set.surface(k, view.indicator_x + i * view.n);
+    }
   }
-  Weights weights{std::vector<double>(n, 0.0), std::vector<double>(n_x), false};
-  kernel_.evaluate(t, x.data(), weights.selections.data(), decision.held, values_);
+  gradients.rowwise().normalize();
+  Eigen::ColPivHouseholderQR<MatrixXd> factors(gradients);
+  factors.setThreshold(unequal);
+  return factors.rank();
+}
+
+}  // namespace
+
+/// The equations of the weights of active regions: rates of the surfaces that a set keeps at zero, relative to their
+/// sizes, and one sum for each simplex. They are those of values_, of which all selections are 0.
+Transition::WeightEquations Transition::weight_equations(const Decision& decision, const ActiveSet& set,
+                                                         const std::vector<int>& active) const {
+  const std::size_t n_x = kernel_.states(), n = kernel_.selections();
   DenseMatrices memory;
   const FieldView view = field_view(values_, memory);
   const Eigen::Map<const MatrixXd> fields(view.f_selection, index(n_x), index(n));
   const Eigen::Map<const VectorXd> constant(view.f, index(n_x));
-  MatrixXd A = MatrixXd::Zero(index(rows.size()), index(active.size()));
-  VectorXd b = VectorXd::Zero(A.rows()), negligible = VectorXd::Constant(A.rows(), undecided);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const Sliding& entry = set.sliding()[rows[r]];
+  WeightEquations equations;
+  const auto add = [&](double right, double negligible) {
+    const Index row = equations.matrix.rows();
+    equations.matrix.conservativeResize(row + 1, index(active.size()));
+    equations.right.conservativeResize(row + 1);
+    equations.negligible.conservativeResize(row + 1);
+    equations.right[row] = right;
+    equations.negligible[row] = negligible;
+    return row;
+  };
+  VectorXd gradient(index(n_x));
+  for (std::size_t k = 0; k < set.sliding().size(); ++k) {
+    const Sliding& entry = set.sliding()[k];
     const double size = std::max(size_[at(entry.selection)], size_[at(entry.reference)]);
     if (!(size > 0.0)) continue;
-    VectorXd gradient(index(n_x));
-    for (std::size_t i = 0; i < n_x; ++i) gradient[index(i)] = set.surface(rows[r], view.indicator_x + i * n) / size;
-    b[index(r)] = -gradient.dot(constant) - set.surface(rows[r], view.indicator_t) / size;
-    for (std::size_t c = 0; c < active.size(); ++c) A(index(r), index(c)) = gradient.dot(fields.col(active[c]));
-    negligible[index(r)] += noise_[at(entry.selection)] / (decision.trial_length * size);
-  }
-  // The sum of the weights of each simplex is 1.
-  for (const Part& part : parts_) {
-    if (!part.simplex) continue;
-    A.conservativeResize(A.rows() + 1, Eigen::NoChange);
+    if (!are_beside(parts_[at(part_of_[at(entry.selection)])], entry.selection, entry.reference)) continue;
+    for (std::size_t i = 0; i < n_x; ++i) gradient[index(i)] = set.surface(k, view.indicator_x + i * n) / size;
+    const double free = gradient.dot(constant) + set.surface(k, view.indicator_t) / size;
+    const Index row = add(-free, undecided + noise_[at(entry.selection)] / (decision.trial_length * size));
     for (std::size_t c = 0; c < active.size(); ++c) {
-      A(A.rows() - 1, index(c)) = part_of_[at(active[c])] == part_of_[at(part.first)] ? 1.0 : 0.0;
+      equations.matrix(row, index(c)) = gradient.dot(fields.col(active[c]));
     }
-    b.conservativeResize(A.rows());
-    b[A.rows() - 1] = 1.0;
-    negligible.conservativeResize(A.rows());
-    negligible[A.rows() - 1] = undecided;
   }
-  if (!A.allFinite() || !b.allFinite()) return std::nullopt;
-  const VectorXd found = nonnegative_solution(A, b);
-  if (((A * found - b).cwiseAbs().array() > negligible.array()).any()) return std::nullopt;
-  Index positive = 0;
-  for (std::size_t c = 0; c < active.size(); ++c) {
-    const double weight = found[index(c)];
-    weights.selections[at(active[c])] = weight;
-    positive += weight > undecided ? 1 : 0;
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    if (!parts_[p].simplex) continue;
+    const Index row = add(1.0, undecided);
+    for (std::size_t c = 0; c < active.size(); ++c) {
+      equations.matrix(row, index(c)) = part_of_[at(active[c])] == static_cast<int>(p) ? 1.0 : 0.0;
+    }
   }
-  weights.determined = positive == A.rows();
+  return equations;
+}
+
+/// A pattern without the regions whose weights of least norm are negative, one after the other; as it is where none
+/// would be left.
+std::vector<int> Transition::without_negative(const Decision& decision, const Group& group,
+                                              const std::vector<int>& pattern, const ActiveSet& face) {
+  const std::vector<double> nothing(kernel_.selections(), 0.0);
+  kernel_.evaluate(decision.t, decision.x.data(), nothing.data(), decision.held, values_);
+  auto active = active_regions(parts_, face);
+  const auto [matrix, right, negligible] = weight_equations(decision, face, active);
+  std::vector<Index> columns(active.size());
+  std::iota(columns.begin(), columns.end(), Index{0});
+  auto fewer = pattern;
+  while (columns.size() > 1) {
+    const MatrixXd some = matrix(Eigen::all, columns);
+    const VectorXd weights = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(some).solve(right);
+    if (((some * weights - right).cwiseAbs().array() > negligible.array()).any()) return pattern;
+    Index least = 0;
+    if (weights.minCoeff(&least) >= -undecided) return fewer;
+    const auto place = std::find(group.members.begin(), group.members.end(), active[at(columns[at(least)])]);
+    if (place == group.members.end()) return pattern;
+    fewer[at(place - group.members.begin())] = -1;
+    columns.erase(columns.begin() + least);
+  }
+  return pattern;
+}
+
+/// Weights >= 0 of the active regions of a set at (t, x) that keep its surfaces at zero; nullopt if there are none.
+std::optional<Transition::Weights> Transition::find_weights(const Decision& decision, double t,
+                                                            const std::vector<double>& x, const ActiveSet& set) {
+  Weights weights{std::vector<double>(kernel_.selections(), 0.0), std::vector<double>(x.size())};
+  kernel_.evaluate(t, x.data(), weights.selections.data(), decision.held, values_);
+  const auto active = active_regions(parts_, set);
+  const auto [matrix, right, negligible] = weight_equations(decision, set, active);
+  if (!matrix.allFinite() || !right.allFinite()) return std::nullopt;
+  const VectorXd found = nonnegative_solution(matrix, right);
+  if (((matrix * found - right).cwiseAbs().array() > negligible.array()).any()) return std::nullopt;
+  for (std::size_t c = 0; c < active.size(); ++c) weights.selections[at(active[c])] = found[index(c)];
   kernel_.field(t, x.data(), weights.selections.data(), decision.held, weights.motion.data());
   return weights;
 }
 
-/// The patterns that stand for one whose regions are all between the same sides of surfaces: fewer of them, as many as
-/// are determined, here or a little further along; and all of them, the weights of least norm.
-std::vector<std::vector<int>> Transition::supports_of(const Decision& decision, const Group& group,
-                                                      const std::vector<int>& pattern, const std::vector<int>& modes) {
+/// The regions of a pattern that have these weights, if they are as many as keep all its surfaces at zero.
+std::optional<std::vector<int>> Transition::fewer_regions(const Group& group, const std::vector<int>& pattern,
+                                                          const Weights& weights, const ActiveSet& face) const {
+  auto fewer = pattern;
+  auto modes = face.modes();
+  for (std::size_t k = 0; k < fewer.size(); ++k) {
+    const int j = group.members[k];
+    if (parts_[at(part_of_[at(j)])].surfaces > 0 && weights.selections[at(j)] <= undecided) fewer[k] = -1;
+  }
+  put(group, fewer, modes);
+  const ActiveSet set(parts_, modes);
+  DenseMatrices memory;
+  const FieldView view = field_view(values_, memory);
+  const Index kept = independent_surfaces(face, view);
+  if (index(set.sliding().size()) != kept || independent_surfaces(set, view) != kept) return std::nullopt;
+  return fewer;
+}
+
+/// What stands for a pattern whose regions are all between the same sides of surfaces: fewer of them that determine
+/// their weights, here or a little further along, and all of them with the weights of least norm.
+std::vector<Transition::Support> Transition::supports_of(const Decision& decision, const Group& group,
+                                                         const std::vector<int>& pattern,
+                                                         const std::vector<int>& modes) {
   const ActiveSet face(parts_, modes);
-  const auto is_regular = [&](const Sliding& entry) { return parts_[at(part_of_[at(entry.selection)])].surfaces > 0; };
-  if (!std::any_of(face.sliding().begin(), face.sliding().end(), is_regular)) return {pattern};
-  std::vector<std::vector<int>> found;
-  std::vector<double> x(decision.x.begin(), decision.x.end()), motion(x.size(), 0.0);
+  const bool alone = std::none_of(face.sliding().begin(), face.sliding().end(), [&](const Sliding& entry) {
+    return parts_[at(part_of_[at(entry.selection)])].surfaces > 0;
+  });
+  if (alone) return {{pattern, true}};
+  std::vector<Support> found;
+  std::vector<double> x(decision.x.begin(), decision.x.end()), motion;
   for (const double factor : {0.0, 1.0, 8.0}) {
     const double h = factor * decision.trial_length;
-    for (std::size_t i = 0; i < x.size(); ++i) x[i] = decision.x[i] + h * motion[i];
+    for (std::size_t i = 0; i < motion.size(); ++i) x[i] = decision.x[i] + h * motion[i];
     const auto weights = find_weights(decision, decision.t + h, x, face);
     if (!weights && factor == 0.0) return {};
     if (!weights) break;
     motion = weights->motion;
-    if (!weights->determined) continue;
-    auto fewer = pattern;
-    for (std::size_t k = 0; k < fewer.size(); ++k) {
-      const int j = group.members[k];
-      if (parts_[at(part_of_[at(j)])].surfaces > 0 && weights->selections[at(j)] <= undecided) fewer[k] = -1;
-    }
-    if (!contains(found, fewer)) found.push_back(std::move(fewer));
-    if (factor == 0.0) break;
+    auto fewer = fewer_regions(group, pattern, *weights, face);
+    const auto is_known = [&](const Support& other) { return other.pattern == *fewer; };
+    if (fewer && std::none_of(found.begin(), found.end(), is_known)) found.push_back({std::move(*fewer), true});
+    if (fewer && factor == 0.0) break;
   }
-  if (!contains(found, pattern)) found.push_back(pattern);
+  if (!found.empty() && found.front().pattern == pattern) return found;
+  // Of four regions at most: whether their weights are determined.
+  constexpr std::size_t most = 3;
+  if (found.empty() || face.sliding().size() <= most) {
+    found.push_back({without_negative(decision, group, pattern, face), false, std::move(motion)});
+  }
   return found;
 }
 
