@@ -30,6 +30,31 @@ restitution = 0.7
 until = 1.2
 """
 
+# A body at a wall that it bounces off, and on a floor that it stays on.
+MIXED = HEAD + """[states]
+x = 0.8
+y = 0.5
+vx = -1.5
+vy = -1
+[mechanics]
+positions = ["x", "y"]
+velocities = ["vx", "vy"]
+mass = [[2, 0.5], [0.5, 1]]
+force = { vx = -1, vy = -2 }
+[[contacts]]
+name = "wall"
+gap = "x"
+restitution = 0.5
+[[contacts]]
+name = "floor"
+gap = "y"
+[simulate]
+until = 0.9
+"""
+
+RESTING = MIXED.replace("x = 0.8", "x = 0").replace("y = 0.5", "y = 0").replace("vx = -1.5", "vx = 0")
+RESTING = RESTING.replace("vy = -1\n", "vy = 0\n").replace("restitution = 0.5\n", "")
+
 # A ball lands and stays where it is; what it is pushed with costs.
 LANDING = HEAD + """[states]
 z = 0.5
@@ -105,6 +130,12 @@ class TimeFreezing(FrozenTest):
 
     def test_a_rod_is_thrown_up(self):
         self.assert_agree("painleve-rod", 1e-8)
+
+    def test_several_contacts_in_stewarts_form(self):
+        # Held while one with restitution closes and masses couple them; both at rest from the start; a corner.
+        for model in (MIXED, RESTING, "inelastic-corner"):
+            _, frozen = self.assert_agree(model, 1e-8, "--set", "simulate.fesd.reformulation=stewart")
+            self.assertTrue(all(e["unique"] for e in frozen["events"]))
 
     def test_where_time_stands_still_there_are_no_forces(self):
         for output in ("auto", "{ every = 0.001 }"):

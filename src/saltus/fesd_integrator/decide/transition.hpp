@@ -44,12 +44,14 @@ struct Decision {
 /// short element does, or a longer one where psi is within its rounding behind that. The solution may not get to a
 /// side, as psi stays at zero. That is no other continuation than sliding with the selections of that side; where psi
 /// does not move there, it is the one that is left out. Functions that do not influence each other are enumerated one
-/// by one. Surfaces whose gradients depend on each other, with selections that enter additively, are not enumerated: a
-/// complementarity problem says which are slid on and which are left [ADR 20]; where it leaves that open, the one just
-/// behind the point does. In a system of some size (discretization::StagePattern) only functions that influence the one
-/// whose sign ended are asked, and those whose conditions do not clearly hold; the others slide on. Where nothing
-/// continues so, all are asked. Of more functions than are enumerated those slide on that slid before and did not end;
-/// whether others continue the solution, too, is not decided then.
+/// by one. Of regions that are sign patterns those between the same sides of their surfaces are asked together, with
+/// weights that are not negative: as few as determine them, or those of least norm. Surfaces whose gradients depend on
+/// each other, with selections that enter additively, are not enumerated: a complementarity problem says which are slid
+/// on and which are left [ADR 20]; where it leaves that open, the one just behind the point does. In a system of some
+/// size (discretization::StagePattern) only functions that influence the one whose sign ended are asked, and those
+/// whose conditions do not clearly hold; the others slide on. Where nothing continues so, all are asked. Of more
+/// functions than are enumerated those slide on that slid before and did not end; whether others continue the solution,
+/// too, is not decided then.
 ///
 /// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
 /// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
@@ -142,8 +144,8 @@ class Transition {
     bool determined = true;
     std::vector<double> motion = {};
   };
-  [[nodiscard]] WeightEquations weight_equations(const Decision& decision, const ActiveSet& set,
-                                                 const std::vector<int>& active) const;
+  [[nodiscard]] WeightEquations weight_equations(const Decision& decision, double t, const std::vector<double>& x,
+                                                 const ActiveSet& set, const std::vector<int>& active);
   [[nodiscard]] std::optional<Weights> find_weights(const Decision& decision, double t, const std::vector<double>& x,
                                                     const ActiveSet& set);
   [[nodiscard]] std::optional<std::vector<int>> fewer_regions(const Group& group, const std::vector<int>& pattern,

@@ -52,15 +52,21 @@ Index independent_surfaces(const ActiveSet& set, const FieldView& view) {
 
 }  // namespace
 
-/// The equations of the weights of active regions: rates of the surfaces that a set keeps at zero, relative to their
-/// sizes, and one sum for each simplex. They are those of values_, of which all selections are 0.
-Transition::WeightEquations Transition::weight_equations(const Decision& decision, const ActiveSet& set,
-                                                         const std::vector<int>& active) const {
+/// The equations of the weights of active regions at (t, x): rates of the surfaces that a set keeps at zero, relative
+/// to their sizes, and one sum for each simplex.
+Transition::WeightEquations Transition::weight_equations(const Decision& decision, double t,
+                                                         const std::vector<double>& x, const ActiveSet& set,
+                                                         const std::vector<int>& active) {
   const std::size_t n_x = kernel_.states(), n = kernel_.selections();
+  // Fields of regions without any weight may not be there: their branches are guarded.
+  std::vector<double> middle(n);
+  set.selections(set.middle().data(), middle.data());
+  kernel_.evaluate(t, x.data(), middle.data(), decision.held, values_);
   DenseMatrices memory;
   const FieldView view = field_view(values_, memory);
   const Eigen::Map<const MatrixXd> fields(view.f_selection, index(n_x), index(n));
-  const Eigen::Map<const VectorXd> constant(view.f, index(n_x));
+  VectorXd constant = Eigen::Map<const VectorXd>(view.f, index(n_x));
+  for (const int j : active) constant -= middle[at(j)] * fields.col(j);
   WeightEquations equations;
   const auto add = [&](double right, double negligible) {
     const Index row = equations.matrix.rows();
@@ -98,10 +104,9 @@ Transition::WeightEquations Transition::weight_equations(const Decision& decisio
 /// would be left.
 std::vector<int> Transition::without_negative(const Decision& decision, const Group& group,
                                               const std::vector<int>& pattern, const ActiveSet& face) {
-  const std::vector<double> nothing(kernel_.selections(), 0.0);
-  kernel_.evaluate(decision.t, decision.x.data(), nothing.data(), decision.held, values_);
-  auto active = active_regions(parts_, face);
-  const auto [matrix, right, negligible] = weight_equations(decision, face, active);
+  const auto active = active_regions(parts_, face);
+  const std::vector<double> x(decision.x.begin(), decision.x.end());
+  const auto [matrix, right, negligible] = weight_equations(decision, decision.t, x, face, active);
   std::vector<Index> columns(active.size());
   std::iota(columns.begin(), columns.end(), Index{0});
   auto fewer = pattern;
@@ -123,9 +128,8 @@ std::vector<int> Transition::without_negative(const Decision& decision, const Gr
 std::optional<Transition::Weights> Transition::find_weights(const Decision& decision, double t,
                                                             const std::vector<double>& x, const ActiveSet& set) {
   Weights weights{std::vector<double>(kernel_.selections(), 0.0), std::vector<double>(x.size())};
-  kernel_.evaluate(t, x.data(), weights.selections.data(), decision.held, values_);
   const auto active = active_regions(parts_, set);
-  const auto [matrix, right, negligible] = weight_equations(decision, set, active);
+  const auto [matrix, right, negligible] = weight_equations(decision, t, x, set, active);
   if (!matrix.allFinite() || !right.allFinite()) return std::nullopt;
   const VectorXd found = nonnegative_solution(matrix, right);
   if (((matrix * found - right).cwiseAbs().array() > negligible.array()).any()) return std::nullopt;
@@ -177,10 +181,12 @@ std::vector<Transition::Support> Transition::supports_of(const Decision& decisio
     if (fewer && factor == 0.0) break;
   }
   if (!found.empty() && found.front().pattern == pattern) return found;
-  // Of four regions at most: whether their weights are determined.
-  constexpr std::size_t most = 3;
-  if (found.empty() || face.sliding().size() <= most) {
-    found.push_back({without_negative(decision, group, pattern, face), false, std::move(motion)});
+  auto all = without_negative(decision, group, pattern, face);
+  constexpr std::size_t most = 3;  // of four regions at most: whether others have weights, too, and move otherwise
+  if (found.empty()) {
+    found.push_back({std::move(all), false, std::move(motion)});
+  } else if (face.sliding().size() <= most && all == pattern) {
+    found.push_back({std::move(all), false});
   }
   return found;
 }
