@@ -30,7 +30,7 @@ restitution = 0.7
 until = 1.2
 """
 
-# A body at a wall that it bounces off, and on a floor that it stays on.
+# A body at a wall that it bounces off, and on the ground where it stays.
 MIXED = HEAD + """[states]
 x = 0.8
 y = 0.5
@@ -46,7 +46,7 @@ name = "wall"
 gap = "x"
 restitution = 0.5
 [[contacts]]
-name = "floor"
+name = "ground"
 gap = "y"
 [simulate]
 until = 0.9
