@@ -233,9 +233,20 @@ std::optional<Transition::Option> Transition::option_of(const Decision& decision
   return option;
 }
 
+/// Whether regions whose weights are not determined are asked only where nothing else continues: fewer of them have the
+/// same motion, or they are many.
+bool Transition::is_left_out(const Support& support, const std::vector<std::pair<std::size_t, Option>>& found) {
+  constexpr std::ptrdiff_t many = 16;
+  if (std::count(support.pattern.begin(), support.pattern.end(), 0) > many) return true;
+  Option all;
+  all.pattern = support.pattern;
+  return std::any_of(found.begin(), found.end(), [&](const auto& other) {
+    return slides_beside(all, other.second) && are_near(other.second.motion, support.motion);
+  });
+}
+
 /// The patterns of a group that its rates do not exclude while the other groups are as in `modes`; the one with the
-/// largest margin into `guess`. Regions whose weights are not determined are asked where no fewer of them have the same
-/// motion.
+/// largest margin into `guess`.
 std::vector<Transition::Option> Transition::options_of(const Decision& decision, const Group& group, Rule rule,
                                                        const std::vector<int>& modes, std::vector<int>& guess) {
   std::vector<std::pair<std::size_t, Option>> found;
@@ -247,7 +258,7 @@ std::vector<Transition::Option> Transition::options_of(const Decision& decision,
     auto trial = modes;
     put(group, group.patterns[i], trial);
     for (Support& support : supports_of(decision, group, group.patterns[i], trial)) {
-      if (support.determined || rule == Rule::everything) {
+      if (support.determined) {
         ask(i, support.pattern);
       } else {
         open.emplace_back(i, std::move(support));
@@ -255,13 +266,12 @@ std::vector<Transition::Option> Transition::options_of(const Decision& decision,
     }
   }
   for (const auto& [i, support] : open) {
-    const bool is_known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
-      Option all;
-      all.pattern = support.pattern;
-      return slides_beside(all, other.second) && are_near(other.second.motion, support.motion);
-    });
-    skipped_ = skipped_ || is_known;
-    if (!is_known) ask(i, support.pattern);
+    if (rule != Rule::everything && is_left_out(support, found)) {
+      skipped_ = true;
+      continue;
+    }
+    const auto fewer = without_negative(decision, group, support.pattern, modes);
+    if (!support.motion.empty() || fewer == support.pattern) ask(i, fewer);
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Option> options;

@@ -138,7 +138,8 @@ class Transition {
   struct Weights {
     std::vector<double> selections, motion;
   };
-  /// Regions that are active, whether first derivatives determine their weights, and if not a motion they have.
+  /// Regions that are active, whether first derivatives determine their weights, and if not a motion they have; none
+  /// where these are asked for other weights.
   struct Support {
     std::vector<int> pattern;
     bool determined = true;
@@ -151,7 +152,9 @@ class Transition {
   [[nodiscard]] std::optional<std::vector<int>> fewer_regions(const Group& group, const std::vector<int>& pattern,
                                                               const Weights& weights, const ActiveSet& face) const;
   [[nodiscard]] std::vector<int> without_negative(const Decision& decision, const Group& group,
-                                                  const std::vector<int>& pattern, const ActiveSet& face);
+                                                  const std::vector<int>& pattern, std::vector<int> modes);
+  [[nodiscard]] static bool is_left_out(const Support& support,
+                                        const std::vector<std::pair<std::size_t, Option>>& found);
   [[nodiscard]] std::vector<Support> supports_of(const Decision& decision, const Group& group,
                                                  const std::vector<int>& pattern, const std::vector<int>& modes);
   [[nodiscard]] std::optional<Option> option_of(const Decision& decision, const Group& group,

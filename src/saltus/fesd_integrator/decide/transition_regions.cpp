@@ -103,7 +103,9 @@ Transition::WeightEquations Transition::weight_equations(const Decision& decisio
 /// A pattern without the regions whose weights of least norm are negative, one after the other; as it is where none
 /// would be left.
 std::vector<int> Transition::without_negative(const Decision& decision, const Group& group,
-                                              const std::vector<int>& pattern, const ActiveSet& face) {
+                                              const std::vector<int>& pattern, std::vector<int> modes) {
+  put(group, pattern, modes);
+  const ActiveSet face(parts_, std::move(modes));
   const auto active = active_regions(parts_, face);
   const std::vector<double> x(decision.x.begin(), decision.x.end());
   const auto [matrix, right, negligible] = weight_equations(decision, decision.t, x, face, active);
@@ -181,12 +183,11 @@ std::vector<Transition::Support> Transition::supports_of(const Decision& decisio
     if (fewer && factor == 0.0) break;
   }
   if (!found.empty() && found.front().pattern == pattern) return found;
-  auto all = without_negative(decision, group, pattern, face);
   constexpr std::size_t most = 3;  // of four regions at most: whether others have weights, too, and move otherwise
   if (found.empty()) {
-    found.push_back({std::move(all), false, std::move(motion)});
-  } else if (face.sliding().size() <= most && all == pattern) {
-    found.push_back({std::move(all), false});
+    found.push_back({pattern, false, std::move(motion)});
+  } else if (face.sliding().size() <= most) {
+    found.push_back({pattern, false});
   }
   return found;
 }
