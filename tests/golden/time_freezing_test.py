@@ -30,6 +30,58 @@ restitution = 0.7
 until = 1.2
 """
 
+# A body at a wall that it bounces off, and on the ground where it stays.
+MIXED = HEAD + """[states]
+x = 0.8
+y = 0.5
+vx = -1.5
+vy = -1
+[mechanics]
+positions = ["x", "y"]
+velocities = ["vx", "vy"]
+mass = [[2, 0.5], [0.5, 1]]
+force = { vx = -1, vy = -2 }
+[[contacts]]
+name = "wall"
+gap = "x"
+restitution = 0.5
+[[contacts]]
+name = "ground"
+gap = "y"
+[simulate]
+until = 0.9
+"""
+
+RESTING = MIXED.replace("x = 0.8", "x = 0").replace("y = 0.5", "y = 0").replace("vx = -1.5", "vx = 0")
+RESTING = RESTING.replace("vy = -1\n", "vy = 0\n").replace("restitution = 0.5\n", "")
+
+# A block slides to rest while a heater switches.
+HEATED = HEAD + """[states]
+z = 0
+v = 0
+y = 0
+w = 2
+T = 15
+[dynamics]
+T = "if(on > 0.5, 8, -5)"
+[[hysteresis]]
+name = "on"
+input = "T"
+on = 14.5
+off = 16
+[mechanics]
+positions = ["z", "y"]
+velocities = ["v", "w"]
+force = { v = -9.81 }
+[[contacts]]
+name = "ground"
+gap = "z"
+tangent = { y = 1 }
+friction = 0.3
+[simulate]
+until = 1
+"""
+
 # A ball lands and stays where it is; what it is pushed with costs.
 LANDING = HEAD + """[states]
 z = 0.5
@@ -106,6 +158,13 @@ class TimeFreezing(FrozenTest):
     def test_a_rod_is_thrown_up(self):
         self.assert_agree("painleve-rod", 1e-8)
 
+    def test_several_contacts_in_stewarts_form(self):
+        # Held while one with restitution closes and masses couple them; both at rest from the start; a corner; one at
+        # rest beside a hysteresis.
+        for model in (MIXED, RESTING, "inelastic-corner", HEATED):
+            _, frozen = self.assert_agree(model, 1e-8, "--set", "simulate.fesd.reformulation=stewart")
+            self.assertTrue(all(e["unique"] for e in frozen["events"]))
+
     def test_where_time_stands_still_there_are_no_forces(self):
         for output in ("auto", "{ every = 0.001 }"):
             self.run_tool("simulate", "falling-rod", "--method", "fesd", "--set", f"simulate.output={output}", "--quiet",
@@ -167,12 +226,13 @@ until = 1.2
         relay = LANDING[:LANDING.index("[controls]")] + "r = 0.1\n[dynamics]\nr = 'if(t < 0.5, -1, 1)*sign(r)'\n"
         relay += LANDING[LANDING.index("[mechanics]"):LANDING.index("[optimize]")].replace("u - 9.81", "-9.81")
         relay = relay.replace("z = 0.5", "z = 0") + "[simulate]\nuntil = 0.6\n"
-        frozen = self.simulated(relay, "fesd")
-        self.assertEqual([e["surfaces"] for e in frozen["events"]], [["r"], ["0.5-t"]])
-        self.assertEqual([e["unique"] for e in frozen["events"]], [True, False])
-        self.assertEqual([len(e["alternatives"]) for e in frozen["events"]], [0, 2])
-        for event, t in zip(frozen["events"], (0.1, 0.5)):
-            self.assertAlmostEqual(event["t"], t, delta=1e-9)
+        for form in ("step", "stewart"):
+            frozen = self.simulated(relay, "fesd", "--set", f"simulate.fesd.reformulation={form}")
+            self.assertEqual([e["surfaces"] for e in frozen["events"]], [["r"], ["0.5-t"]])
+            self.assertEqual([e["unique"] for e in frozen["events"]], [True, False])
+            self.assertEqual([len(e["alternatives"]) for e in frozen["events"]], [0, 2])
+            for event, t in zip(frozen["events"], (0.1, 0.5)):
+                self.assertAlmostEqual(event["t"], t, delta=1e-9)
 
     def test_an_impact_ends_whatever_force_and_steps_are(self):
         landing = LANDING[:LANDING.index("[optimize]")] + "[simulate]\nuntil = 0.6\n"

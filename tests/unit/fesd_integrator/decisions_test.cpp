@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "compiled.hpp"
+#include "saltus/base/at.hpp"
+#include "saltus/fesd_integrator/decide/nonnegative_solution.hpp"
 #include "saltus/fesd_integrator/decide/transition.hpp"
 #include "saltus/fesd_integrator/record/recorder.hpp"
 #include "saltus/fesd_integrator/watch/held_values.hpp"
@@ -157,6 +159,89 @@ TEST(Transition, WeightsThatNoEquationHoldsAreTold) {
   EXPECT_FALSE(determined_at_the_corner(1.0, Form::stewart));
   // Nothing moves with the weight that is free.
   EXPECT_TRUE(determined_at_the_corner(0.0, Form::stewart));
+}
+
+/// Two bodies above the ground under a force g, stopped by a force a while time stands still: their gaps y and rates v,
+/// and the clock.
+Compiled two_contacts(double pull) {
+  constexpr double a = 100.0, g = 10.0;
+  model::Builder builder("two contacts");
+  SX moves = 1.0;
+  std::vector<SX> closed;
+  for (const char* name : {"1", "2"}) {
+    const SX y = builder.state(std::string("y") + name, {0.0}), v = builder.state(std::string("v") + name, {0.0});
+    const SX gap = builder.step(y), rate = builder.step(v);
+    moves *= gap + rate - gap * rate;
+    closed.push_back((1.0 - gap) * (1.0 - rate));
+    builder.dynamics(std::string("y") + name, v * moves);
+  }
+  builder.state("clock", {0.0});
+  // An impulse on the first body pulls the second one down.
+  builder.dynamics("v1", a * closed[0] - g * moves);
+  builder.dynamics("v2", a * closed[1] - pull * a * closed[0] - g * moves);
+  builder.dynamics("clock", moves);
+  return Compiled(builder, Form::stewart);
+}
+
+TEST(Transition, TwoContactsAtRestAreHeldFromTheStart) {
+  const Compiled model = two_contacts(0.0);
+  ElementSolver solver(model.kernel, tableau(TableauFamily::radau_iia, 3));
+  Transition transition(model.kernel, model.facts.parts, solver);
+  const std::vector<double> x{0.0, 0.0, 0.0, 0.0, 0.0};
+  const auto found = transition.continuations({0.0, x, nullptr, nullptr, {}, 1.0, 1e-3});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found[0].determined);
+  std::vector<double> rates(5);
+  model.kernel.field(0.0, x.data(), found[0].selections.data(), nullptr, rates.data());
+  for (const int k : {0, 1, 2, 3}) EXPECT_NEAR(rates[at(k)], 0.0, 1e-12);
+  EXPECT_GT(rates[4], 0.5);
+  EXPECT_GE(*std::min_element(found[0].selections.begin(), found[0].selections.end()), -1e-12);
+}
+
+TEST(Transition, AContactThatIsHeldStaysClosedWhileAnotherOneStopsABody) {
+  const Compiled model = two_contacts(0.5);
+  const auto& surfaces = model.facts.parts.at(0).surfaces;
+  ASSERT_EQ(surfaces, 4);
+  // The first body comes down; the second one rests: its gap is closed, its rate held.
+  Modes before(16, -1);
+  const int comes_down = 0b0110, closes = 0b1110, holds = 0b0001;  // gap, rate, gap, rate: bits of negative sides
+  before[comes_down] = before[comes_down | holds] = 0;
+  const std::vector<double> x{0.0, -1.0, 0.0, 0.0, 0.0};
+  ElementSolver solver(model.kernel, tableau(TableauFamily::radau_iia, 3));
+  Transition transition(model.kernel, model.facts.parts, solver);
+  const ActiveSet set = model.set(before);
+  const std::vector<int> at_zero{comes_down, comes_down | holds, closes};
+  const auto found = transition.continuations({0.0, x, nullptr, &set, at_zero, 1.0, 1e-3, closes});
+  ASSERT_FALSE(found.empty());
+  Modes after(16, -1);
+  after[closes] = after[closes | holds] = 0;
+  EXPECT_EQ(found[0].set.modes(), after);
+  EXPECT_NEAR(found[0].selections[closes | holds], 0.5, 1e-12);
+}
+
+TEST(NonnegativeSolution, HasTheLeastResidual) {
+  Eigen::MatrixXd A(3, 4);
+  A << 1.0, -2.0, 0.5, 3.0, 0.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0, 1.0;
+  for (const Eigen::Vector3d& b : {Eigen::Vector3d(0.0, 0.0, 1.0), Eigen::Vector3d(0.0, -5.0, 1.0),
+                                   Eigen::Vector3d(-1.0, -1.0, -1.0), Eigen::Vector3d(2.0, 0.3, 1.0)}) {
+    const Eigen::VectorXd x = nonnegative_solution(A, b);
+    const Eigen::VectorXd slope = A.transpose() * (b - A * x);
+    for (Eigen::Index j = 0; j < x.size(); ++j) {
+      EXPECT_GE(x[j], 0.0);
+      EXPECT_LE(slope[j], 1e-9);
+      EXPECT_NEAR(x[j] * slope[j], 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(NonnegativeSolution, TakesIndependentColumns) {
+  // Of equal columns one, and the shorter ones of those that do as well.
+  Eigen::MatrixXd A(2, 5);
+  A << -1.0, -1.0, 4.0, 8.0, 4.0, 1.0, 1.0, 1.0, 1.0, 1.0;
+  const Eigen::VectorXd x = nonnegative_solution(A, Eigen::Vector2d(0.0, 1.0));
+  EXPECT_NEAR(x[0], 0.8, 1e-14);
+  EXPECT_NEAR(x[2], 0.2, 1e-14);
+  EXPECT_EQ((x.array() > 0.0).count(), 2);
 }
 
 TEST(Transition, SurfacesWithoutInfluenceAreDecidedOneByOne) {

@@ -109,7 +109,7 @@ bool Rests::any() const {
   return std::any_of(governors_.begin(), governors_.end(), [](int governor) { return governor >= 0; });
 }
 
-bool Rests::allow(const std::vector<int>& members, const std::vector<int>& modes) const {
+bool Rests::allow(const std::vector<int>& members, std::span<const int> modes) const {
   for (std::size_t k = 0; k < modes.size(); ++k) {
     const int j = members[k];
     const auto found = std::find(members.begin(), members.begin() + index(modes.size()), governor(j));

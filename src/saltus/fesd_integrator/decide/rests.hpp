@@ -32,7 +32,7 @@ class Rests {
   [[nodiscard]] int governor(int j) const { return governors_[at(j)]; }
   [[nodiscard]] bool any() const;
   /// Returns whether the first of these functions may be in these modes just behind the point.
-  [[nodiscard]] bool allow(const std::vector<int>& members, const std::vector<int>& modes) const;
+  [[nodiscard]] bool allow(const std::vector<int>& members, std::span<const int> modes) const;
   /// Returns the functions that rest in these modes.
   [[nodiscard]] std::vector<int> resting(const std::vector<int>& modes) const;
 

@@ -220,31 +220,76 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     all.ended = -1;
     return continuations(all);
   }
-  return found.empty() && (depends_ || rests_.any()) ? continuations(decision, Rule::enumeration) : found;
+  if (found.empty() && (depends_ || rests_.any())) found = continuations(decision, Rule::enumeration);
+  return found.empty() && skipped_ ? continuations(decision, Rule::everything) : found;
 }
 
 void Transition::put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes) {
   for (std::size_t k = 0; k < pattern.size(); ++k) modes[at(group.members[k])] = pattern[k];
 }
 
+std::optional<Transition::Option> Transition::option_of(const Decision& decision, const Group& group,
+                                                        const std::vector<int>& pattern,
+                                                        const std::vector<int>& modes) {
+  auto trial = modes;
+  put(group, pattern, trial);
+  Continuation candidate{make_set(decision, trial), {}};
+  const double value = margin(decision, group, candidate);
+  if (value < -undecided) return std::nullopt;
+  Option option{.pattern = pattern, .margin = value, .regular = projected_.regular()};
+  option.motion = projected_.values().f;
+  return option;
+}
+
+/// Whether regions whose weights are not determined are asked only where nothing else continues: fewer of them have the
+/// same motion, or they are many.
+bool Transition::is_left_out(const Support& support, const std::vector<std::pair<std::size_t, Option>>& found) {
+  constexpr std::ptrdiff_t many = 16;
+  if (std::count(support.pattern.begin(), support.pattern.end(), 0) > many) return true;
+  Option all;
+  all.pattern = support.pattern;
+  return std::any_of(found.begin(), found.end(), [&](const auto& other) {
+    return slides_beside(all, other.second) && are_near(other.second.motion, support.motion);
+  });
+}
+
 /// The patterns of a group that its rates do not exclude while the other groups are as in `modes`; of those that are
 /// regular, or else of all, the one with the largest margin into `guess`.
-std::vector<Transition::Option> Transition::options_of(const Decision& decision, const Group& group,
+std::vector<Transition::Option> Transition::options_of(const Decision& decision, const Group& group, Rule rule,
                                                        const std::vector<int>& modes, std::vector<int>& guess) {
+  std::vector<std::pair<std::size_t, Option>> found;
+  std::vector<std::pair<std::size_t, Support>> open;
+  const auto ask = [&](std::size_t place, const std::vector<int>& pattern) {
+    if (auto option = option_of(decision, group, pattern, modes)) found.emplace_back(place, std::move(*option));
+  };
+  for (std::size_t i = 0; i < group.patterns.size(); ++i) {
+    auto trial = modes;
+    put(group, group.patterns[i], trial);
+    for (Support& support : supports_of(decision, group, group.patterns[i], trial)) {
+      if (support.determined) {
+        ask(i, support.pattern);
+      } else {
+        open.emplace_back(i, std::move(support));
+      }
+    }
+  }
+  for (const auto& [i, support] : open) {
+    if (rule != Rule::everything && is_left_out(support, found)) {
+      skipped_ = true;
+      continue;
+    }
+    const auto fewer = without_negative(decision, group, support.pattern, modes);
+    if (!support.motion.empty() || fewer == support.pattern) ask(i, fewer);
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Option> options;
   std::pair best{false, -2.0};
-  for (const auto& pattern : group.patterns) {
-    auto trial = modes;
-    put(group, pattern, trial);
-    Continuation candidate{make_set(decision, trial), {}};
-    const double value = margin(decision, group, candidate);
-    if (value < -undecided) continue;
-    options.push_back({.pattern = pattern, .margin = value, .regular = projected_.regular()});
+  for (auto& [place, option] : found) {
     // A set with selections that no equation determines says nothing of the other groups.
-    const std::pair likelier{projected_.regular(), value};
-    if (likelier <= best) continue;
-    best = likelier;
-    put(group, pattern, guess);
+    const std::pair likelier{option.regular, option.margin};
+    if (likelier > best) put(group, option.pattern, guess);
+    best = std::max(best, likelier);
+    options.push_back(std::move(option));
   }
   return options;
 }
@@ -295,13 +340,14 @@ std::optional<Continuation> Transition::continuation_in(const Decision& decision
 
 std::vector<Continuation> Transition::continuations(const Decision& decision, Rule rule) {
   std::vector<int> modes;
+  skipped_ = false;
   finite_ = find_groups(decision, rule, modes);
   if (!finite_) return {};
   // A first guess at every group, so that each is asked with the others in place: what has the largest margin.
   std::vector<std::vector<Option>> options;
   std::vector<int> guess = modes;
   for (const Group& group : groups_) {
-    options.push_back(options_of(decision, group, modes, guess));
+    options.push_back(options_of(decision, group, rule, modes, guess));
     if (options.back().empty()) return {};
   }
   std::vector<std::vector<std::vector<int>>> admissible;

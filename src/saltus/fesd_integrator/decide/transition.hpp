@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "saltus/base/components.hpp"
@@ -44,12 +45,14 @@ struct Decision {
 /// short element does, or a longer one where psi is within its rounding behind that. The solution may not get to a
 /// side, as psi stays at zero. That is no other continuation than sliding with the selections of that side; where psi
 /// does not move there, it is the one that is left out. Functions that do not influence each other are enumerated one
-/// by one. Surfaces whose gradients depend on each other, with selections that enter additively, are not enumerated: a
-/// complementarity problem says which are slid on and which are left [ADR 20]; where it leaves that open, the one just
-/// behind the point does. In a system of some size (discretization::StagePattern) only functions that influence the one
-/// whose sign ended are asked, and those whose conditions do not clearly hold; the others slide on. Where nothing
-/// continues so, all are asked. Of more functions than are enumerated those slide on that slid before and did not end;
-/// whether others continue the solution, too, is not decided then.
+/// by one. Of regions that are sign patterns those between the same sides of their surfaces are asked together, with
+/// weights that are not negative: as few as determine them, or those of least norm. Surfaces whose gradients depend on
+/// each other, with selections that enter additively, are not enumerated: a complementarity problem says which are slid
+/// on and which are left [ADR 20]; where it leaves that open, the one just behind the point does. In a system of some
+/// size (discretization::StagePattern) only functions that influence the one whose sign ended are asked, and those
+/// whose conditions do not clearly hold; the others slide on. Where nothing continues so, all are asked. Of more
+/// functions than are enumerated those slide on that slid before and did not end; whether others continue the solution,
+/// too, is not decided then.
 ///
 /// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
 /// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
@@ -75,7 +78,7 @@ class Transition {
     bool dependent = false;                  ///< these are by the complementarity problem, the likeliest one first
     bool decided = true;                     ///< which has one motion as its solution
   };
-  enum class Rule { dependent, enumeration };
+  enum class Rule { dependent, enumeration, everything };
   [[nodiscard]] std::vector<Continuation> continuations(const Decision& decision, Rule rule);
   [[nodiscard]] bool find_dependent(const Decision& decision, const std::vector<int>& modes, Group& group);
   /// The members of a group whose selections move the state, and those that follow them.
@@ -98,6 +101,18 @@ class Transition {
   void keep_sliding(const Decision& decision, std::vector<std::vector<int>>& groups, std::vector<int>& modes);
   [[nodiscard]] bool find_groups(const Decision& decision, Rule rule, std::vector<int>& modes);
   enum class Asked { all, changed };
+  /// What is enumerated: a mode of a member, or the side of a surface between regions, the first of which it names.
+  struct Choice {
+    enum class Kind { function, region, surface } kind = Kind::function;
+    std::size_t member = 0;
+    int surface = 0;
+    bool is_asked = true;  ///< if it slid before and did not end, it may be taken to slide on
+  };
+  [[nodiscard]] std::vector<Choice> choices_of(const Decision& decision, const Group& group) const;
+  [[nodiscard]] static std::vector<int> modes_before(const Decision& decision, const Part& part);
+  void leave_side(const Group& group, const Choice& choice, int mode, std::vector<int>& pattern) const;
+  [[nodiscard]] std::pair<int, int> rank(const Decision& decision, const Group& group,
+                                         const std::vector<int>& pattern) const;
   [[nodiscard]] std::vector<std::vector<int>> combinations(const Group& group, const Decision& decision, Asked asked,
                                                            Rule rule) const;
   void find_patterns(const Decision& decision, Group& group, Rule rule) const;
@@ -115,8 +130,38 @@ class Transition {
     std::vector<double> selections = {}, motion = {};  ///< if rates do not decide; of all states
     bool regular = true;                               ///< whether first derivatives determine the selections
   };
+  /// Equations of weights; `negligible` is what they may be missed by.
+  struct WeightEquations {
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd right, negligible;
+  };
+  /// Weights of regions, and the motion they make.
+  struct Weights {
+    std::vector<double> selections, motion;
+  };
+  /// Regions that are active, whether first derivatives determine their weights, and if not a motion they have; none
+  /// where these are asked for other weights.
+  struct Support {
+    std::vector<int> pattern;
+    bool determined = true;
+    std::vector<double> motion = {};
+  };
+  [[nodiscard]] WeightEquations weight_equations(const Decision& decision, double t, const std::vector<double>& x,
+                                                 const ActiveSet& set, const std::vector<int>& active);
+  [[nodiscard]] std::optional<Weights> find_weights(const Decision& decision, double t, const std::vector<double>& x,
+                                                    const ActiveSet& set);
+  [[nodiscard]] std::optional<std::vector<int>> fewer_regions(const Group& group, const std::vector<int>& pattern,
+                                                              const Weights& weights, const ActiveSet& face) const;
+  [[nodiscard]] std::vector<int> without_negative(const Decision& decision, const Group& group,
+                                                  const std::vector<int>& pattern, std::vector<int> modes);
+  [[nodiscard]] static bool is_left_out(const Support& support,
+                                        const std::vector<std::pair<std::size_t, Option>>& found);
+  [[nodiscard]] std::vector<Support> supports_of(const Decision& decision, const Group& group,
+                                                 const std::vector<int>& pattern, const std::vector<int>& modes);
+  [[nodiscard]] std::optional<Option> option_of(const Decision& decision, const Group& group,
+                                                const std::vector<int>& pattern, const std::vector<int>& modes);
   static void put(const Group& group, const std::vector<int>& pattern, std::vector<int>& modes);
-  [[nodiscard]] std::vector<Option> options_of(const Decision& decision, const Group& group,
+  [[nodiscard]] std::vector<Option> options_of(const Decision& decision, const Group& group, Rule rule,
                                                const std::vector<int>& modes, std::vector<int>& guess);
   [[nodiscard]] std::vector<std::vector<int>> admissible_of(const Decision& decision, const Group& group,
                                                             std::vector<Option> options, const std::vector<int>& guess);
@@ -145,6 +190,7 @@ class Transition {
   std::vector<int> kept_;  ///< functions that slide on unasked
   Rests rests_;
   bool depends_ = false;  ///< whether a group of the current decision is dependent
+  bool skipped_ = false;  ///< whether patterns were not asked, as fewer of their regions move in the same way
   SelectionMargins margins_;
   bool finite_ = true;
   std::vector<double> rate_, size_, noise_;

@@ -7,12 +7,26 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/components.hpp"
+#include "saltus/base/contains.hpp"
+#include "saltus/fesd_integrator/decide/surface_modes.hpp"
 #include "saltus/fesd_integrator/decide/transition.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
 
 constexpr std::size_t most_patterns = 20000;
+
+/// Regions meet where surfaces do: with those on both sides of some of them all that these separate.
+void add_regions_between(const Part& part, std::vector<bool>& meet) {
+  const auto modes = surface_modes(part, [&](int region) { return bool{meet[at(region - part.first)]}; });
+  for (int region = part.first; region < part.first + part.count; ++region) {
+    bool all = true;
+    for (int k = 0; k < part.surfaces; ++k) {
+      all = all && (modes[at(k)] == 0 || modes[at(k)] == part.side(region, k));
+    }
+    meet[at(region - part.first)] = all;
+  }
+}
 
 }  // namespace
 
@@ -33,9 +47,15 @@ std::optional<std::vector<int>> Transition::find_zeros(const Decision& decision,
     }
     if (part.simplex && !std::isfinite(smallest)) return std::nullopt;
     const std::size_t begin = members.size();
+    std::vector<bool> is_zero(at(part.count));
+    const auto value_of = [&](int j) { return values_.indicator[at(j)] - (part.simplex ? smallest : 0.0); };
     for (int j = part.first; j < part.first + part.count; ++j) {
-      const double value = part.simplex ? values_.indicator[at(j)] - smallest : values_.indicator[at(j)];
-      const bool zero = std::abs(value) <= 4.0 * noise_[at(j)] || forced[at(j)];
+      is_zero[at(j - part.first)] = std::abs(value_of(j)) <= 4.0 * noise_[at(j)] || forced[at(j)];
+    }
+    if (part.surfaces > 0) add_regions_between(part, is_zero);
+    for (int j = part.first; j < part.first + part.count; ++j) {
+      const double value = value_of(j);
+      const bool zero = is_zero[at(j - part.first)];
       if (part.simplex) {
         // One of the tied regions alone, as a classical mode stands for the other groups while one is asked.
         modes[at(j)] = zero && members.size() == begin ? 0 : -1;
@@ -154,27 +174,92 @@ bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<in
   return true;
 }
 
+/// What members may be is enumerated for each of these: a step function, a region with an indicator of its own, or a
+/// surface between regions that are sign patterns.
+std::vector<Transition::Choice> Transition::choices_of(const Decision& decision, const Group& group) const {
+  std::vector<Choice> choices;
+  for (std::size_t k = 0; k < group.members.size(); ++k) {
+    const int j = group.members[k];
+    const Part& part = parts_[at(part_of_[at(j)])];
+    const bool was_fixed = decision.before != nullptr && decision.before->modes()[at(j)] != 0;
+    if (part.surfaces == 0) {
+      choices.push_back(
+          {part.simplex ? Choice::Kind::region : Choice::Kind::function, k, 0, j == decision.ended || was_fixed});
+      continue;
+    }
+    if (k > 0 && part_of_[at(group.members[k - 1])] == part_of_[at(j)]) continue;
+    const auto modes = surface_modes(part, [&](int region) { return contains(group.members, region); });
+    const auto before = modes_before(decision, part);
+    const bool ended = decision.ended >= part.first && decision.ended < part.first + part.count;
+    for (int surface = 0; surface < part.surfaces; ++surface) {
+      if (modes[at(surface)] != 0) continue;
+      choices.push_back({Choice::Kind::surface, k, surface, ended || before.empty() || before[at(surface)] != 0});
+    }
+  }
+  return choices;
+}
+
+std::vector<int> Transition::modes_before(const Decision& decision, const Part& part) {
+  if (decision.before == nullptr) return {};
+  return surface_modes(part, [&](int region) { return decision.before->modes()[at(region)] == 0; });
+}
+
+/// Takes the regions that are not on a side of a surface out of a pattern.
+void Transition::leave_side(const Group& group, const Choice& choice, int mode, std::vector<int>& pattern) const {
+  const int p = part_of_[at(group.members[choice.member])];
+  for (std::size_t k = 0; k < pattern.size() && mode != 0; ++k) {
+    const int j = group.members[k];
+    if (part_of_[at(j)] == p && parts_[at(p)].side(j, choice.surface) != mode) pattern[k] = -1;
+  }
+}
+
 /// Every combination of what members may be; empty where that is too many.
 std::vector<std::vector<int>> Transition::combinations(const Group& group, const Decision& decision, Asked asked,
                                                        Rule rule) const {
   const auto every = decision.before == nullptr ? std::array{1, -1, 0} : std::array{0, 1, -1};
-  std::vector<std::vector<int>> patterns{{}};
-  for (const int j : group.members) {
-    const bool region = parts_[at(part_of_[at(j)])].simplex;
-    const bool is_asked = asked == Asked::all || j == decision.ended || decision.before->modes()[at(j)] != 0;
-    std::vector<std::vector<int>> longer;
+  std::vector<std::vector<int>> patterns{std::vector<int>(group.members.size(), 0)};
+  for (const Choice& choice : choices_of(decision, group)) {
+    std::vector<std::vector<int>> more;
     for (const auto& pattern : patterns) {
       for (const int mode : every) {
-        if (mode != 0 && (!is_asked || (region && mode == 1))) continue;
-        longer.push_back(pattern);
-        longer.back().push_back(mode);
-        if (rule == Rule::dependent && !rests_.allow(group.members, longer.back())) longer.pop_back();
+        const bool is_asked = asked == Asked::all || choice.is_asked;
+        if (mode != 0 && (!is_asked || (choice.kind == Choice::Kind::region && mode == 1))) continue;
+        more.push_back(pattern);
+        if (choice.kind == Choice::Kind::surface) {
+          leave_side(group, choice, mode, more.back());
+        } else {
+          more.back()[choice.member] = mode;
+          const auto decided = std::span(std::as_const(more.back())).first(choice.member + 1);
+          if (rule == Rule::dependent && !rests_.allow(group.members, decided)) more.pop_back();
+        }
       }
-      if (longer.size() > most_patterns) return {};
+      if (more.size() > most_patterns) return {};
     }
-    patterns = std::move(longer);
+    patterns = std::move(more);
   }
   return patterns;
+}
+
+/// How many functions, regions or surfaces are in other modes than before, and how many regions are active.
+std::pair<int, int> Transition::rank(const Decision& decision, const Group& group,
+                                     const std::vector<int>& pattern) const {
+  int changes = 0, active = 0;
+  for (std::size_t k = 0; k < pattern.size(); ++k) {
+    const Part& part = parts_[at(part_of_[at(group.members[k])])];
+    active += part.simplex && pattern[k] == 0 ? 1 : 0;
+    if (decision.before == nullptr) continue;
+    if (part.surfaces == 0) {
+      changes += decision.before->modes()[at(group.members[k])] != pattern[k] ? 1 : 0;
+    } else if (k == 0 || part_of_[at(group.members[k - 1])] != part_of_[at(group.members[k])]) {
+      const auto before = modes_before(decision, part);
+      const auto modes = surface_modes(part, [&](int region) {
+        const auto place = std::find(group.members.begin(), group.members.end(), region);
+        return place != group.members.end() && pattern[at(place - group.members.begin())] == 0;
+      });
+      for (std::size_t s = 0; s < modes.size(); ++s) changes += modes[s] != before[s] ? 1 : 0;
+    }
+  }
+  return {changes, active};
 }
 
 /// All combinations, or of too many members those in which what slid before and did not end slides on: others may
@@ -199,15 +284,12 @@ void Transition::find_patterns(const Decision& decision, Group& group, Rule rule
     }
     return false;
   });
-  const auto rank = [&](const auto& pattern) {
-    int changes = 0, sliding = 0;
-    for (std::size_t k = 0; k < pattern.size(); ++k) {
-      if (decision.before != nullptr) changes += decision.before->modes()[at(group.members[k])] != pattern[k] ? 1 : 0;
-      sliding += parts_[at(part_of_[at(group.members[k])])].simplex && pattern[k] == 0 ? 1 : 0;
-    }
-    return std::pair(changes, sliding);
-  };
-  std::stable_sort(patterns.begin(), patterns.end(), [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
+  std::vector<std::pair<std::pair<int, int>, std::size_t>> order;
+  for (std::size_t i = 0; i < patterns.size(); ++i) order.emplace_back(rank(decision, group, patterns[i]), i);
+  std::sort(order.begin(), order.end());
+  std::vector<std::vector<int>> sorted;
+  for (const auto& [unused, i] : order) sorted.push_back(std::move(patterns[i]));
+  patterns = std::move(sorted);
 }
 
 }  // namespace saltus::fesd_integrator

@@ -16,6 +16,13 @@ struct Part {
   bool simplex = false;  ///< Stewart's form: they sum up to 1; else each is a step selection by itself
   int first = 0;
   int count = 0;
+  /// Of a simplex whose regions are all sign patterns of so many surfaces, + before -, the last one fastest; else 0.
+  int surfaces = 0;
+
+  /// Returns the side of a surface on which such a region is: 1 or -1.
+  [[nodiscard]] int side(int region, int surface) const {
+    return ((region - first) >> (surfaces - 1 - surface) & 1) != 0 ? -1 : 1;
+  }
 };
 
 /// Holds a selection that the state keeps between its bounds: an unknown of the element.

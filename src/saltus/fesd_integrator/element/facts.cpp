@@ -34,7 +34,7 @@ Facts facts(const model::System& system, const reformulation::Dcs& dcs) {
   facts.state_names = system.state_names;
   for (const auto& part : dcs.parts) {
     const bool simplex = part.form == reformulation::Form::stewart;
-    facts.parts.push_back({simplex, part.first, part.count});
+    facts.parts.push_back({simplex, part.first, part.count, simplex ? static_cast<int>(part.surfaces.size()) : 0});
     for (int i = 0; i < part.count; ++i) {
       if (simplex) {
         facts.selections.push_back({region_name(system, dcs, part, i), result::SelectionForm::stewart});
