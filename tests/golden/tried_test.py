@@ -243,6 +243,11 @@ class Tried(tool.ToolTest):
         self.assertIn("a norm of vx, vy vanishes here", err)
         self.assertIn("sqrt(vx^2 + vy^2 + 1e-6)", err)
 
+    def test_finite_elements_say_that_a_norm_vanishes(self):
+        _, _, err = self.simulated(PUCK, "--method", "fesd", "--set", "simulate.max_steps=2000", code=3)
+        self.assertIn("a norm of vx, vy vanishes here", err)
+        self.assertIn('or method = "event"', err)
+
     def test_a_unit_behind_a_number_is_understood(self):
         for written, unit in (("1 [m]", "m"), ("9.81 m/s^2", "m/s^2"), ("300 K # warm", "K")):
             self.write("m.toml", PUCK.replace("x = 0", f"x = {written}", 1))

@@ -1,4 +1,5 @@
 // Dry friction in a plane, written in right-hand sides.
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -95,6 +96,60 @@ TEST(WrittenFriction, ABeltTakesThePuckAlong) {
   EXPECT_NEAR(run.events[0].t, 2.5 / friction, 1e-10);
   EXPECT_NEAR(run.final.x[2], belt, 1e-12);
   EXPECT_EQ(run.final.x[3], 0.0);
+}
+
+constexpr ode::Method all_methods[] = {ode::Method::dopri5, ode::Method::dop853, ode::Method::taylor,
+                                       ode::Method::radau5, ode::Method::radau9, ode::Method::radau13};
+
+/// A puck on a belt, under another force that depends on time.
+Integration run_on_belt(const std::array<double, 2>& start, const std::array<double, 2>& belt,
+                        const std::array<double, 2>& pull, IntegrationOptions options) {
+  Puck puck(start[0], start[1]);
+  const SX a = puck.vx - belt[0], b = puck.vy - belt[1], speed = sqrt(a * a + b * b), t = puck.model.time();
+  puck.model.dynamics("vx", pull[0] * t - friction * a / speed);
+  puck.model.dynamics("vy", pull[1] * t - friction * b / speed);
+  options.max_steps = 3000;
+  return run_model(puck.model, options);
+}
+
+/// Errors of a step are relative to the velocity of the belt, and slips end below them.
+TEST(WrittenFriction, ASlipEndsOnABeltThatIsFaster) {
+  const double length = std::hypot(1.0, 0.7), stop = length / friction;
+  for (const auto method : all_methods) {
+    for (const double rtol : {1e-5, 1e-6, 1e-8, 1e-10, 1e-12}) {
+      IntegrationOptions options;
+      options.method = method;
+      options.tolerances = {rtol, 1e-2 * rtol};
+      options.until = 1.5;
+      const auto run = run_on_belt({0.0, 1.2}, {1.0, 0.5}, {0.0, 0.0}, options);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message << rtol;
+      ASSERT_EQ(run.events.size(), 1U);
+      EXPECT_EQ(run.events[0].kind, EventKind::stick);
+      EXPECT_NEAR(run.events[0].t, stop, 2.0 * rtol + 1e-12);
+      EXPECT_NEAR(run.final.x[0], 1.5 - 0.5 * stop, 2.0 * rtol + 1e-12);
+      EXPECT_NEAR(run.final.x[1], 0.75 + 0.5 * 0.7 * stop, 2.0 * rtol + 1e-12);
+      EXPECT_EQ(run.final.x[2], 1.0);
+      EXPECT_EQ(run.final.x[3], 0.5);
+    }
+  }
+}
+
+TEST(WrittenFriction, AForceMovesThePuckOffItsBelt) {
+  const double start = friction / std::sqrt(5.0), left = 3.0 - start;
+  for (const auto method : all_methods) {
+    IntegrationOptions options;
+    options.method = method;
+    options.until = 3.0;
+    const auto run = run_on_belt({1.0, 0.5}, {1.0, 0.5}, {2.0, 1.0}, options);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_EQ(run.events.size(), 1U);
+    EXPECT_EQ(run.events[0].kind, EventKind::slip);
+    EXPECT_NEAR(run.events[0].t, start, 1e-9);
+    EXPECT_NEAR(run.final.x[0], 3.0 + left * left * left / 3.0, 1e-6);
+    EXPECT_NEAR(run.final.x[1], 1.5 + left * left * left / 6.0, 1e-6);
+    EXPECT_NEAR(run.final.x[2], 1.0 + left * left, 1e-6);
+    EXPECT_NEAR(run.final.x[3], 0.5 + 0.5 * left * left, 1e-6);
+  }
 }
 
 /// A norm that gives no direction, or pushes along it, is left alone.

@@ -150,6 +150,7 @@ class Run {
   void note_switch();
   void limit_beside_coalescence();
   void limit_beside_zeros(double h);
+  void limit_beside_rest();
   void accumulate_switches();
   [[nodiscard]] std::optional<SeriesLimit> unresolved_here() const;
   void go_on_from_unresolved();
