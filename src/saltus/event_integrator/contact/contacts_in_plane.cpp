@@ -79,6 +79,7 @@ bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>
 /// The velocity of a slip may be the difference of larger ones, as on a belt, and errors of a step are relative to
 /// these: a step whose errors are as large as the slip runs through its end unseen.
 ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vector<double>& x) {
+  constexpr double part_of_slip = 0.1;
   ode::Tolerances parts{1.0, 1.0};
   const auto modes = modes_at(x).modes;
   if (!contains(modes, ContactMode::slip)) return parts;
@@ -93,7 +94,7 @@ ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vecto
         terms += weight * std::abs(x[at(system_.velocities[state])]);
         slope += weight;
       }
-      parts.rtol = std::min(parts.rtol, wanted / (moment.tolerances.rtol * terms));
+      parts.rtol = std::min(parts.rtol, part_of_slip * wanted / (moment.tolerances.rtol * terms));
       parts.atol = std::min(parts.atol, wanted / (moment.tolerances.atol * slope));
     }
   }
