@@ -72,6 +72,22 @@ bool Run::begin_contacts_anew() {
   return true;
 }
 
+/// Whether what jumps here, a gap or the velocity of a belt, makes contacts begin anew. Their event is told here.
+bool Run::contacts_jump() {
+  if (!contacts_.have_jumped(contact_moment(), here_.x)) return false;
+  const auto x_before = here_.x;
+  if (!begin_contacts_anew()) return true;
+  if (cascade_.executed().empty()) {
+    ExecutedJump& executed = cascade_.executed().append();
+    executed.x = x_before;
+    executed.jump = switching_context_.system.contacts.contacts.front().jump;
+    executed.x_after = here_.x;
+    executed.unique = contacts_.is_determined();
+  }
+  cascade_.read_user_signs();
+  return true;
+}
+
 /// What puts the state on closed gaps moves it off those that have been located beside them: no body is in another one.
 void Run::put_on_gaps(const Located& located) {
   const auto touching = contacts_.with_jumps([&](int jump) {

@@ -175,6 +175,7 @@ class Run {
   [[nodiscard]] bool only_slips_on() const;
   bool begin_contacts();
   [[nodiscard]] bool begin_contacts_anew();
+  [[nodiscard]] bool contacts_jump();
   void put_on_gaps(const Located& located);
   bool move_contacts();
   void choose_method();
