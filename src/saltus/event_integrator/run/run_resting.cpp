@@ -90,7 +90,8 @@ bool Run::change_resting_with_cells() {
 }
 
 /// Whether a jump of values has moved the zero of a guard at rest, or a contact, away from the state: a table that
-/// drops, a belt that gets another speed. The guards are free then, and on the side where they are; contacts begin anew.
+/// drops, a belt that gets another speed. The guards are free then, and on the side where they are; contacts begin
+/// anew.
 bool Run::leaves_resting_with_cells() {
   if (event_.cell_change != CellChange::jump) return false;
   if (contacts_jump()) return true;
