@@ -135,6 +135,24 @@ TEST(WrittenFriction, ASlipEndsOnABeltThatIsFaster) {
   }
 }
 
+/// Of w/|w| the size of w is nobody's business.
+TEST(WrittenFriction, AUnitOfTheSlipDoesNotMatter) {
+  for (const double unit : {1e-3, 1e3}) {
+    Puck puck(0.0, 1.2);
+    const SX a = unit * (puck.vx - 1.0), b = unit * (puck.vy - 0.5), speed = sqrt(a * a + b * b);
+    puck.model.dynamics("vx", -friction * a / speed);
+    puck.model.dynamics("vy", -friction * b / speed);
+    IntegrationOptions options;
+    options.method = ode::Method::dop853;
+    options.tolerances = {1e-12, 1e-14};
+    options.until = 1.5;
+    options.max_steps = 3000;
+    const auto run = run_model(puck.model, options);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    EXPECT_NEAR(run.events[0].t, std::hypot(1.0, 0.7) / friction, 1e-11);
+  }
+}
+
 TEST(WrittenFriction, AForceMovesThePuckOffItsBelt) {
   const double start = friction / std::sqrt(5.0), left = 3.0 - start;
   for (const auto method : all_methods) {
