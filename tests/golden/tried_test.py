@@ -238,10 +238,25 @@ class Tried(tool.ToolTest):
         self.assertAlmostEqual(stick["t"], 13**0.5 / (0.3 * 9.81), delta=1e-7)
         self.assertEqual(result["final"]["x"][2:], [0.0, 0.0])
 
+    def test_an_input_may_move_the_belt_under_a_puck(self):
+        belt = PUCK.replace("vx/speed", "(vx - belt)/speed").replace("hypot(vx", "hypot(vx - belt")
+        belt = belt.replace("[states]", "[controls]\nbelt = 0\n[states]")
+        self.write("belt.csv", "t,belt\n0,0\n2,1\n")
+        for written in ('"if(t > 2, 1, 0)"', '{ file = "belt.csv" }'):
+            result, _, _ = self.simulated(belt + f"inputs = {{ belt = {written} }}\n")
+            self.assertEqual([event["kind"] for event in result["events"]], ["stick", "slip", "stick"])
+            self.assertAlmostEqual(result["events"][2]["t"], 2 + 1 / (0.3 * 9.81), delta=1e-7)
+            self.assertEqual(result["final"]["x"][2:], [1.0, 0.0])
+
     def test_planar_friction_of_another_form_is_named(self):
         _, _, err = self.simulated(PUCK.replace("-mu*9.81", "-(mu + 0.01*vx^2)*9.81"), code=3)
         self.assertIn("a norm of vx, vy vanishes here", err)
         self.assertIn("sqrt(vx^2 + vy^2 + 1e-6)", err)
+
+    def test_finite_elements_say_that_a_norm_vanishes(self):
+        _, _, err = self.simulated(PUCK, "--method", "fesd", "--set", "simulate.max_steps=2000", code=3)
+        self.assertIn("a norm of vx, vy vanishes here", err)
+        self.assertIn('or method = "event"', err)
 
     def test_a_unit_behind_a_number_is_understood(self):
         for written, unit in (("1 [m]", "m"), ("9.81 m/s^2", "m/s^2"), ("300 K # warm", "K")):

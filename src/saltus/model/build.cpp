@@ -73,11 +73,11 @@ class Build {
       for (const auto& entry : quantities_->expressions) scope_.note_names(entry.expression);
     }
     using Step = MaybeError (Build::*)();
-    constexpr Step steps[] = {&Build::names,  &Build::overrides,   &Build::parameters, &Build::controls,
-                              &Build::states, &Build::bounds,      &Build::switching,  &Build::dynamics,
-                              &Build::modes,  &Build::outputs,     &Build::quantities, &Build::events,
-                              &Build::jumps,  &Build::hysteresis,  &Build::mechanics,  &Build::written_friction,
-                              &Build::inputs, &Build::definitions, &Build::freeze};
+    constexpr Step steps[] = {
+        &Build::names,      &Build::overrides,        &Build::parameters,  &Build::controls,   &Build::states,
+        &Build::bounds,     &Build::switching,        &Build::dynamics,    &Build::modes,      &Build::outputs,
+        &Build::quantities, &Build::events,           &Build::jumps,       &Build::hysteresis, &Build::mechanics,
+        &Build::inputs,     &Build::written_friction, &Build::definitions, &Build::freeze};
     for (const Step step : steps) {
       if (auto error = (this->*step)()) return error;
     }

@@ -145,14 +145,17 @@ class FrictionInPlane {
         const SX part = rows(casadi::Slice(), pair), chosen = x_(pair);
         if (SX::depends_on(part, x_)) continue;
         const SX determinant = part(0, 0) * part(1, 1) - part(0, 1) * part(1, 0);
-        if (value(determinant) == 0.0) continue;
+        const double size = std::sqrt(std::abs(value(determinant)));
+        if (!(size > 0.0)) continue;
         const SX inverse =
             SX::blockcat({{part(1, 1), -part(0, 1)}, {-part(1, 0), part(0, 0)}}) / SX::repmat(determinant, 2, 2);
         const SX columns = SX::mtimes(SX::jacobian(twice - once, chosen), inverse);
         if (is_friction(w, columns, along, once, chosen)) {
           f_ = once - SX::mtimes(columns, w);
-          taken_.push_back(
-              {w, columns, fmt::format("friction of {}, {}", names(moving[first]), names(moving[second]))});
+          const auto [controls, inputs] = controls_and_inputs();
+          // w/|w| is the same for w in units of the states, in which tolerances are.
+          taken_.push_back({SX::substitute(w, controls, inputs) / size, columns,
+                            fmt::format("friction of {}, {}", names(moving[first]), names(moving[second]))});
           return true;
         }
       }
@@ -164,8 +167,8 @@ class FrictionInPlane {
 
   /// Whether f - B w/|w| does not depend on the norm, and B w moves w against itself.
   [[nodiscard]] bool is_friction(const SX& w, const SX& columns, const SX& norm, const SX& once, const SX& chosen) {
-    if (SX::depends_on(columns, chosen) || SX::depends_on(columns, norm) || SX::depends_on(w, controls())) return false;
-    if (SX::depends_on(columns, controls())) return false;
+    if (SX::depends_on(columns, chosen) || SX::depends_on(columns, norm)) return false;
+    if (SX::depends_on(columns, controls_and_inputs().first)) return false;
     const SX rest = once - SX::mtimes(columns, w);
     const SX left = f_ - rest - SX::mtimes(columns, w) / norm;
     if (!vanishes(left, f_, norm)) return false;
@@ -175,10 +178,14 @@ class FrictionInPlane {
     return a > 0.0 && d > 0.0 && a * d > mixed * mixed;
   }
 
-  [[nodiscard]] SX controls() const {
-    std::vector<SXElem> symbols{SX::sym("none").scalar()};
-    for (const auto& control : statement_.controls) symbols.push_back(control.symbol);
-    return SX(symbols);
+  /// Of each control its symbol, and what it is in a simulation.
+  [[nodiscard]] std::pair<SX, SX> controls_and_inputs() const {
+    std::vector<SXElem> symbols{SX::sym("none").scalar()}, inputs{SXElem(0.0)};
+    for (const auto& control : statement_.controls) {
+      symbols.push_back(control.symbol);
+      inputs.push_back(control.input ? *control.input : SXElem(control.initial));
+    }
+    return {SX(symbols), SX(inputs)};
   }
 
   /// Whether an expression is the rounding of others at points that share nothing.

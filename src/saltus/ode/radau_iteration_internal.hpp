@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "saltus/ode/radau_steps_internal.hpp"
@@ -45,7 +46,7 @@ auto RadauSteps<Tableau>::iterate(const RadauTrial& trial) -> Outcome {
     if (iteration > 0) {
       const double rate = size / previous;
       if (previous > half_digits) rate_ = std::max(rate_, rate);
-      if (rate < 1.0 && size * rate <= radau_epsilon * (1.0 - rate)) return Outcome::converged;
+      if (rate < 1.0 && next_ <= radau_epsilon * (1.0 - rate)) return Outcome::converged;
       if (rate > 0.5 && size <= stagnation) return Outcome::converged;
       if (rate >= 2.0 || (rate >= 1.0 && iteration > 2)) return Outcome::failed;
       if (rate > renew_rate && !jacobian_here_ && size > stagnation) return Outcome::failed;
@@ -89,12 +90,14 @@ void RadauSteps<Tableau>::solve_systems(double h) {
   systems_.solve_all(right, corrections_);
 }
 
-/// Makes one Newton correction; returns its largest component relative to the size of the component.
+/// Makes one Newton correction; returns its largest component relative to the size of the component. What the next one
+/// will be is seen in each component: where x' = v, a first correction of x says nothing about later ones of v.
 template <class Tableau>
 double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
   solve_systems(trial.h);
   const double floor = natural_size(trial.tolerances);
   double largest = 0.0;
+  next_ = 0.0;
   for (Eigen::Index i = 0; i < n_; ++i) {
     double change = 0.0;
     double size = std::abs(start_[i]) + floor;
@@ -108,7 +111,9 @@ double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
       size = std::max(size, std::abs(z_(i, j)));
       if (!std::isfinite(dz)) return std::numeric_limits<double>::infinity();
     }
-    largest = std::max(largest, change / std::max(size, smallest_normal));
+    const double part = change / std::max(size, smallest_normal), before = std::exchange(work_.changes[i], part);
+    largest = std::max(largest, part);
+    if (part > radau_epsilon) next_ = std::max(next_, part * (part / before));
   }
   return largest;
 }

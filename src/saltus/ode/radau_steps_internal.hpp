@@ -85,6 +85,7 @@ class RadauSteps final : public Radau {
   };
   Factors factors_;
   double rate_ = 0.0;  ///< of convergence of the last iteration
+  double next_ = 0.0;  ///< the largest component that is expected of the next correction
   RadauSystems<stages / 2> systems_;
   double largest_ = 0.0;  ///< component of start_
   std::vector<std::size_t> one_column_;
@@ -92,8 +93,10 @@ class RadauSteps final : public Radau {
   Matrix z_, w_, slopes_;  ///< n x stages: increments, transformed increments, f at the stages
   Matrix corrections_;     ///< of w_
   struct Work {
-    explicit Work(Eigen::Index n) : argument(n), difference_slope(n), right(n), solution(n), all_right(n, last + 1) {}
+    explicit Work(Eigen::Index n)
+        : argument(n), difference_slope(n), right(n), solution(n), changes(n), all_right(n, last + 1) {}
     Vector argument, difference_slope, right, solution;
+    Vector changes;  ///< of the last correction, relative to sizes
     Matrix all_right;
   };
   Work work_;

@@ -1,4 +1,5 @@
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
@@ -7,6 +8,7 @@
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/step_problem.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/model/vanishing_norm.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -52,6 +54,13 @@ fesd_integrator::IntegrationOptions options_of_elements(const SimulateOptions& o
   integration.sensitivities = wanted.sensitivities;
   if (std::holds_alternative<Automatic>(options.output)) integration.straight = straight_share;
   return integration;
+}
+
+/// Elements end where switching functions vanish, and a direction that ends is none: no element is short enough there.
+void add_vanishing_norm(const model::System& system, fesd_integrator::Integration& run) {
+  if (result::is_done(run.status.termination) || !system.contacts.empty()) return;
+  const std::string norm = model::vanishing_norm(system, run.status.time_reached, run.final.x);
+  if (!norm.empty()) run.status.message += norm + ", or method = \"event\", which finds where such friction ends";
 }
 
 result::Result with_run(result::Result frame, fesd_integrator::Integration run) {
@@ -112,6 +121,7 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   const auto observer = step_observer(observers, {integration.from, integration.until});
   auto run = fesd_integrator::integrate(system, *dcs, integration, observer);
   if (!run) return tl::unexpected(run.error());
+  add_vanishing_norm(system, *run);
   auto solution = std::move(run->solution);
   frame = with_run(std::move(frame), std::move(*run));
   if (options.continuous) frame.continuous = continuous(frame.trajectory, system, options, std::move(solution));

@@ -64,8 +64,9 @@ class Contacts {
 
   /// Returns whether positions or velocities differ.
   [[nodiscard]] bool are_moved(const std::vector<double>& x, const std::vector<double>& x_after) const;
-  /// Returns whether a gap has jumped: a closed one is not 0 any more, or an open one is negative.
-  [[nodiscard]] bool gaps_have_jumped(const ContactMoment& moment, const std::vector<double>& x);
+  /// Returns whether a gap has jumped, or a velocity along one: a closed gap is not 0 any more, an open one is negative,
+  /// what sticks moves, or what slips has another speed than it may have.
+  [[nodiscard]] bool have_jumped(const ContactMoment& moment, const std::vector<double>& x);
   /// Opens all contacts, as before a start. Returns what is wrong if bodies overlap.
   [[nodiscard]] std::optional<std::string> begin_anew(const ContactMoment& moment, std::vector<double>& x);
   /// Sets the velocities behind the impacts at a point, if any, and the modes there. `ended` lists the contacts whose
@@ -94,6 +95,8 @@ class Contacts {
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
   /// Returns whether friction of a slip in a plane turns so fast that explicit steps would be short, and many.
   [[nodiscard]] bool turns_fast(const ContactMoment& moment, const std::vector<double>& x);
+  /// Returns the parts of the tolerances that slips in a plane bear, down to the speed at which they are looked at next.
+  [[nodiscard]] ode::Tolerances bearable(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns their names, for messages.
   [[nodiscard]] std::string names(const std::vector<int>& contacts) const;
   /// Forgets impulses, which belong to one instant.

@@ -104,14 +104,19 @@ bool Contacts::are_moved(const std::vector<double>& x, const std::vector<double>
                      std::any_of(system_.velocities.begin(), system_.velocities.end(), differ));
 }
 
-bool Contacts::gaps_have_jumped(const ContactMoment& moment, const std::vector<double>& x) {
+bool Contacts::have_jumped(const ContactMoment& moment, const std::vector<double>& x) {
   if (none()) return false;
-  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
-  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+  const ContactPoint point = point_at(moment.t, moment.alpha, x);
+  const double still = none_below * slowest(moment, point, x);
+  for (int i = 0; i < point.contacts(); ++i) {
     const auto& contact = contacts_[at(i)];
-    if (!contact.has_gap) continue;
     const double gap = values_.gap(i), none = no_gap(i, x);
-    if (gap < -none || (x[at(contact.closed)] != 0.0 && gap > none)) return true;
+    if (contact.has_gap && (gap < -none || (x[at(contact.closed)] != 0.0 && gap > none))) return true;
+    const double speed = contact.has_friction ? point.along(point.velocity, i).norm() : 0.0;
+    const auto mode = mode_of(i, x);
+    if (mode == ContactMode::stick && speed > still) return true;
+    if (mode != ContactMode::slip) continue;
+    if (speed * speed < x[at(contact.speeds)] || speed * speed > x[at(contact.speeds) + 1]) return true;
   }
   return false;
 }

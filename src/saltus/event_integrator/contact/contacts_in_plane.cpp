@@ -76,6 +76,31 @@ bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>
   });
 }
 
+/// The velocity of a slip may be the difference of larger ones, as on a belt, and errors of a step are relative to
+/// these: a step whose errors are as large as the slip runs through its end unseen.
+ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vector<double>& x) {
+  constexpr double part_of_slip = 0.1;
+  ode::Tolerances parts{1.0, 1.0};
+  const auto modes = modes_at(x).modes;
+  if (!contains(modes, ContactMode::slip)) return parts;
+  const ContactPoint point = point_at(moment.t, moment.alpha, x);
+  for (int i = 0; i < point.contacts(); ++i) {
+    if (modes[at(i)] != ContactMode::slip) continue;
+    const double wanted = std::sqrt(x[at(contacts_[at(i)].speeds)]);
+    for (int k = 0; k < 2; ++k) {
+      double terms = 0.0, slope = 0.0;
+      for (std::size_t state = 0; state < system_.velocities.size(); ++state) {
+        const double weight = std::abs(values_.rows(point.tangent_row(i, k), index(state)));
+        terms += weight * std::abs(x[at(system_.velocities[state])]);
+        slope += weight;
+      }
+      parts.rtol = std::min(parts.rtol, part_of_slip * wanted / (moment.tolerances.rtol * terms));
+      parts.atol = std::min(parts.atol, wanted / (moment.tolerances.atol * slope));
+    }
+  }
+  return parts;
+}
+
 /// Gives it a slip of this velocity, its gap as it is.
 void Contacts::set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity,
                         std::vector<double>& x) {

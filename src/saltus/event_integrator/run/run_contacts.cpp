@@ -32,7 +32,7 @@ std::vector<int> slid_on_between_bounces(const evaluation::ModelKernel& kernel, 
 
 }  // namespace
 
-ContactMoment Run::contact_moment() const { return {here_.t, here_.state.alpha, here_.time_scale, tolerances_.step()}; }
+ContactMoment Run::contact_moment() const { return {here_.t, here_.state.alpha, here_.time_scale, tolerances_.mode()}; }
 
 /// Whether the jumps of this time were none: a slip in a plane goes on as it was.
 bool Run::only_slips_on() const {
@@ -49,6 +49,7 @@ bool Run::begin_contacts() {
     fail(Termination::outside_class, std::move(*problem));
     return false;
   }
+  limit_beside_rest();
   if (const auto jump = contacts_.jump_to_tell(here_.x)) {
     ExecutedJump& executed = cascade_.executed().append();
     executed.x = before;
@@ -71,6 +72,22 @@ bool Run::begin_contacts_anew() {
   return true;
 }
 
+/// Whether what jumps here, a gap or the velocity of a belt, makes contacts begin anew. Their event is told here.
+bool Run::contacts_jump() {
+  if (!contacts_.have_jumped(contact_moment(), here_.x)) return false;
+  const auto x_before = here_.x;
+  if (!begin_contacts_anew()) return true;
+  if (cascade_.executed().empty()) {
+    ExecutedJump& executed = cascade_.executed().append();
+    executed.x = x_before;
+    executed.jump = switching_context_.system.contacts.contacts.front().jump;
+    executed.x_after = here_.x;
+    executed.unique = contacts_.is_determined();
+  }
+  cascade_.read_user_signs();
+  return true;
+}
+
 /// What puts the state on closed gaps moves it off those that have been located beside them: no body is in another one.
 void Run::put_on_gaps(const Located& located) {
   const auto touching = contacts_.with_jumps([&](int jump) {
@@ -88,8 +105,18 @@ bool Run::move_contacts() {
   auto problem = contacts_.resolve(contact_moment(), ended, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   for (const int jump : contacts_.last_bounces()) event_.last_bounces.push_back(jump);
-  if (!problem) choose_method();
-  return !problem;
+  if (problem) return false;
+  limit_beside_rest();
+  choose_method();
+  return true;
+}
+
+/// Slips in a plane that are slow among fast velocities.
+void Run::limit_beside_rest() {
+  if (contacts_.none()) return;
+  ode::Tolerances parts = contacts_.bearable(contact_moment(), here_.x);
+  parts.rtol = std::max(parts.rtol, std::min(1.0, tolerances_.smallest_part()));
+  tolerances_.limit(StepTolerances::Reason::slips, parts);
 }
 
 /// Steps through the beginning of a slip in a plane are implicit.
@@ -129,6 +156,7 @@ void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x
   for (const int j : slid_on) here_.state.alpha[at(j)] = event_.before.alpha[at(j)];  // what holds it opens a contact
   auto problem = contacts_.settle(contact_moment(), limit.events, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
+  limit_beside_rest();
   const auto accumulated = [&] {
     recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},
                           "the intervals of these impacts shrink geometrically: the gaps close in their limit");

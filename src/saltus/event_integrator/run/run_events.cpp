@@ -284,8 +284,17 @@ Run::Step Run::handle(const Located& located) {
   return depart(arrival);
 }
 
-/// User events behind a change of mode, and jumps: their conditions may depend on selections, too.
+/// User events behind a change of mode, and jumps: their conditions may depend on selections, too. Contacts begin anew
+/// where a velocity along them does, as that of a belt.
 void Run::follow_change_of_mode() {
+  if (here_.state.mode != event_.before.mode) {
+    const ModeState before = here_.state;
+    const auto x_before = here_.x;
+    if (contacts_jump()) {
+      if (outcome_.running) static_cast<void>(jump(before, x_before));
+      return;
+    }
+  }
   if (!jumps_.none() && here_.state.mode != event_.before.mode) cascade_.leave_guards(event_.transition.zero_order);
   fire_user_events(here_.x, event_.before);
   if (!outcome_.running || jumps_.none()) return;

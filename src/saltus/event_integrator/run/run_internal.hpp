@@ -150,6 +150,7 @@ class Run {
   void note_switch();
   void limit_beside_coalescence();
   void limit_beside_zeros(double h);
+  void limit_beside_rest();
   void accumulate_switches();
   [[nodiscard]] std::optional<SeriesLimit> unresolved_here() const;
   void go_on_from_unresolved();
@@ -174,6 +175,7 @@ class Run {
   [[nodiscard]] bool only_slips_on() const;
   bool begin_contacts();
   [[nodiscard]] bool begin_contacts_anew();
+  [[nodiscard]] bool contacts_jump();
   void put_on_gaps(const Located& located);
   bool move_contacts();
   void choose_method();

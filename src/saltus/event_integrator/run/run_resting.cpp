@@ -89,14 +89,12 @@ bool Run::change_resting_with_cells() {
   return resting.surfaces != here_.state.resting;
 }
 
-/// Whether a jump of values has moved the zero of a guard at rest, or a gap, away from the state: a table that drops.
-/// The guards are free then, and on the side where they are; contacts begin anew.
+/// Whether a jump of values has moved the zero of a guard at rest, or a contact, away from the state: a table that
+/// drops, a belt that gets another speed. The guards are free then, and on the side where they are; contacts begin
+/// anew.
 bool Run::leaves_resting_with_cells() {
   if (event_.cell_change != CellChange::jump) return false;
-  if (contacts_.gaps_have_jumped(contact_moment(), here_.x)) {
-    if (begin_contacts_anew()) cascade_.read_user_signs();
-    return true;
-  }
+  if (contacts_jump()) return true;
   if (holding_.guards().empty()) return false;
   std::vector<double> values(at(kernel_.event_functions())), magnitude(values.size()), slope(values.size());
   kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), values.data());

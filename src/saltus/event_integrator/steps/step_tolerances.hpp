@@ -18,6 +18,7 @@ class StepTolerances {
     coalescence,  ///< the root of sliding selections is near another one
     cycles,       ///< cycles of switches contract
     zeros,        ///< a function of which the field has a root is near zero
+    slips,        ///< a slip in a plane is slower than what it is the difference of
     local,        ///< switches are located on the dense output, and states go on from there (LocalSteps)
   };
 
@@ -37,7 +38,7 @@ class StepTolerances {
  private:
   static constexpr ode::Tolerances unlimited{1.0, 1.0};
   ode::Tolerances wanted_, mode_, step_;
-  std::array<ode::Tolerances, 4> parts_{unlimited, unlimited, unlimited, unlimited};  ///< by reason
+  std::array<ode::Tolerances, 5> parts_{unlimited, unlimited, unlimited, unlimited, unlimited};  ///< by reason
 };
 
 }  // namespace saltus::event_integrator
