@@ -118,6 +118,25 @@ gap = "y0"
                 _, frozen = self.assert_agree(spring, delta, "--set", f"simulate.fesd.stages={stages}")
                 self.assertLess(frozen["statistics"]["steps"], 1000)
 
+    def test_a_body_leaves_a_round_hill(self):
+        hill = PLANE.format(x=0, z=1, vx=1, vz=0, mechanics='potential = "9.81*z"', contact='gap = "x^2 + z^2 - 1"',
+                            until=0.627)
+        for steps in (100, 200):
+            _, frozen = self.assert_agree(hill, 1e-8, "--set", "simulate.fesd.stages=3", "--set",
+                                          f"simulate.fesd.steps={steps}")
+            self.assertAlmostEqual(frozen["events"][0]["x_after"][1], 2 / 3 + 1 / (3 * 9.81), delta=1e-9)
+
+    def test_a_block_comes_to_rest_in_a_round_bowl(self):
+        bowl = PLANE.format(x=math.sin(1), z=-math.cos(1), vx=0, vz=0, mechanics='potential = "9.81*z"', until=6,
+                            contact='gap = "0.5*(1 - x^2 - z^2)"\ntangent = { x = "-z", z = "x" }\nfriction = 0.2')
+        for steps, delta in ((40, 1e-5), (100, 1e-7)):
+            frozen = self.simulated(bowl, "fesd", "--set", "simulate.fesd.stages=3", "--set",
+                                    f"simulate.fesd.steps={steps}")
+            # Integrated in the angle with rtol 1e-12.
+            self.assertAlmostEqual(frozen["final"]["x"][0], 0.0470137806, delta=delta)
+            self.assertAlmostEqual(frozen["events"][-1]["t"], 2.0291623058, delta=delta)
+            self.assertEqual(frozen["events"][-1]["kind"], "stick")
+
 
 if __name__ == "__main__":
     tool.main()
