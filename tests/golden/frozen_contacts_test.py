@@ -137,6 +137,16 @@ gap = "y0"
             self.assertAlmostEqual(frozen["events"][-1]["t"], 2.0291623058, delta=delta)
             self.assertEqual(frozen["events"][-1]["kind"], "stick")
 
+    def test_one_stage_needs_no_more_evaluations_per_step(self):
+        slope = PLANE.format(x=0, z=0, vx=0, vz=0, mechanics='potential = "9.81*z"', until=1,
+                             contact=f'gap = "z*{math.cos(0.6)} + x*{math.sin(0.6)}"\nfriction = 0.3\n'
+                                     f"tangent = {{ x = {math.cos(0.6)}, z = {-math.sin(0.6)} }}")
+        rate = 9.81 * (math.sin(0.6) - 0.3 * math.cos(0.6))
+        frozen = self.simulated(slope, "fesd", "--set", "simulate.fesd.stages=1")
+        self.assertAlmostEqual(frozen["final"]["x"][2], rate * math.cos(0.6), delta=1e-9)
+        counts = frozen["statistics"]
+        self.assertLess(counts["rhs_evaluations"], 60 * counts["steps"])
+
 
 if __name__ == "__main__":
     tool.main()
