@@ -1,10 +1,28 @@
 """Several contacts at once where time stands still: the method fesd. Event-driven runs are the truth."""
 
+import math
+
 import time_freezing_test
 import tool
 
 EXAMPLES = tool.SOURCE / "examples/contacts"
 FINE = ("--set", "simulate.fesd.stages=3", "--set", "simulate.fesd.steps=200")
+
+PLANE = time_freezing_test.HEAD + """[states]
+x = {x}
+z = {z}
+vx = {vx}
+vz = {vz}
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+{mechanics}
+[[contacts]]
+name = "c"
+{contact}
+[simulate]
+until = {until}
+"""
 
 
 def forced(name, force, horizon):
@@ -73,6 +91,61 @@ gap = "y0"
             self.assertAlmostEqual(expected["t"], found["t"], delta=1e-8)
         for expected, found in zip(event["final"]["x"], frozen["final"]["x"]):
             self.assertAlmostEqual(expected, found, delta=1e-8)
+
+    def test_what_bounces_is_held_on_a_slope(self):
+        # Of the gap and its rate one equation holds two selections; the clock alone tells which weights they have.
+        for a in (0.2, 0.3, 0.4, 0.9):
+            slope = PLANE.format(x=0, z=0, vx=2 * math.cos(a), vz=2 * math.sin(a), mechanics='potential = "9.81*z"',
+                                 contact=f'gap = "z*{math.cos(a)} - x*{math.sin(a)}"\nrestitution = 0.9', until=1)
+            way, speed = 2 - 0.5 * 9.81 * math.sin(a), 2 - 9.81 * math.sin(a)
+            for stages in (2, 3):
+                with self.subTest(a=a, stages=stages):
+                    frozen = self.simulated(slope, "fesd", "--set", f"simulate.fesd.stages={stages}")
+                    expected = (way * math.cos(a), way * math.sin(a), speed * math.cos(a), speed * math.sin(a))
+                    for value, found in zip(expected, frozen["final"]["x"]):
+                        self.assertAlmostEqual(value, found, delta=1e-10)
+                    self.assertEqual((frozen["events"], frozen["final"]["contact_modes"]), ([], ["closed"]))
+                    self.assertLess(frozen["statistics"]["rejected"], 10)
+
+    def test_what_bounces_is_held_with_a_speed_that_is_zero_but_for_roundings(self):
+        spring = PLANE.format(
+            x=0, z=0, vx=-1.775875111177648, vz=0.6744108353881114, until=1.5,
+            mechanics="mass = [[1.8986452924415897, -0.06067651611389455], [-0.06067651611389455, 1.1637097537834817]]\n"
+                      'force = { vx = "-0.521 - 8.345*x", vz = -7.634 }',
+            contact='gap = "0.3797625357454809*x + z"\nrestitution = 0.9')
+        for stages, delta in ((2, 1e-5), (3, 1e-8), (5, 1e-8)):
+            with self.subTest(stages=stages):
+                _, frozen = self.assert_agree(spring, delta, "--set", f"simulate.fesd.stages={stages}")
+                self.assertLess(frozen["statistics"]["steps"], 1000)
+
+    def test_a_body_leaves_a_round_hill(self):
+        hill = PLANE.format(x=0, z=1, vx=1, vz=0, mechanics='potential = "9.81*z"', contact='gap = "x^2 + z^2 - 1"',
+                            until=0.627)
+        for steps in (100, 200):
+            _, frozen = self.assert_agree(hill, 1e-8, "--set", "simulate.fesd.stages=3", "--set",
+                                          f"simulate.fesd.steps={steps}")
+            self.assertAlmostEqual(frozen["events"][0]["x_after"][1], 2 / 3 + 1 / (3 * 9.81), delta=1e-9)
+
+    def test_a_block_comes_to_rest_in_a_round_bowl(self):
+        bowl = PLANE.format(x=math.sin(1), z=-math.cos(1), vx=0, vz=0, mechanics='potential = "9.81*z"', until=6,
+                            contact='gap = "0.5*(1 - x^2 - z^2)"\ntangent = { x = "-z", z = "x" }\nfriction = 0.2')
+        for steps, delta in ((40, 1e-5), (100, 1e-7)):
+            frozen = self.simulated(bowl, "fesd", "--set", "simulate.fesd.stages=3", "--set",
+                                    f"simulate.fesd.steps={steps}")
+            # Integrated in the angle with rtol 1e-12.
+            self.assertAlmostEqual(frozen["final"]["x"][0], 0.0470137806, delta=delta)
+            self.assertAlmostEqual(frozen["events"][-1]["t"], 2.0291623058, delta=delta)
+            self.assertEqual(frozen["events"][-1]["kind"], "stick")
+
+    def test_one_stage_needs_no_more_evaluations_per_step(self):
+        slope = PLANE.format(x=0, z=0, vx=0, vz=0, mechanics='potential = "9.81*z"', until=1,
+                             contact=f'gap = "z*{math.cos(0.6)} + x*{math.sin(0.6)}"\nfriction = 0.3\n'
+                                     f"tangent = {{ x = {math.cos(0.6)}, z = {-math.sin(0.6)} }}")
+        rate = 9.81 * (math.sin(0.6) - 0.3 * math.cos(0.6))
+        frozen = self.simulated(slope, "fesd", "--set", "simulate.fesd.stages=1")
+        self.assertAlmostEqual(frozen["final"]["x"][2], rate * math.cos(0.6), delta=1e-9)
+        counts = frozen["statistics"]
+        self.assertLess(counts["rhs_evaluations"], 60 * counts["steps"])
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "compiled.hpp"
+#include "saltus/fesd_integrator/decide/transition.hpp"
 #include "saltus/fesd_integrator/element/element.hpp"
 
 namespace saltus::fesd_integrator {
@@ -37,12 +38,51 @@ TEST(Rests, AGapRestsOnItsRate) {
   rests.find({0.0, x, nullptr, 1.0}, model.facts.parts, {0, 1});
   EXPECT_EQ(rests.governor(0), 1);
   EXPECT_EQ(rests.governor(1), -1);
-  EXPECT_EQ(rests.resting({-1, 0}), Modes{0});
-  EXPECT_TRUE(rests.resting({-1, 1}).empty());
+  const auto resting = [&](const Modes& modes) {
+    ActiveSet set = model.set(modes);
+    rests.put_into(set);
+    return set.resting();
+  };
+  EXPECT_EQ(resting({-1, 0}), Modes{0});
+  EXPECT_TRUE(resting({-1, 1}).empty());
   for (const Modes& modes : {Modes{1, 1}, Modes{-1, -1}, Modes{-1, 0}}) EXPECT_TRUE(rests.allow({0, 1}, modes));
   for (const Modes& modes : {Modes{1, -1}, Modes{-1, 1}, Modes{1, 0}, Modes{0, 0}, Modes{0, 1}}) {
     EXPECT_FALSE(rests.allow({0, 1}, modes));
   }
+}
+
+TEST(Rests, WhatActsOnBothSidesOfARateHoldsIt) {
+  // A ball in frozen time: y is how deep it is in the ground that stops it, and then drives it back with less force.
+  model::Builder builder("ball");
+  const SX z = builder.state("z", {0.0}), v = builder.state("v", {0.0}), y = builder.state("y", {0.0});
+  const SX open = builder.step(builder.switching("gap", z + y)), opens = builder.step(builder.switching("rate", v));
+  builder.dynamics("z", v * open);
+  builder.dynamics("v", -10.0 * open + 100.0 * (1.0 - open) * (1.0 - 0.75 * opens));
+  builder.dynamics("y", v * (1.0 - open));
+  const Compiled model(builder);
+  Rests rests(model.kernel);
+  const std::vector<double> at_rest{0.0, 0.0, 0.0};
+  rests.find({0.0, at_rest, nullptr, 1.0}, model.facts.parts, {0, 1});
+  EXPECT_EQ(rests.governor(0), 1);
+  for (const Modes& modes : {Modes{1, 1}, Modes{-1, -1}, Modes{0, 0}}) EXPECT_TRUE(rests.allow({0, 1}, modes));
+  for (const Modes& modes : {Modes{1, -1}, Modes{-1, 0}, Modes{1, 0}, Modes{0, 1}}) {
+    EXPECT_FALSE(rests.allow({0, 1}, modes));
+  }
+  ActiveSet set = model.set({0, 0});
+  rests.put_into(set);
+  EXPECT_EQ(set.resting(), Modes{0});
+  ASSERT_EQ(set.sliding().size(), 1U);
+  EXPECT_EQ(set.sliding()[0].selection, 0);
+  EXPECT_EQ(set.sliding()[0].surface, 1);
+  EXPECT_EQ(set.conditions().size(), 2U);
+  ElementSolver solver(model.kernel, tableau(discretization::TableauFamily::radau_iia, 2));
+  const auto found = Transition(model.kernel, model.facts.parts, solver)
+                         .continuations({.x = at_rest, .size = 1.0, .trial_length = 1e-3});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().set.modes(), (Modes{0, 0}));
+  EXPECT_TRUE(found.front().determined);
+  // 10 a = 100 (1 - a) (1 - 0.75 / 2)
+  EXPECT_NEAR(found.front().selections[0], 6.25 / 7.25, 1e-12);
 }
 
 TEST(Rests, WhatActsOnItsOwnDoesNotRest) {

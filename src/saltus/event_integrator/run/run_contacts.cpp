@@ -82,7 +82,7 @@ bool Run::contacts_jump() {
     executed.x = x_before;
     executed.jump = switching_context_.system.contacts.contacts.front().jump;
     executed.x_after = here_.x;
-    executed.unique = contacts_.is_determined();
+    executed.why_open = contacts_.why_open();
   }
   cascade_.read_user_signs();
   return true;

@@ -64,9 +64,9 @@ bool Rests::follows(int j, int r, double size) const {
   return of_other > 0.0 && rest.cwiseAbs().maxCoeff() <= rounding * slope.cwiseAbs().maxCoeff();
 }
 
-/// The only side of `of` on which the selection of `other` acts on nothing; 0 if there is none.
-int Rests::idle_side(const Place& place, int of, int other) {
-  int idle = 0;
+/// The sides of `of` on which the selection of `other` acts on nothing.
+std::vector<int> Rests::idle_sides(const Place& place, int of, int other) {
+  std::vector<int> idle;
   for (const int side : {1, -1}) {
     selections_.assign(kernel_.selections(), 0.5);
     selections_[at(of)] = side > 0 ? 1.0 : 0.0;
@@ -74,7 +74,7 @@ int Rests::idle_side(const Place& place, int of, int other) {
     bool acts = false;
     visit_column(ahead_.pattern->f_selection, ahead_.f_selection, at(other),
                  [&](std::size_t, double value) { acts = acts || value != 0.0; });
-    if (!acts) idle = idle == 0 ? side : 0;
+    if (!acts) idle.push_back(side);
   }
   return idle;
 }
@@ -98,10 +98,10 @@ void Rests::find(const Place& place, std::span<const Part> parts, const std::vec
     if (r != steps.end()) pairs.emplace_back(j, *r);
   }
   for (const auto& [j, r] : pairs) {
-    const int side = idle_side(place, j, r);
-    if (side == 0 || idle_side(place, r, j) != side) continue;
+    const auto idle = idle_sides(place, j, r), own = idle_sides(place, r, j);
+    if (idle.size() != 1 || (!own.empty() && own != idle)) continue;
     governors_[at(j)] = r;
-    sides_[at(j)] = -side;
+    sides_[at(j)] = own.empty() ? 0 : -idle.front();
   }
 }
 
@@ -120,12 +120,17 @@ bool Rests::allow(const std::vector<int>& members, std::span<const int> modes) c
   return true;
 }
 
-std::vector<int> Rests::resting(const std::vector<int>& modes) const {
+void Rests::put_into(ActiveSet& set) const {
   std::vector<int> list;
+  const std::vector<int>& modes = set.modes();
   for (std::size_t j = 0; j < governors_.size(); ++j) {
-    if (governors_[j] >= 0 && modes[j] != 0 && modes[at(governors_[j])] == 0) list.push_back(static_cast<int>(j));
+    if (governors_[j] < 0 || modes[at(governors_[j])] != 0) continue;
+    if ((modes[j] == 0) == (sides_[j] == 0)) list.push_back(static_cast<int>(j));
   }
-  return list;
+  for (const int j : list) {
+    if (sides_[at(j)] == 0) set.hold(j, governors_[at(j)]);
+  }
+  set.set_resting(std::move(list));
 }
 
 }  // namespace saltus::fesd_integrator

@@ -15,6 +15,9 @@ namespace saltus::fesd_integrator {
 /// where selections act by (1 - alpha_j)(1 - alpha_r) only, as those of a gap and its rate do in frozen time (or by
 /// the same with alpha for 1 - alpha). So psi_j leaves zero to the side of psi_r. While psi_r slides, psi_j rests: the
 /// side where alpha_r acts is the only one that says anything, and the field there has one selection for one equation.
+///
+/// Where alpha_j acts on both sides of psi_r, as the gap of a contact with restitution does, it is the one selection
+/// that keeps psi_r = 0: alpha_r acts beside it, and no equation is left for it.
 class Rests {
  public:
   struct Place {
@@ -33,13 +36,13 @@ class Rests {
   [[nodiscard]] bool any() const;
   /// Returns whether the first of these functions may be in these modes just behind the point.
   [[nodiscard]] bool allow(const std::vector<int>& members, std::span<const int> modes) const;
-  /// Returns the functions that rest in these modes.
-  [[nodiscard]] std::vector<int> resting(const std::vector<int>& modes) const;
+  /// Tells a set of these modes what rests in it.
+  void put_into(ActiveSet& set) const;
 
  private:
   void find_slopes(const Place& place);
   [[nodiscard]] bool follows(int j, int r, double size) const;
-  [[nodiscard]] int idle_side(const Place& place, int of, int other);
+  [[nodiscard]] std::vector<int> idle_sides(const Place& place, int of, int other);
 
   const discretization::StageKernel& kernel_;
   discretization::StageValues values_, ahead_, behind_;

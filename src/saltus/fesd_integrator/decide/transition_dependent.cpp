@@ -41,7 +41,7 @@ Gradients gradients_of(const discretization::StageValues& values, const std::vec
 
 ActiveSet Transition::make_set(const Decision& decision, std::vector<int> modes) {
   ActiveSet set(parts_, std::move(modes));
-  set.set_resting(rests_.resting(set.modes()));
+  rests_.put_into(set);
   if (!depends_ || set.sliding().size() < 2) return set;
   std::vector<double> selections(kernel_.selections());
   const std::vector<double> middle(set.sliding().size(), 0.5);

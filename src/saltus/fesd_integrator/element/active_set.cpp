@@ -17,7 +17,7 @@ ActiveSet::ActiveSet(std::span<const Part> parts, std::vector<int> modes)
         reference = j;
         fixed_[at(j)] = 1.0;
       } else if (slides) {
-        sliding_.push_back({j, reference});
+        sliding_.push_back({j, reference, j});
       }
       if (!part.simplex && !slides) fixed_[at(j)] = modes_[at(j)] > 0 ? 1.0 : 0.0;
     }
@@ -72,6 +72,15 @@ void ActiveSet::set_resting(std::vector<int> functions) {
   std::erase_if(conditions_, [&](const Condition& condition) {
     return condition.kind == Condition::Kind::side && contains(resting_, condition.selection);
   });
+}
+
+void ActiveSet::hold(int selection, int surface) {
+  for (Sliding& entry : sliding_) {
+    if (entry.selection == selection) entry.surface = surface;
+  }
+  std::erase_if(sliding_, [&](const Sliding& entry) { return entry.selection == surface; });
+  std::erase_if(conditions_, [&](const Condition& condition) { return condition.selection == surface; });
+  fixed_[at(surface)] = 0.5;
 }
 
 double ActiveSet::side(int selection, const double* indicator) const {

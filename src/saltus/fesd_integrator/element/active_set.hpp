@@ -29,6 +29,7 @@ struct Part {
 struct Sliding {
   int selection = 0;
   int reference = -1;  ///< of a simplex: the active region whose weight is 1 less the others; -1 for a step selection
+  int surface = 0;     ///< whose indicator it keeps: its own, but for ActiveSet::hold
 };
 
 /// Holds a sign that holds as long as the active set does: value >= 0.
@@ -64,6 +65,9 @@ class ActiveSet {
   /// nothing asks for their side. They belong to a place, too.
   [[nodiscard]] const std::vector<int>& resting() const { return resting_; }
   void set_resting(std::vector<int> functions);
+  /// Lets a step selection that slides keep the surface of another one, whose own selection stays in the middle: both
+  /// would be two selections for one equation.
+  void hold(int selection, int surface);
   [[nodiscard]] bool operator==(const ActiveSet& other) const { return modes_ == other.modes_; }
 
   /// Finds all selections from the unknown ones (one per entry of sliding()).
@@ -76,7 +80,7 @@ class ActiveSet {
   /// (`stride` apart).
   [[nodiscard]] double surface(std::size_t k, const double* indicator, std::size_t stride = 1) const {
     const Sliding& entry = sliding_[k];
-    const double own = indicator[static_cast<std::size_t>(entry.selection) * stride];
+    const double own = indicator[static_cast<std::size_t>(entry.surface) * stride];
     return entry.reference < 0 ? own : indicator[static_cast<std::size_t>(entry.reference) * stride] - own;
   }
   /// Returns the value of a condition of kind `side`: positive on the side of this set; also for rates of the

@@ -77,7 +77,7 @@ void ElementEquations::find_directions(Index stage, const discretization::StageV
 void ElementEquations::surface_row(const ActiveSet& active, std::size_t k, const discretization::StageValues& at) {
   const ConstMatrix psi_x(at.indicator_x.data(), n_psi_, n_x_);
   const Sliding& entry = active.sliding()[k];
-  row_ = psi_x.row(entry.selection).transpose();
+  row_ = psi_x.row(entry.surface).transpose();
   if (entry.reference >= 0) row_ = psi_x.row(entry.reference).transpose() - row_;
 }
 

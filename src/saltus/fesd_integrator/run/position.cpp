@@ -21,7 +21,7 @@ Point& Position::left_end() {
 std::vector<int> Position::on_surfaces() const {
   std::vector<int> list = set_.resting();
   for (const Sliding& entry : set_.sliding()) {
-    list.push_back(entry.selection);
+    list.push_back(entry.surface);
     if (entry.reference >= 0) list.push_back(entry.reference);
   }
   return list;
