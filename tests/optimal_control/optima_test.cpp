@@ -3,7 +3,6 @@
 #include <cmath>
 #include <string>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
@@ -109,81 +108,6 @@ terminal_cost = "5*(x - 0.6)^2 + v^2"
     EXPECT_NEAR(result.optimization->u[0][0], 10.90247, 1e-3) << form;
     EXPECT_NEAR(result.optimization->u[1][0], 8.61512, 1e-3) << form;
   }
-}
-
-/// A ball that rises until t = 2: its rate may change its sign before the horizon ends. The problem is a quadratic one
-/// in the two controls; with v(2) = 0 J = 0.863176.
-TEST(OcpOptima, ARateMayChangeItsSignWhereTheHorizonEnds) {
-  const auto result = optimized(stated(R"toml(
-[model]
-name = "rising"
-[states]
-x = 0.201
-v = 0.233
-[controls]
-u = { lower = -8, upper = 8 }
-[mechanics]
-positions = ["x"]
-velocities = ["v"]
-force = { v = "u - 3" }
-[[contacts]]
-name = "ground"
-gap = "x"
-restitution = 0
-[optimize]
-horizon = 2
-control_intervals = 2
-running_cost = "0.05*u^2"
-terminal_cost = "10*(x - 1)^2 + 0.5*v^2"
-stages = 2
-reformulation = "stewart"
-)toml"));
-  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
-  EXPECT_NEAR(result.optimization->objective, 0.8507274, 1e-6);
-}
-
-/// The least J of a block that slides, sticks and is pushed again, by the closed form of its motion.
-void expect_block(double mass, double friction, double horizon, const std::string& rest, double optimum) {
-  const auto result = optimized(stated(fmt::format(R"toml(
-[model]
-name = "block"
-[states]
-x = 0
-v = 1
-z = 0
-vz = 0
-[controls]
-u = {{ lower = -3, upper = 3 }}
-[mechanics]
-positions = ["x", "z"]
-velocities = ["v", "vz"]
-mass = [["{0}", "0"], ["0", "1"]]
-force = {{ v = "u", vz = "-{0}" }}
-[[contacts]]
-name = "table"
-gap = "z"
-tangent = {{ x = 1 }}
-friction = {1}
-[optimize]
-horizon = {2}
-control_intervals = 2
-running_cost = "0.05*u^2"
-stages = 2
-{3}
-)toml",
-                                                   mass, friction, horizon, rest)));
-  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
-  EXPECT_NEAR(result.optimization->objective, optimum, 1e-6);
-}
-
-/// J = 0.2284 where the block stops exactly at the end of the first interval, and does not stick before.
-TEST(OcpOptima, BlocksStopBeforeAnIntervalEnds) {
-  expect_block(2, 0.649, 2, "terminal_cost = \"10*(x - 0.3)^2\"\n", 0.2048667);
-}
-
-/// J = 0.0974 where the block rests at the edge of stick, and does not go back.
-TEST(OcpOptima, BlocksAreNotHeldAtTheEdgeOfStick) {
-  expect_block(1, 0.458, 3, "terminal_cost = \"10*(x - 0.3)^2 + 0.5*v^2\"\nreformulation = \"stewart\"\n", 0.0442437);
 }
 
 /// A mass at rest: |v| v does not depend on which side of v = 0 it is. With SciPy J = 0.0473970; held at rest

@@ -125,8 +125,8 @@ class OcpProblem final : public mpcc::Problem {
   ///   whose lengths are at their bound.
   [[nodiscard]] std::vector<mpcc::BranchMove> equal_branches(const std::vector<mpcc::ActiveSide>& sides,
                                                              mpcc::ConstVectorView w) const override;
-  /// Returns intervals whose number of elements holds the objective up. One that is as long as it may be presses
-  /// against that, or the last equal_branches() has found a motion for which there is none left.
+  /// Returns intervals whose number of elements holds the objective up: one presses against its largest length, or the
+  /// last equal_branches() has found a motion for which there is none left.
   /// @param upper  multipliers of upper bounds at w
   [[nodiscard]] std::vector<int> crowded_intervals(mpcc::ConstVectorView w, const Eigen::VectorXd& upper,
                                                    double tolerance) const;

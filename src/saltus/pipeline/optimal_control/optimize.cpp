@@ -225,7 +225,7 @@ void warn_of_crowded_intervals(const discretization::OcpProblem& problem, const 
   if (crowded.empty()) return;
   observers.on_warning(fmt::format(
       "interval{} {} (from 0 on): another motion from there needs an element more than there is; the certificate is "
-      "that of these elements: try elements = {}",
+      "that of these elements: compare with elements = {}",
       crowded.size() == 1 ? "" : "s", fmt::join(crowded, ", "),
       *std::max_element(options.elements.begin(), options.elements.end()) + 1));
 }
