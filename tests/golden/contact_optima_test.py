@@ -261,6 +261,14 @@ terminal_cost = "x^2"
         self.assertEqual(result["homotopy"][0]["message"], "sides of the start")
         self.assertNotIn("relaxed", {step["phase"] for step in result["homotopy"]})
 
+    def test_what_a_bounce_needs_is_in_the_message(self):
+        bouncing = LANDING.replace('gap = "z"', 'gap = "z"\nrestitution = 0.8')
+        _, err = self.run_tool("optimize", self.write("m.toml", bouncing), "--set", "optimize.mpcc.iteration_limit=20", code=3)
+        self.assertIn("a contact with restitution needs elements = 4 or more", err)
+        _, err = self.run_tool("optimize", self.write("m.toml", bouncing), "--set", "optimize.mpcc.iteration_limit=20", "--set",
+                               "optimize.elements=4", "--set", "optimize.start=simulated", code=3)
+        self.assertNotIn("needs elements", err)
+
     def test_the_closed_loop_goes_through_an_impact(self):
         result = self.optimised(LANDING)
         self.assertEqual(result["outputs"], ["gap(ground)", "force(ground)", "impulse(ground)", "energy"])

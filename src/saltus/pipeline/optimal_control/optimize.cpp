@@ -134,6 +134,21 @@ std::string finer_grid(const OptimizeOptions& options, bool has_missed) {
                      stages > 1 ? "" : fmt::format(", or stages = {}", stages + 1));
 }
 
+/// What an unsolved problem with bounces lacks; empty where it has it.
+std::string advice_on_bounces(const model::Ocp& ocp, const OptimizeOptions& options, result::Termination termination) {
+  using result::Termination;
+  const bool is_unsolved = termination == Termination::infeasible || termination == Termination::not_converged ||
+                           termination == Termination::iteration_limit;
+  const auto& freezing = ocp.system.freezing;
+  const bool bounces = freezing && std::any_of(freezing->contacts.begin(), freezing->contacts.end(),
+                                               [](const auto& contact) { return contact.is_elastic; });
+  const bool has_all = options.start == StartValues::simulated &&
+                       *std::min_element(options.elements.begin(), options.elements.end()) >= 4;
+  if (!is_unsolved || !bounces || has_all) return "";
+  return "; a contact with restitution needs elements = 4 or more, and start = \"simulated\" with time_freezing.a_n "
+         "near its speed divided by the length of an interval";
+}
+
 /// completed only if the other engine agrees.
 void judge(const result::Verification& verification, const OptimizeOptions& options, result::Status& status) {
   const double tolerance = options.verification_tolerance;
@@ -278,7 +293,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   take_point(problem, *solution, found);
   found.statistics.build_seconds = build_seconds;
   result.status.termination = solution->termination;
-  result.status.message = solution->message;
+  result.status.message = solution->message + advice_on_bounces(ocp, options, solution->termination);
 
   const auto read = problem.read(solution->w);
   take_solution(ocp, read, found);
