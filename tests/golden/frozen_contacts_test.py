@@ -27,7 +27,7 @@ until = {until}
 
 def forced(name, force, horizon):
     """An example of [optimize] with a force as a function of t for its control."""
-    text = (EXAMPLES / name).read_text(encoding="utf-8")
+    text = (tool.SOURCE / "models/optima" / name).read_text(encoding="utf-8")
     head = text[:text.index("[optimize]")].replace("u - d*", f"{force} - d*")
     start = head.index("[controls]")
     return head[:start] + head[head.index("[mechanics]"):] + f"[simulate]\nuntil = {horizon}\n"
