@@ -95,8 +95,8 @@ auto RadauSteps<Tableau>::solve(const RadauTrial& trial) -> Outcome {
     w_.setZero();
     outcome = iterate(trial);
   }
-  if (outcome != Outcome::undefined) return outcome;
-  // The domain of f may move with t, and a state that stays behind be outside of it.
+  if (outcome == Outcome::converged) return outcome;
+  // The domain of f may move with t, or what it is steep in, and a state that stays behind be outside of it.
   for (Eigen::Index j = 0; j <= last; ++j) {
     z_.col(j) = Tableau::c[at(j)] * trial.h * Eigen::Map<const Vector>(trial.slope, n_);
   }
