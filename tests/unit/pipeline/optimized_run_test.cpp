@@ -157,7 +157,7 @@ TEST(OptimizedRunTest, SlidingWithControls) {
   model.output("effort", u * u);
   model.output("cost", state);
   Ocp ocp = problem_of(model, 2.0);
-  ocp.user_controls = ocp.user_outputs = 1;
+  ocp.user_controls = ocp.user_outputs = ocp.problem_outputs = 1;
   const auto x = [](double t) { return vector({std::max(0.4 - 0.8 * t, 0.0)}); };
   const auto lambda = [&](double t) { return sides(x(t)[0]); };
   const auto alpha = [](double value) { return [value](double) { return vector({value}); }; };

@@ -12,6 +12,7 @@
 #include "saltus/model/decisions.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
+#include "saltus/pipeline/options/number_list_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
 namespace saltus::pipeline {
