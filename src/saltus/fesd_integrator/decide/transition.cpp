@@ -61,10 +61,9 @@ bool Transition::stands_for(const Option& option, const Option& other, const Gro
   return other.trial == Trial::stays && !(regular && stands_still(other, option, group));
 }
 
-/// Whether an option moves and slides as another one does: what differs has not moved at all in it.
+/// Whether an option moves as another one does, and what differs has not moved at all in it.
 bool Transition::stays_beside(const Option& option, const Option& other, const Group& group) {
-  return option.trial == Trial::stays && are_near(option.motion, other.motion) && stands_still(option, other, group) &&
-         !slides_beside(option, other) && !slides_beside(other, option);
+  return option.trial == Trial::stays && are_near(option.motion, other.motion) && stands_still(option, other, group);
 }
 
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
@@ -268,13 +267,16 @@ std::vector<std::vector<int>> Transition::admissible_of(const Decision& decision
     passed.push_back(std::move(option));
     if (group.dependent) break;
   }
-  std::vector<std::vector<int>> admissible;
+  std::vector<const Option*> kept;
   for (const Option& option : passed) {
-    const auto known = [&](const Option& other) {
-      return stands_for(other, option, group) || (&other < &option && stays_beside(option, other, group));
-    };
-    if (std::none_of(passed.begin(), passed.end(), known)) admissible.push_back(option.pattern);
+    const auto known = [&](const Option& other) { return stands_for(other, option, group); };
+    const auto same = [&](const Option* other) { return stays_beside(option, *other, group); };
+    if (std::none_of(passed.begin(), passed.end(), known) && std::none_of(kept.begin(), kept.end(), same)) {
+      kept.push_back(&option);
+    }
   }
+  std::vector<std::vector<int>> admissible;
+  for (const Option* option : kept) admissible.push_back(option->pattern);
   return admissible;
 }
 
