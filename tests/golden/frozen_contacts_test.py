@@ -105,6 +105,39 @@ gap = "y0"
                     self.assertEqual((frozen["events"], frozen["final"]["contact_modes"]), ([], ["closed"]))
                     self.assertLess(frozen["statistics"]["rejected"], 10)
 
+    def test_what_bounces_is_held_beside_another_contact(self):
+        # Masses couple them: an impact of one pushes the other.
+        bodies = time_freezing_test.HEAD + """[states]
+x = 0
+z = 0
+w = {start}
+vx = 0.8
+vz = 0
+vw = 0
+[mechanics]
+positions = ["x", "z", "w"]
+velocities = ["vx", "vz", "vw"]
+mass = [[2, 0.2, -0.1], [0.2, 2, 0.25], [-0.1, 0.25, 1.5]]
+force = {{ vx = "1 - 3*x", vz = -20, vw = -15 }}
+[[contacts]]
+name = "c"
+gap = "z - 0.3*x^2"
+restitution = 0.7
+[[contacts]]
+name = "d"
+gap = "w"
+restitution = {restitution}
+[simulate]
+until = 0.8
+"""
+        for start, restitution in ((0, 0), (0, 0.6), (0.3, 0.6), (0.3, 0)):
+            with self.subTest(start=start, restitution=restitution):
+                model = bodies.format(start=start, restitution=restitution)
+                event, frozen = (self.simulated(model, method, *more) for method, more in
+                                 (("event", ()), ("fesd", ("--set", "simulate.fesd.stages=3"))))
+                for expected, found in zip(event["final"]["x"], frozen["final"]["x"]):
+                    self.assertAlmostEqual(expected, found, delta=1e-7)
+
     def test_what_bounces_is_held_with_a_speed_that_is_zero_but_for_roundings(self):
         spring = PLANE.format(
             x=0, z=0, vx=-1.775875111177648, vz=0.6744108353881114, until=1.5,
