@@ -92,18 +92,51 @@ gap = "y0"
 
     def test_what_bounces_is_held_on_a_slope(self):
         # Of the gap and its rate one equation holds two selections; the clock alone tells which weights they have.
-        for a in (0.2, 0.3, 0.4, 0.9):
+        for a, restitution in ((0.2, 0.9), (0.3, 0.9), (0.4, 0.9), (0.9, 0.9), (0.4, 1)):
             slope = PLANE.format(x=0, z=0, vx=2 * math.cos(a), vz=2 * math.sin(a), mechanics='potential = "9.81*z"',
-                                 contact=f'gap = "z*{math.cos(a)} - x*{math.sin(a)}"\nrestitution = 0.9', until=1)
+                                 contact=f'gap = "z*{math.cos(a)} - x*{math.sin(a)}"\nrestitution = {restitution}', until=1)
             way, speed = 2 - 0.5 * 9.81 * math.sin(a), 2 - 9.81 * math.sin(a)
             for stages in (2, 3):
-                with self.subTest(a=a, stages=stages):
+                with self.subTest(a=a, restitution=restitution, stages=stages):
                     frozen = self.simulated(slope, "fesd", "--set", f"simulate.fesd.stages={stages}")
                     expected = (way * math.cos(a), way * math.sin(a), speed * math.cos(a), speed * math.sin(a))
                     for value, found in zip(expected, frozen["final"]["x"]):
                         self.assertAlmostEqual(value, found, delta=1e-10)
                     self.assertEqual((frozen["events"], frozen["final"]["contact_modes"]), ([], ["closed"]))
                     self.assertLess(frozen["statistics"]["rejected"], 10)
+
+    def test_what_bounces_is_held_beside_another_contact(self):
+        # Masses couple them: an impact of one pushes the other.
+        bodies = time_freezing_test.HEAD + """[states]
+x = 0
+z = 0
+w = {start}
+vx = 0.8
+vz = 0
+vw = 0
+[mechanics]
+positions = ["x", "z", "w"]
+velocities = ["vx", "vz", "vw"]
+mass = [[2, 0.2, -0.1], [0.2, 2, 0.25], [-0.1, 0.25, 1.5]]
+force = {{ vx = "1 - 3*x", vz = -20, vw = -15 }}
+[[contacts]]
+name = "c"
+gap = "z - 0.3*x^2"
+restitution = 0.7
+[[contacts]]
+name = "d"
+gap = "w"
+restitution = {restitution}
+[simulate]
+until = 0.8
+"""
+        for start, restitution in ((0, 0), (0, 0.6), (0.3, 0.6), (0.3, 0)):
+            with self.subTest(start=start, restitution=restitution):
+                model = bodies.format(start=start, restitution=restitution)
+                event, frozen = (self.simulated(model, method, *more) for method, more in
+                                 (("event", ()), ("fesd", ("--set", "simulate.fesd.stages=3"))))
+                for expected, found in zip(event["final"]["x"], frozen["final"]["x"]):
+                    self.assertAlmostEqual(expected, found, delta=1e-7)
 
     def test_what_bounces_is_held_with_a_speed_that_is_zero_but_for_roundings(self):
         spring = PLANE.format(

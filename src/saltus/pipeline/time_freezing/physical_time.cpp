@@ -198,7 +198,8 @@ class PhysicalTime {
     std::vector<ContactMode> modes;
     for (const auto& contact : freezing_.contacts) {
       // A gap that stays 0 keeps its rate at 0, whatever side the rate's own selection takes.
-      const bool closed = mode_of(contact.normal, mode) <= 0 && mode_of(contact.gap, mode) <= 0;
+      const bool opens = contact.normal.function >= 0 && mode_of(contact.normal, mode) > 0;
+      const bool closed = !opens && mode_of(contact.gap, mode) <= 0;
       const bool sticks = contact.tangent.function >= 0 && mode_of(contact.tangent, mode) == 0;
       modes.push_back(!closed                        ? ContactMode::open
                       : contact.tangent.function < 0 ? ContactMode::closed
