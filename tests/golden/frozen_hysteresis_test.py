@@ -69,6 +69,25 @@ ROOMS = {
 # Motions of their own, and a surface for every value of the hysteresis.
 OTHER_ROOMS = {"a limit", "another limit", "nested"}
 
+# Two of them with thresholds of their own; their regions have sums of both as indicators.
+PAIR = HEAD + """[states]
+y = 0
+[dynamics]
+y = "{rate}"
+[[hysteresis]]
+name = "first"
+input = "{input}"
+on = {first[0]}
+off = {first[1]}
+[[hysteresis]]
+name = "second"
+input = "y"
+on = {second[0]}
+off = {second[1]}
+[simulate]
+until = 6
+"""
+
 
 class FrozenHysteresis(time_freezing_test.FrozenTest):
     def test_automaton_of_nested_thresholds(self):
@@ -94,6 +113,18 @@ class FrozenHysteresis(time_freezing_test.FrozenTest):
     def test_a_surface_with_a_number_is_shown(self):
         _, frozen = self.assert_agree(ROOM.replace("RATE", "12*heating - if(x > 17.5, 2, 0) - 0.5*(x - 15)"), 1e-5)
         self.assertEqual(frozen["events"][0]["surfaces"], ["x-17.5"])
+
+    def test_regions_of_two(self):
+        product = " + ({})*first*second"
+        for rate, wire, first, second in (
+            ("-1.18 + 3.36*first - 1.25*second" + product.format(0.57), "0.5*y + 1", (0.1, 0.3), (1.9, -2.0)),
+            ("1.535 - 4.07*first + 1.22*second" + product.format(-0.706), "-2*y", (1.4, 4.0), (-1.8, -1.0)),
+            ("0.471 - 1.943*first - 1.873*second" + product.format(-0.813), "y", (2.0, -1.3), (-0.3, -0.5)),
+        ):
+            with self.subTest(rate=rate):
+                model = PAIR.format(rate=rate, input=wire, first=first, second=second)
+                for form in ("step", "stewart"):
+                    self.assert_agree(model, 1e-7, "--set", f"simulate.fesd.reformulation={form}")
 
     def test_modes_of_an_automaton(self):
         modes = RELAYS.replace("[dynamics]\n", "", 1).replace('v = "1 - 2*third"\ny = "first + 10*second - 3*third"\n', """

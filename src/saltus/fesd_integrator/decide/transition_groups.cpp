@@ -46,6 +46,8 @@ std::optional<std::vector<int>> Transition::find_zeros(const Decision& decision,
       smallest = std::min(smallest, values_.indicator[at(j)]);
     }
     if (part.simplex && !std::isfinite(smallest)) return std::nullopt;
+    const auto noise = noise_.begin() + part.first;
+    if (part.simplex) std::fill_n(noise, part.count, *std::max_element(noise, noise + part.count));
     const std::size_t begin = members.size();
     std::vector<bool> is_zero(at(part.count));
     const auto value_of = [&](int j) { return values_.indicator[at(j)] - (part.simplex ? smallest : 0.0); };

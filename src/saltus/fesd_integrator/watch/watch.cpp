@@ -20,6 +20,18 @@ double lagrange(const std::vector<double>& points, std::size_t k, double theta) 
   return product;
 }
 
+/// Regions are compared with each other: all of a simplex have the roundings of the largest.
+void share_noise(const ActiveSet& set, std::vector<double>& noise) {
+  const auto n = static_cast<int>(noise.size());
+  for (int j = 0; j < n; ++j) {
+    const int reference = set.reference(j);
+    if (reference >= 0) noise[at(reference)] = std::max(noise[at(reference)], noise[at(j)]);
+  }
+  for (int j = 0; j < n; ++j) {
+    if (set.reference(j) >= 0) noise[at(j)] = noise[at(set.reference(j))];
+  }
+}
+
 /// Roundings of a selection: those of a few operations, amplified by the solution of a small linear system.
 constexpr double selection_noise = 1e-12;
 
@@ -119,6 +131,7 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   // Gradients at the left end give the rounding level; between the ends of an element it is the same.
   kernel_.evaluate(element.t, element.x.data(), selections.data(), held, left_);
   indicator_noise(left_, element.t + element.h, element.size, noise_);
+  share_noise(set, noise_);
   find_left_rates();
   find_errors(element, set, held, selections);
   may_miss_ = false;
