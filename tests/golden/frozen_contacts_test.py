@@ -28,7 +28,7 @@ until = {until}
 def forced(name, force, horizon):
     """An example of [optimize] with a force as a function of t for its control."""
     text = (tool.SOURCE / "models/optima" / name).read_text(encoding="utf-8")
-    head = text[:text.index("[optimize]")].replace("u - d*", f"{force} - d*")
+    head = text[:text.index("[simulate]")].replace("u - d*", f"{force} - d*")
     start = head.index("[controls]")
     return head[:start] + head[head.index("[mechanics]"):] + f"[simulate]\nuntil = {horizon}\n"
 
