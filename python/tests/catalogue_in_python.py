@@ -123,7 +123,8 @@ class _Statement:
         mechanics = dict(self.file.get("mechanics", {}))
         if mechanics:
             positions, velocities = mechanics.pop("positions"), mechanics.pop("velocities")
-            self.builder.mechanics(positions, velocities, **self.all_values(mechanics))
+            words = {key: mechanics.pop(key) for key in ("coriolis",) if key in mechanics}
+            self.builder.mechanics(positions, velocities, **words, **self.all_values(mechanics))
         for entry in self.file.get("contacts", []):
             self.builder.contact(entry["name"], **self.all_values({key: entry[key] for key in entry if key != "name"}))
 

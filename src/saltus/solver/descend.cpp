@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
@@ -54,17 +56,41 @@ class Descent {
   void descend() {
     for (int round = 0; round < largest_rounds; ++round) {
       certify();
-      if (run_.is_over()) return;
-      if (run_.solution.certificate.b_stationary) {
-        if (!move()) return;
-        continue;
-      }
-      if (flip()) continue;
-      if (run_.is_over() || !decide()) return;
+      if (run_.is_over() || !leaves()) break;
     }
+    if (!is_certified()) go_back();
   }
 
  private:
+  /// A branch, and what was found of it.
+  struct Certified {
+    crossover::Branch branch;
+    result::Certificate certificate;
+  };
+
+  /// Whether there is a better branch, which is taken.
+  bool leaves() {
+    if (run_.solution.certificate.b_stationary) return move();
+    if (flip()) return true;
+    return !run_.is_over() && decide();
+  }
+
+  [[nodiscard]] bool is_certified() const {
+    const auto& of = run_.solution.certificate;
+    return of.b_stationary.value_or(false) && of.stationarity <= tolerance();
+  }
+
+  /// What is better by no more than the errors of a point that is not stationary is not better.
+  void go_back() {
+    constexpr double errors = 1e-6;
+    if (!certified_) return;
+    const double best = certified_->branch.objective;
+    if (best - branch().objective > errors * std::max(1.0, std::abs(best))) return;
+    run_.branch = std::move(certified_->branch);
+    certify();
+    run_.solution.certificate = certified_->certificate;
+  }
+
   [[nodiscard]] crossover::Branch& branch() { return *run_.branch; }
   [[nodiscard]] double tolerance() const { return run_.options.tolerance; }
 
@@ -99,11 +125,10 @@ class Descent {
     if (next.report.termination == Termination::iteration_limit) visited_.erase(sides);
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
     // A certified point is not given up for digits of its objective.
-    const auto& of = run_.solution.certificate;
-    const bool is_certified = of.b_stationary.value_or(false) && of.stationarity <= tolerance();
     const double least = tolerance() * std::max(1.0, std::abs(branch().objective));
-    if (is_certified && branch().objective - next.objective < least) {
-      return false;
+    if (is_certified()) {
+      if (branch().objective - next.objective < least) return false;
+      certified_ = {std::move(branch()), run_.solution.certificate};
     }
     run_.branch = std::move(next);
     return true;
@@ -174,6 +199,7 @@ class Descent {
   Run& run_;
   certificate::PairStates states_;
   std::set<std::vector<ActiveSide>> visited_;
+  std::optional<Certified> certified_;  ///< the last one that was left
 };
 
 }  // namespace
