@@ -193,5 +193,19 @@ until = 3
         self.assertIn("an expression of [[events]] or [[jumps]] is not finite beyond t = ", self.stop("x + 5"))
 
 
+class FewStepsTest(ToolTest):
+    def test_every_model_says_that_its_steps_are_too_few(self):
+        listed, _ = self.run_tool("models", code=0)
+        names = [line.split()[0] for line in listed.split("\nof any size")[0].splitlines() if line]
+        self.assertGreater(len(names), 80)
+        methods = {name: ["event"] for name in names} | {"three-windings": ["event", "fesd"], "empty-circle": ["event", "fesd"]}
+        for name, method in ((name, method) for name in names for method in methods[name]):
+            with self.subTest(model=name, method=method):
+                call = [TOOL, "simulate", name, "--method", method, "--set", "simulate.max_steps=5", "--quiet"]
+                done = subprocess.run(call, capture_output=True, text=True, check=False)
+                self.assertIn(done.returncode, (0, 3), done.stderr)
+                self.assertEqual("max_steps = 5 reached" in done.stderr, done.returncode == 3, done.stderr)
+
+
 if __name__ == "__main__":
     main()

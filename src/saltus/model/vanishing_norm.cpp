@@ -42,6 +42,11 @@ std::vector<NormValue> norms_at(const casadi::Function& rate, const std::vector<
 std::string vanishing_norm(const System& system, double t, const std::vector<double>& x) {
   casadi::SX constants(0, 1);
   for (const auto& cell : system.cells) constants = casadi::SX::vertcat({constants, cell.symbols});
+  const casadi::SX known = casadi::SX::vertcat({system.t, system.x, system.u, system.p, system.alpha, constants});
+  // Weights of regions that are written by those of the others.
+  for (const auto& symbol : casadi::SX::symvar(system.f_as_written)) {
+    if (!casadi::SX::depends_on(symbol, known)) constants = casadi::SX::vertcat({constants, symbol});
+  }
   const casadi::Function rate("rate", {system.t, system.x, system.u, system.p, system.alpha, constants},
                               {system.f_as_written});
   const std::vector<double> alpha(at(system.alpha.numel()), 0.5), cells(at(constants.numel()), 0.0);
