@@ -97,8 +97,14 @@ def draw_large(root, path):
     """Time and memory over the number of states, from the table of the page."""
     text = (root / "benchmarks/results/large.md").read_text(encoding="utf-8")
     found = defaultdict(list)
-    for kind, n, _, _, again, memory in re.findall(r"^\| (\w+) \| (\d+) \| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \| (\d+) \|", text, re.MULTILINE):
-        found[kind].append((int(n), float(again), int(memory)))
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if len(cells) != 11 or not cells[1].isdigit():
+            continue
+        kind, size, _, _, interpreted, _, native, _, _, memory, _ = cells
+        found[kind].append((int(size), float(native or interpreted), int(memory)))
+    if not found:
+        raise SystemExit("benchmarks/results/large.md has no rows to draw")
     figure, axes = pyplot.subplots(1, 2, figsize=(7, 2.8), layout="constrained")
     for colour, (kind, rows) in zip(COLOURS, found.items()):
         sizes, seconds, memory = zip(*rows)
