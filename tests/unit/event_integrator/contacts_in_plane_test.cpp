@@ -203,6 +203,31 @@ TEST(ContactsInPlane, AForceThatGrowsOvercomesFriction) {
   }
 }
 
+/// Inverse masses by which the normal force changes fast with the direction of the slip: (W_zz - mu W_z. d) is small.
+TEST(ContactsInPlane, ASlipBeginsWhereItsDirectionChangesTheNormalForce) {
+  Eigen::Matrix3d inverse;
+  inverse << 0.88, 1.07, -0.23, 1.07, 2.12, -0.61, -0.23, -0.61, 0.64;
+  const Eigen::Matrix3d mass = inverse.inverse();
+  SX symmetric(3, 3);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) symmetric(i, j) = 0.5 * (mass(i, j) + mass(j, i));
+  }
+  constexpr double friction = 1.4, pull_x = 0.976, pull_y = 0.217;
+  PointInSpace block({0.0, 0.0, 0.0}, {0.0, 0.0, 0.0});
+  const SX t = block.model.time();
+  block.moves({{"vx", -pull_x * t}, {"vy", -pull_y * t}}, symmetric);
+  block.touches(friction);
+  for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5}) {
+    IntegrationOptions options;
+    options.method = method;
+    options.until = 14.2;
+    const auto run = run_model(block.model, options);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_EQ(kinds_of(run), std::vector<EventKind>{EventKind::slip});
+    EXPECT_NEAR(run.events[0].t, friction * gravity / std::hypot(pull_x, pull_y), 1e-9);
+  }
+}
+
 /// A block lies on a plate, both move, and the force on the block grows and turns. From s = t - 1 = 0 on it slips with
 /// the velocity s^2 e(3 s), e(a) = (cos a, sin a), for which slip begins as slowly as it can: friction has a direction
 /// where the velocity is a difference of speeds of 1 that has lost all its digits to them.

@@ -145,12 +145,14 @@ Eigen::MatrixXd HeldRows::open(const Eigen::MatrixXd& influence) const {
 
 bool find_directions(const ContactPoint& point, const std::vector<int>& free, std::vector<Eigen::Vector2d>& directions,
                      const Eigen::VectorXd& forces, const Eigen::VectorXd& rates, FunctionRef<bool()> solve) {
-  // A step along the rate, as long as would turn friction around: one contact without other influences needs one.
+  // A step along the rate, as long as would turn friction around: one contact without other influences needs one. Where
+  // the normal force depends on the direction, too, that may be too long.
   constexpr int most_steps = 500;
   constexpr double settled = 1e-15, found = 1e-9;
-  double change = 0.0;
+  double change = 0.0, length = 1.0;
   for (int step = 0; step < most_steps; ++step) {
     if (!solve()) return false;
+    const double last = change;
     change = 0.0;
     for (const int i : free) {
       const int first = point.tangent_row(i, 0), second = point.tangent_row(i, 1);
@@ -158,12 +160,16 @@ bool find_directions(const ContactPoint& point, const std::vector<int>& free, st
                           std::max(point.influence(first, first), point.influence(second, second));
       auto& direction = directions[static_cast<std::size_t>(i)];
       const Eigen::Vector2d rate = point.along(rates, i);
-      const Eigen::Vector2d next = push > 0.0 ? Eigen::Vector2d(direction + rate / push) : rate;
+      const auto behind = [&](double part) {
+        return push > 0.0 ? Eigen::Vector2d(direction + part * rate / push) : rate;
+      };
+      const Eigen::Vector2d next = behind(length);
       if (!(next.norm() > 0.0)) continue;
-      change = std::max(change, (next.normalized() - direction).norm());
+      change = std::max(change, (behind(1.0).normalized() - direction).norm());
       direction = next.normalized();
     }
     if (change <= settled) break;
+    if (step > 0 && change >= last) length *= 0.5;
   }
   return change <= found && solve();
 }
