@@ -112,13 +112,18 @@ class Descent {
   }
 
   /// Takes the branch with the group on its other side if that is better.
-  bool take(const std::vector<ActiveSide>& sides, ConstVectorView from, const char* message,
-            int iterations = branch_iterations) {
+  bool take(const mpcc::BranchMove& move, const char* message, int iterations = branch_iterations) {
+    const auto& [sides, from, appearing] = move;
     if (!visited_.insert(sides).second) return false;
-    crossover::Branch next = run_.solve_branch(sides, from, iterations, message, branch().objective);
+    crossover::Branch next = run_.solve_branch(sides, from, iterations, message, branch().objective, appearing);
     // It is where it began, and may need more to leave.
     if (next.report.termination == Termination::iteration_limit && next.is_feasible(tolerance()) &&
         is_equal(branch().objective, next.objective)) {
+      next = run_.solve_branch(sides, next.w, branch_iterations, message, branch().objective, appearing);
+    }
+    // Where an element has length 0 its equations depend on each other, and what is stationary there may not be
+    // optimal.
+    if (!appearing.empty() && next.is_feasible(tolerance()) && falls(branch().objective, next.objective)) {
       next = run_.solve_branch(sides, next.w, branch_iterations, message, branch().objective);
     }
     // From another start it may get there.
@@ -150,7 +155,7 @@ class Descent {
     if (candidates.size() > flips_tried) candidates.resize(flips_tried);
     for (const auto& [multiplier, group] : candidates) {
       if (run_.is_over()) return false;
-      if (take(flipped(branch().sides, run_.groups[group]), branch().w, "flip")) return true;
+      if (take({flipped(branch().sides, run_.groups[group]), branch().w, {}}, "flip")) return true;
     }
     return false;
   }
@@ -160,7 +165,7 @@ class Descent {
     visited_.insert(branch().sides);
     for (const auto& candidate : run_.problem.equal_branches(branch().sides, branch().w)) {
       if (run_.is_over()) return false;
-      if (take(candidate.sides, candidate.start, "the same point with other sides", move_iterations)) return true;
+      if (take(candidate, "the same point with other sides", move_iterations)) return true;
     }
     return false;
   }
@@ -191,9 +196,10 @@ class Descent {
       for (const int pair : linear.groups[i])
         sides[at(pair)] = found.first_is_active[i] ? ActiveSide::G : ActiveSide::H;
     }
-    if (take(sides, branch().w, "proposed by the linear program")) return true;
+    if (take({sides, branch().w, {}}, "proposed by the linear program")) return true;
     // Flipped already, but not from as far as the linear program sees.
-    return visited_.erase(sides) > 0 && take(sides, branch().w + radius * found.d, "proposed by the linear program");
+    return visited_.erase(sides) > 0 &&
+           take({sides, branch().w + radius * found.d, {}}, "proposed by the linear program");
   }
 
   Run& run_;

@@ -60,11 +60,11 @@ void Run::record(result::HomotopyStep step, const NlpReport* report, double star
 }
 
 crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, int iteration_limit,
-                                    std::string message, std::optional<double> cutoff) {
+                                    std::string message, std::optional<double> cutoff, const std::vector<int>& kept) {
   const double started = seconds();
   NlpOptions limited = nlp_options(iteration_limit);
   limited.objective_cutoff = cutoff;
-  crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, limited);
+  crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, limited, kept);
   result::HomotopyStep step;
   step.phase = result::HomotopyPhase::branch;
   step.sigma = relaxed.sigma;

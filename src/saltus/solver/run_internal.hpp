@@ -33,7 +33,8 @@ class Run {
   /// Solves a branch problem, counts and records it. It may be given up where its objective is above `cutoff`.
   [[nodiscard]] crossover::Branch solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
                                                int iteration_limit, std::string message = {},
-                                               std::optional<double> cutoff = std::nullopt);
+                                               std::optional<double> cutoff = std::nullopt,
+                                               const std::vector<int>& kept = {});
 
   mpcc::Problem& problem;
   NlpSolver& nlp;

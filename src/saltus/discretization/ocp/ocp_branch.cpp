@@ -100,6 +100,44 @@ void add_longer_stretches(const OcpStructure& made, const Sides& sides, ConstVec
   for (auto& move : single) moves.push_back(std::move(move));
 }
 
+/// A switch at the end of an interval, before element e, happens in the next interval or in the one before, over
+/// elements of length zero beside it.
+void add_moved_across(const OcpStructure& made, const ElementSides& modes, ConstVectorView w, std::size_t e,
+                      std::vector<mpcc::BranchMove>& moves) {
+  const auto is_empty = [&](std::size_t number) {
+    const int h = made.element[number].length;
+    return h >= 0 && w[h] < vanished;
+  };
+  const auto may_vanish = [&](const OcpElement& element) {
+    return element.length >= 0 && made.w_bounds.lower[element.length] <= small_share;
+  };
+  const auto add = [&](std::size_t from, std::size_t first, std::size_t last, std::size_t grows) {
+    if (!may_vanish(made.element[grows])) return;
+    Sides changed = modes.all();
+    for (std::size_t number = first; number <= last; ++number) modes.copy(from, number, changed);
+    moves.push_back({std::move(changed), with_share(made, w, made.element[grows], small_share)});
+  };
+  const auto add_between = [&](std::size_t before, std::size_t after) {
+    if (modes.are_equal(before, after)) return;
+    add(before, before + 1, e, e);
+    add(after, e - 1, after - 1, e - 1);
+  };
+  std::size_t before = e - 1, after = e;
+  add_between(before, after);
+  while (made.element[before].number > 0 && is_empty(before)) --before;
+  while (after + 1 < made.element.size() && made.element[after + 1].number > 0 && is_empty(after)) ++after;
+  if (before + 1 < e || after > e) add_between(before, after);
+}
+
+/// Lengths of the elements that have other modes than before.
+void note_appearing(const OcpStructure& made, const ElementSides& modes, mpcc::BranchMove& move) {
+  const ElementSides changed(made, move.sides);
+  for (std::size_t e = 0; e < made.element.size(); ++e) {
+    const int h = made.element[e].length;
+    if (h >= 0 && move.start[h] > vanished && changed.modes(e) != modes.modes(e)) move.appearing.push_back(h);
+  }
+}
+
 /// A selection that reaches its bound at the end of sliding.
 struct Departure {
   int selection = 0;
@@ -228,18 +266,14 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
   if (!made.kernel.moves || made.kernel.pairs.empty()) return moves;
   const ElementSides modes(made, sides);
   add_longer_stretches(made, sides, w, moves);
-  const auto may_vanish = [&](const OcpElement& element) {
-    return element.length >= 0 && made.w_bounds.lower[element.length] <= small_share;
-  };
   for (std::size_t e = 1; e < made.element.size(); ++e) {
     const auto& before = made.element[e - 1];
     const auto& after = made.element[e];
-    if (modes.are_equal(e - 1, e)) continue;
     if (after.number == 0) {
-      if (may_vanish(after)) moves.push_back({modes.copied(e - 1, e), with_share(made, w, after, small_share)});
-      if (may_vanish(before)) moves.push_back({modes.copied(e, e - 1), with_share(made, w, before, small_share)});
+      add_moved_across(made, modes, w, e, moves);
       continue;
     }
+    if (modes.are_equal(e - 1, e)) continue;
     if (w[after.length] < vanished) moves.push_back({modes.copied(e - 1, e), w});
     if (w[before.length] < vanished) moves.push_back({modes.copied(e, e - 1), w});
   }
@@ -253,6 +287,7 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
   implementation_->crowded.clear();
   add_touched_sides(made, modes, w, implementation_->crowded, moves);
   add_reached_regions(made, modes, w, moves);
+  for (auto& move : moves) note_appearing(made, modes, move);
   return moves;
 }
 

@@ -205,9 +205,11 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
   };
   for (const int i : touching) stop(i);
   stop_slips([&](int i) { return point.along(point.velocity, i).norm() <= none; });
-  // What follows from velocities that are 0 is 0, too: a slip there would have the direction of a rounding.
+  // What follows from velocities that are 0 is 0, too: a slip there would have the direction of a rounding. Along gaps
+  // that move with time it is not.
+  const double small = small_velocity * fastest(moment, point, x);
   stop_slips([&](int i) {
-    bool follows = true;
+    bool follows = point.along(point.velocity, i).norm() <= small;
     for (int k = 0; k < point.tangents[at(i)]; ++k) follows = follows && at_rest.holds(point.tangent_row(i, k));
     return follows;
   });

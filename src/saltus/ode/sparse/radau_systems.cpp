@@ -50,12 +50,14 @@ bool RadauSystems<pairs>::factorize(const Shifts& shifts) {
     }
     along_diagonal_ = joint_.factorize(entries_, shift);
     if (along_diagonal_) return true;
+    find_still_rows();
     if (!sparse_real_.factorize(entries_, shifts.real)) return false;
     for (std::size_t k = 0; k < pairs; ++k) {
       if (!pairs_[k].sparse.factorize(entries_, shifts.complex[k])) return false;
     }
     return true;
   }
+  find_still_rows();
   real_matrix_ = -jacobian_;
   real_matrix_.diagonal().array() += shifts.real;
   real_.compute(real_matrix_);
@@ -65,6 +67,22 @@ bool RadauSystems<pairs>::factorize(const Shifts& shifts) {
     pairs_[k].dense.compute(complex_matrix_);
   }
   return true;
+}
+
+/// Discrete states do not move, not by roundings either: pivots would give them some of those of other rows.
+template <std::size_t pairs>
+void RadauSystems<pairs>::find_still_rows() {
+  std::vector<bool> moves(static_cast<std::size_t>(n_), false);
+  if (pattern_ != nullptr) {
+    for (std::size_t k = 0; k < entries_.size(); ++k) {
+      if (entries_[k] != 0.0) moves[pattern_->row[k]] = true;
+    }
+  }
+  still_.clear();
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    const bool is_zero = pattern_ != nullptr ? !moves[static_cast<std::size_t>(i)] : jacobian_.row(i).isZero(0.0);
+    if (is_zero) still_.push_back(i);
+  }
 }
 
 template <std::size_t pairs>
@@ -120,6 +138,9 @@ void RadauSystems<pairs>::solve_all(const Matrix& right, Matrix& solution) {
     }
     solution.col(index(2 * k + 1)) = complex_solution_.real();
     solution.col(index(2 * k + 2)) = complex_solution_.imag();
+  }
+  for (const Eigen::Index i : still_) {
+    if (right.row(i).isZero(0.0)) solution.row(i).setZero();
   }
 }
 

@@ -50,6 +50,7 @@ class RadauSystems {
   using Joint = JointNumber<pairs>;
   using ComplexVector = Eigen::VectorXcd;
   void solve_joint(const Matrix& right, Matrix& solution);
+  void find_still_rows();
 
   Eigen::Index n_;
   const JacobianPattern* pattern_ = nullptr;
@@ -63,7 +64,8 @@ class RadauSystems {
   std::vector<double> entries_;
   Elimination elimination_;
   DiagonalFactors<Joint> joint_;
-  bool along_diagonal_ = false;  ///< joint_ holds all of them; otherwise each has factors of its own
+  bool along_diagonal_ = false;      ///< joint_ holds all of them; otherwise each has factors of its own
+  std::vector<Eigen::Index> still_;  ///< rows of J that are 0, where pivots are searched for
   ShiftedFactors<double> sparse_real_;
   struct Pair {
     Eigen::PartialPivLU<Eigen::MatrixXcd> dense;

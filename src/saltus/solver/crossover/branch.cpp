@@ -65,7 +65,7 @@ bool has_failed(const Branch& branch, const NlpOptions& options) {
 }
 
 Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
-                    NlpSolver& nlp, const NlpOptions& options, Closing closing) {
+                    NlpSolver& nlp, const NlpOptions& options, const std::vector<int>& kept, Closing closing) {
   Branch branch;
   branch.sides = sides;
   Eigen::VectorXd c(problem.rows());
@@ -73,6 +73,7 @@ Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
   branch.problem =
       std::make_unique<BranchProblem>(problem, reduce(problem, sides, jacobian_matrix(problem, w), c, closing));
   BranchProblem& reduced = *branch.problem;
+  reduced.keep_above(kept, w);
   const Eigen::VectorXd start = reduced.reduced(w);
   if (reduced.reduction().equations() > reduced.variables()) drop_dependent(reduced, start);
   solve_from(start, branch, nlp, options);
@@ -89,8 +90,8 @@ Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
 }  // namespace
 
 Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
-                    NlpSolver& nlp, const NlpOptions& options) {
-  Branch closed = solve_closed(problem, sides, w, nlp, options, Closing::whole);
+                    NlpSolver& nlp, const NlpOptions& options, const std::vector<int>& kept) {
+  Branch closed = solve_closed(problem, sides, w, nlp, options, kept, Closing::whole);
   const bool is_optimal = closed.optimality_error <= unsolved || closed.report.termination == Termination::completed;
   const bool is_decided = is_useless(closed, options) || (closed.primal_infeasibility <= solved && is_optimal);
   if (is_decided || problem.close_branch(sides).freedom.is_empty()) return closed;
@@ -98,7 +99,7 @@ Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
   NlpOptions rest = options;
   rest.iteration_limit -= closed.report.iterations;
   if (rest.iteration_limit <= 0) return closed;
-  Branch open = solve_closed(problem, sides, w, nlp, rest, Closing::with_freedom);
+  Branch open = solve_closed(problem, sides, w, nlp, rest, kept, Closing::with_freedom);
   open.report.iterations += closed.report.iterations;
   open.report.evaluation_seconds += closed.report.evaluation_seconds;
   return open;

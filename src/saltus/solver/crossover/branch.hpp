@@ -25,10 +25,11 @@ struct Branch {
   }
 };
 
-/// Solves the branch problem of these sides from w, then refines its solution (refine.hpp). Equations that are more than
-/// the variables are left out where they depend on others; whether they hold is seen in the residuals. All attempts
-/// together take no more than the limits of `options`.
+/// Solves the branch problem of these sides from w, then refines its solution (refine.hpp). Equations that are more
+/// than the variables are left out where they depend on others; whether they hold is seen in the residuals. All
+/// attempts together take no more than the limits of `options`.
+/// @param kept  variables that stay above a part of what they are in w
 [[nodiscard]] Branch solve_branch(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
-                                  NlpSolver& nlp, const NlpOptions& options);
+                                  NlpSolver& nlp, const NlpOptions& options, const std::vector<int>& kept = {});
 
 }  // namespace saltus::solver::crossover

@@ -21,7 +21,8 @@ void BranchProblem::find_patterns() {
   jacobian_pattern_ = {};
   hessian_pattern_ = {};
   std::vector<int> own_row(at(problem_.rows()), -1);
-  for (std::size_t row = 0; row < reduction_.rows.size(); ++row) own_row[at(reduction_.rows[row])] = static_cast<int>(row);
+  for (std::size_t row = 0; row < reduction_.rows.size(); ++row)
+    own_row[at(reduction_.rows[row])] = static_cast<int>(row);
   const auto& jacobian = problem_.jacobian_pattern();
   for (int entry = 0; entry < jacobian.entries(); ++entry) {
     const int row = own_row[at(jacobian.row[at(entry)])];
@@ -39,6 +40,15 @@ void BranchProblem::find_patterns() {
     if (row < 0 || column < 0) continue;
     hessian_entries_.push_back({entry, i != j && row == column ? 2.0 : 1.0});
     hessian_pattern_.add(std::max(row, column), std::min(row, column));
+  }
+}
+
+void BranchProblem::keep_above(const std::vector<int>& variables, ConstVectorView w) {
+  constexpr double part = 0.1;
+  auto& [lower, upper] = reduction_.bounds;
+  for (const int variable : variables) {
+    const int place = reduction_.place[at(variable)];
+    if (place >= 0) lower[place] = std::clamp(part * w[variable], lower[place], upper[place]);
   }
 }
 

@@ -26,7 +26,8 @@ std::vector<ActiveSide> smaller_sides(const mpcc::Problem& problem, const std::v
   const auto G = c.segment(problem.constraints(), problem.pairs());
   const auto H = c.tail(problem.pairs());
   std::vector<ActiveSide> sides;
-  for (int pair = 0; pair < problem.pairs(); ++pair) sides.push_back(G[pair] <= H[pair] ? ActiveSide::G : ActiveSide::H);
+  for (int pair = 0; pair < problem.pairs(); ++pair)
+    sides.push_back(G[pair] <= H[pair] ? ActiveSide::G : ActiveSide::H);
   for (const auto& group : groups) {
     double sum_G = 0.0;
     double sum_H = 0.0;
