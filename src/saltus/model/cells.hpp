@@ -32,6 +32,8 @@ struct CellTable {
   std::vector<double> constants;  ///< (breaks + 1) rows of `columns`, for `listed`
   int columns = 1;
 
+  /// Returns whether the function is a spline: it has a slope at its inner breaks.
+  [[nodiscard]] bool has_slope() const { return kind == Breaks::listed && columns == 5; }
   /// Returns the cell an argument lies in; 0 for NaN.
   [[nodiscard]] long cell(double argument) const;
   /// Returns the ends of a cell; infinite where it is unbounded.

@@ -257,6 +257,33 @@ TEST(ContactBounces, ABallSlidesOnBehindTheLastOne) {
   }
 }
 
+/// A ram that moves away is reached in bounces that accumulate; behind them the block slides on over a rough floor.
+TEST(ContactBounces, BesideARamThatMovesABlockSlidesOn) {
+  constexpr double weight = 9.81, friction = 0.2, ram = -0.4;
+  for (const auto method : every_method) {
+    SCOPED_TRACE(static_cast<int>(method));
+    model::Builder model("block");
+    const SX x = model.state("x", {0.001}), z = model.state("z", {0.0}), t = model.time();
+    static_cast<void>(model.state("vx", {0.0}));
+    static_cast<void>(model.state("vz", {0.0}));
+    model.mechanics(
+        {.positions = {"x", "z"}, .velocities = {"vx", "vz"}, .force = {{"vx", -3.0 + 0.5 * t}, {"vz", -weight}}});
+    model.contact("ram", x - ram * t, {.restitution = 0.4});
+    model.contact("floor", z, {.tangent = {{"x", 1.0}}, .friction = friction});
+    IntegrationOptions options;
+    options.method = method;
+    options.until = 3.0;
+    const auto run = run_model(model, options);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    EXPECT_EQ(accumulation_of(run).contact_modes_after, (std::vector{ContactMode::closed, ContactMode::slip}));
+    EXPECT_EQ(run.events.back().kind, EventKind::lift_off);
+    EXPECT_NEAR(run.events.back().t, (3.0 - friction * weight) / 0.5, 1e-9);
+    // Then v' = (t - lift_off) / 2.
+    const double since = 3.0 - run.events.back().t;
+    EXPECT_NEAR(run.final.x[2], ram + 0.25 * since * since, 1e-8);
+  }
+}
+
 /// Under a force along its way v changes by (force - friction weight) t, in the direction in which it was.
 TEST(ContactBounces, InSpaceASlideKeepsItsDirection) {
   for (const double restitution : {0.2, 0.6}) {
@@ -344,8 +371,7 @@ TEST(ContactsThatTouch, AKinkAtAVelocityThatIsHeldMakesNoEvents) {
     const SX v = model.state("v", {0.0});
     static_cast<void>(model.state("way", {0.0}));
     model.dynamics("way", model.abs(v));
-    model.mechanics(
-        {.positions = {"z"}, .velocities = {"v"}, .force = {{"v", 12.0 * sin(6.0 * model.time()) - 9.81}}});
+    model.mechanics({.positions = {"z"}, .velocities = {"v"}, .force = {{"v", 12.0 * sin(6.0 * model.time()) - 9.81}}});
     model.contact("ground", z);
     const auto run = run_by(model, method);
     ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
@@ -371,6 +397,35 @@ TEST(ContactsThatTouch, ATableThatDropsLeavesTheBodyInTheAir) {
       EXPECT_EQ(run.status.termination, drops ? result::Termination::completed : result::Termination::outside_class);
       EXPECT_NEAR(run.final.x[0], drops ? -0.5 * 9.81 * 0.25 : 0.0, 1e-9);
     }
+  }
+}
+
+/// Small masses make forces of contacts large entries of the Jacobian, on which Radau's methods pivot.
+TEST(ContactsThatTouch, SmallBodiesFarFromAnythingMoveFreely) {
+  for (const auto method : {ode::Method::radau5, ode::Method::radau9, ode::Method::radau13}) {
+    SCOPED_TRACE(static_cast<int>(method));
+    constexpr double mass = 1e-7;
+    model::Builder model("bodies");
+    static_cast<void>(model.state("y", {0.0}));
+    const SX p = model.state("p", {0.0}), s = model.state("s", {-0.1});
+    static_cast<void>(model.state("vy", {-0.3}));
+    static_cast<void>(model.state("vp", {0.1}));
+    static_cast<void>(model.state("vs", {0.0}));
+    model.mechanics({.positions = {"y", "p", "s"},
+                     .velocities = {"vy", "vp", "vs"},
+                     .mass = mass * SX::eye(3),
+                     .potential = 0.5 * mass * (p - s) * (p - s)});
+    const model::ContactOptions rough{.tangent = {{"y", 1.0}}, .friction = 0.3};
+    model.contact("a", 5.0 - s, rough);
+    model.contact("b", 1.0 + p, rough);
+    model.contact("c", 1.0 - p, rough);
+    const auto run = run_by(model, method);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    EXPECT_TRUE(run.events.empty());
+    const double rate = std::numbers::sqrt2, phase = 2.0 * rate;
+    const double sum = -0.1 + 0.1 * 2.0, difference = 0.1 * std::cos(phase) + 0.1 / rate * std::sin(phase);
+    EXPECT_NEAR(run.final.x[1], 0.5 * (sum + difference), 1e-7);
+    EXPECT_NEAR(run.final.x[2], 0.5 * (sum - difference), 1e-7);
   }
 }
 

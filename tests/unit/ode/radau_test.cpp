@@ -189,6 +189,18 @@ TEST_P(EachRadauMethod, DampsStiffComponentsInOneStep) {
   EXPECT_NEAR(fixed_steps(GetParam(), f, {2.0}, 0.0, 0.1, 1)[0], std::cos(0.1), 1e-5);
 }
 
+// Its column has an entry in another row that is larger than that on the diagonal, and serves as a pivot.
+TEST_P(EachRadauMethod, AStateWithoutARateKeepsItsBits) {
+  const auto f = [](double t, const double* x, double* xdot) {
+    xdot[0] = xdot[1] = 0.0;
+    xdot[2] = 1e12 * (x[0] - 3.0 * x[1]) * (1.0 + x[3]) - x[2];
+    xdot[3] = std::cos(t) + 1e11 * x[1] * x[2];
+  };
+  const auto x = fixed_steps(GetParam(), f, {0.0, 0.0, 1.0, 0.5}, 0.0, 0.1, 3);
+  EXPECT_EQ(x[0], 0.0);
+  EXPECT_EQ(x[1], 0.0);
+}
+
 /// Van der Pol in the scaling of Hairer & Wanner, IV.10: 1 / mu^2 = 1e-6.
 struct VanDerPol {
   void operator()(double /*t*/, const double* x, double* xdot) const {

@@ -79,6 +79,10 @@ class Tape {
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
   /// Returns the value of an operation for given operands; a constant of a cell by looking it up.
   [[nodiscard]] double operate(const TapeNode& node, double left, double right) const;
+  /// Returns the table of a constant of a cell.
+  [[nodiscard]] const CellTable& table_of(const TapeNode& node) const {
+    return *cells_[at(variables_[at(node.variable)].index)].table;
+  }
   void set_value(int variable, double value) { variables_[at(variable)].value = value; }
   /// Makes a variable a state; what depends on it moves by then. Cost: linear in the size.
   void restate_as_state(int variable, int index);

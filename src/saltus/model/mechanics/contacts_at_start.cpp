@@ -40,6 +40,22 @@ double volume(const std::vector<Row>& rows) {
   return 1.0 + 2.0 * a * b * c - a * a - b * b - c * c;
 }
 
+/// Values of expressions over t, x, p, and cells that depend on nothing else.
+std::vector<casadi::DM> values_at_start(const System& system, double from, std::vector<SX> expressions) {
+  std::vector<SX> symbols{system.t, system.x, system.p};
+  std::vector<casadi::DM> values{from, system.initial_state, system.parameter_values};
+  for (const auto& cell : system.cells) {
+    const casadi::Function argument("saltus_cell_at_start", symbols, {cell.argument}, {{"allow_free", true}});
+    if (argument.has_free()) continue;
+    const double place = static_cast<double>(argument(values)[0]);
+    std::vector<double> constants;
+    for (int k = 0; k < cell.table->columns; ++k) constants.push_back(cell.table->constant(cell.table->cell(place), k));
+    symbols.push_back(cell.symbols);
+    values.emplace_back(constants);
+  }
+  return casadi::Function("saltus_contacts_at_start", symbols, expressions)(values);
+}
+
 }  // namespace
 
 std::optional<Error> check_gap_at_start(const std::string& contact, double gap, const std::string& when) {
@@ -91,9 +107,7 @@ std::optional<Error> check_contacts_at_start(const System& system, double from) 
   const auto& contacts = system.contacts;
   if (contacts.empty() || !SX::depends_on(SX::vertcat({contacts.gap, SX::vec(contacts.rows)}), system.t))
     return std::nullopt;
-  const casadi::Function functions("saltus_contacts_at_start", {system.t, system.x, system.p},
-                                   {contacts.gap, contacts.rows});
-  const auto values = functions(std::vector<casadi::DM>{from, system.initial_state, system.parameter_values});
+  const auto values = values_at_start(system, from, {contacts.gap, contacts.rows});
   const std::string when = fmt::format(", t = {}", from);
   const auto m = static_cast<casadi_int>(contacts.contacts.size());
   for (casadi_int i = 0; i < m; ++i) {

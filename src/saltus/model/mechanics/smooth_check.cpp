@@ -29,7 +29,13 @@ std::optional<Error> check_smooth(const Recognition& recognition, const Statemen
     if (tape[member].psi >= 0) {
       return not_allowed(allowed, fmt::format("{} switches", allowed.what), "write it with smooth functions");
     }
-    if (tape[member].variable < 0 || tape[member].operation == cell_operation) continue;
+    if (tape[member].operation == cell_operation) {
+      const bool of_a_state = (tape[tape[member].left].written & kind_bit(VariableKind::state)) != 0;
+      if (!allowed.and_time || !of_a_state || tape.table_of(tape[member]).has_slope()) continue;
+      return not_allowed(allowed, fmt::format("{} has kinks or jumps: floor, mod or a table", allowed.what),
+                         "write it with smooth functions, or give the table kind = \"cubic\"");
+    }
+    if (tape[member].variable < 0) continue;
     const auto& variable = tape.variables()[at(tape[member].variable)];
     if (variable.kind == VariableKind::parameter || variable.kind == VariableKind::cell) continue;
     if (variable.kind == VariableKind::time && allowed.and_time) continue;
