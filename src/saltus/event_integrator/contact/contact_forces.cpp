@@ -19,6 +19,9 @@ using Eigen::VectorXd;
 
 using Eigen::Vector2d;
 
+/// Of margins: rounding of solves, and of the place where a mode was found to end.
+constexpr double holds = -1e-8;
+
 std::vector<ContactMode> mode_options(const ContactPoint& point, int i) {
   if (point.friction[static_cast<std::size_t>(i)] == 0.0) return {ContactMode::closed, ContactMode::open};
   if (point.in_plane(i)) {
@@ -186,7 +189,7 @@ bool is_determined(const ContactPoint& point, const std::vector<int>& resting, c
   if (!found.is_open && found.idle.empty()) return true;
   const Eigen::MatrixXd open = held_rows(point, resting, base).open(point.influence);
   const double response = point.influence.cwiseAbs().maxCoeff();
-  constexpr double small = 1e-6, moved = 1e-12, holds = -1e-8;
+  constexpr double small = 1e-6, moved = 1e-12;
   for (Eigen::Index k = 0; k < open.cols(); ++k) {
     const Eigen::VectorXd forces = open.col(k) * (small * point.terms / (response * open.col(k).cwiseAbs().maxCoeff()));
     const Eigen::VectorXd change = point.influence * forces;
@@ -241,6 +244,15 @@ bool forces_in(const ContactPoint& point, const std::vector<int>& resting, const
   return find_forces(point, resting, modes, rows, result);
 }
 
+bool carry_without(const ContactPoint& point, const std::vector<int>& resting, const std::vector<int>& idle,
+                   ContactForces& found) {
+  HeldRows rows(point.velocity.size());
+  found.idle = idle;
+  if (!solve_forces(point, resting, rows, found)) return false;
+  found.margin = margin_of(point, resting, found);
+  return found.margin >= holds;
+}
+
 std::vector<ContactForces> admissible_forces(const ContactPoint& point, const std::vector<int>& resting,
                                              const std::vector<std::vector<ContactMode>>& excluded) {
   std::vector<std::vector<ContactMode>> all;
@@ -259,8 +271,7 @@ std::vector<ContactForces> admissible_forces(const ContactPoint& point, const st
   constexpr long most = 100000;
   for (long tried = 0; tried < most; ++tried) {
     for (std::size_t k = 0; k < all.size(); ++k) modes[static_cast<std::size_t>(resting[k])] = all[k][number[k]];
-    // Rounding of solves, and of the place where a mode was found to end.
-    if (find_forces(point, resting, modes, rows, found) && found.margin >= -1e-8) result.push_back(std::move(found));
+    if (find_forces(point, resting, modes, rows, found) && found.margin >= holds) result.push_back(std::move(found));
     std::size_t k = 0;
     while (k < all.size() && ++number[k] == all[k].size()) number[k++] = 0;
     if (k == all.size()) break;

@@ -254,7 +254,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
         "jam)",
         names(touching), moment.t);
   }
-  const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, point, resting, found, x);
+  const std::size_t chosen = best_ahead(moment, point, resting, found, x);
   if (!have_one_motion(point, resting, found, chosen)) {
     if (!why_open_.empty()) why_open_ += "; ";
     why_open_ += "the forces of what touches leave more than one motion open";
@@ -272,14 +272,17 @@ void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<dou
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * rate[i];
 }
 
-/// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin.
+/// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin:
+/// with those contacts idle that will be.
 std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint& point,
-                                 const std::vector<int>& resting, const std::vector<ContactForces>& found,
+                                 const std::vector<int>& resting, std::vector<ContactForces>& found,
                                  const std::vector<double>& x) {
+  constexpr double clear = 1e-4;
+  if (found.size() == 1 && (found[0].idle.empty() || found[0].margin > clear)) return 0;
   std::size_t best = 0;
   double largest = -std::numeric_limits<double>::infinity();
+  std::vector<int> idle = found[0].idle;
   const double h = ahead_by * moment.time_scale;
-  constexpr double clear = 1e-4;
   const ContactPoint here = point_at(moment.t, moment.alpha, x);
   const evaluation::ContactValues values = values_;
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -305,7 +308,11 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint
     if (held > largest) {
       largest = held;
       best = k;
+      idle = forces.idle;
     }
+  }
+  if (ContactForces carried = found[best]; idle != carried.idle && carry_without(point, resting, idle, carried)) {
+    found[best] = std::move(carried);
   }
   return best;
 }

@@ -170,7 +170,7 @@ class Contacts {
                                                       std::vector<std::vector<ContactMode>> excluded,
                                                       ContactPoint& point, std::vector<double>& x);
   [[nodiscard]] std::size_t best_ahead(const ContactMoment& moment, const ContactPoint& point,
-                                       const std::vector<int>& resting, const std::vector<ContactForces>& found,
+                                       const std::vector<int>& resting, std::vector<ContactForces>& found,
                                        const std::vector<double>& x);
   void enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
              std::vector<double>& x);
