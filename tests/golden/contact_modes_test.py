@@ -315,7 +315,7 @@ until = 5
     def test_a_mass_that_is_lost_on_the_way_ends_the_run(self):
         """The inertia b - q of the second row is used up where q = b, whatever turns it."""
         for mass in (DIAGONAL, '[[1, 1], [1, "1 + b - q"]]'):
-            for force in ("-1", "0.1*(b - q)", "w - 1"):
+            for force in ("-1", "0.1*(b - q)", "w - 1", "0"):
                 for integrator in ("dopri5", "dop853", "radau5", "taylor"):
                     with self.subTest(mass=mass, force=force, integrator=integrator):
                         result = self.result(MASS.replace(DIAGONAL, mass).replace("FORCE", force), "--integrator", integrator, code=3)
