@@ -106,10 +106,6 @@ bool Contacts::touches(int contact, const std::vector<double>& x, const std::vec
 void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
                      const std::vector<int>& ended) const {
   const int m = point.contacts();
-  VectorXd terms = VectorXd::Zero(point.velocity.size());
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * std::abs(x[at(system_.velocities[k])]);
-  }
   const double small = small_velocity * fastest(moment, point, x), end = none_below * slowest(moment, point, x);
   const auto is_over = [&](int i) {
     return slips(mode_of(i, x)) && point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
@@ -125,7 +121,8 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
     const auto mode = mode_of(contact, x);
     const bool slip_ends = slip_has_ended[at(contact)];
     const bool held = row < m ? mode != ContactMode::open : mode == ContactMode::stick || slip_ends;
-    if (held || std::abs(point.velocity(row)) <= 16.0 * rounding_unit * terms(row)) point.velocity(row) = 0.0;
+    const auto rounding = [&] { return 16.0 * rounding_unit * terms_of(values_.rows, row, system_.velocities, x); };
+    if (held || std::abs(point.velocity(row)) <= rounding()) point.velocity(row) = 0.0;
   }
 }
 
@@ -143,6 +140,11 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   std::vector<int> touching;
   for (int i = 0; i < point.contacts(); ++i) {
     if (touches(i, x, ended)) touching.push_back(i);
+  }
+  if (const auto flat = without_normal(moment, touching, x); !flat.empty()) {
+    return fmt::format(
+        "the gap of {} has no normal at t = {:.17g}, where its gradient is 0: write it as a distance (x for x^3)",
+        names(flat), moment.t);
   }
   auto excluded = modes_that_end(moment, point, ended, x);
   const bool closing =
