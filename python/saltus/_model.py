@@ -236,8 +236,8 @@ class Model:
         `sample` has distributions (``{"v": "normal(3, 0.1)"}``), of which every point of the grid gets `runs` samples;
         they depend on `seed` and the number of the run only. `keep` is what is left of the runs: "final", "events" or
         "trajectory". A run that stops early is a row with its status, and one whose solution is not unique says so (of
-        whole runs ``branches="all"`` follows the others). Nothing depends on the number of threads. More
-        than 10^7 runs need `yes`.
+        whole runs ``branches="all"`` follows the others, but those of contacts). Nothing depends on the number of
+        threads. More than 10^7 runs need `yes`.
 
         Names of the model come before options of the same name, which are swept by their whole names
         (``{"simulate.fesd.rho": [1, 2]}``).

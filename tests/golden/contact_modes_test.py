@@ -102,6 +102,34 @@ until = 3
 """
 
 # Its second row loses its inertia where q = b.
+# A ball rolls along a curved ground into a wall: six forces hold three velocities there.
+HELD_IN_A_CORNER = """[model]
+name = "ball in a corner"
+[states]
+x = -0.16
+y = -0.24
+z = 0.32
+vx = 0.89
+vy = -0.87
+vz = -0.2
+[mechanics]
+positions = ["x", "y", "z"]
+velocities = ["vx", "vy", "vz"]
+force = { vx = 5.51, vy = "2.4*sin(3.3*t)", vz = -10 }
+[[contacts]]
+name = "ground"
+gap = "z - 0.11*x^2 - 0.18*y^2"
+tangents = [{ x = 1, z = "0.24*x" }, { y = 1, z = "0.19*y" }]
+friction = 0.17
+[[contacts]]
+name = "wall"
+gap = "0.5 - x + 0.17*z"
+tangents = [{ y = 1 }, { z = 1 }]
+friction = 0.66
+[simulate]
+until = 2
+"""
+
 DIAGONAL = '[[1, 0], [0, "b - q"]]'
 MASS = f"""[model]
 name = "mass"
@@ -312,10 +340,20 @@ until = 5
         limit = next(event for event in result["events"] if event["kind"] == "accumulation")
         self.assertEqual(limit["contact_modes_after"], 3 * ["stick"])
 
+    def test_friction_in_a_corner_holds(self):
+        expected = self.result(HELD_IN_A_CORNER, "--rtol", "1e-10")["final"]["x"]
+        for integrator in ("dopri5", "dop853", "radau5", "taylor"):
+            for rtol in ("1e-6", "1e-8"):
+                with self.subTest(integrator=integrator, rtol=rtol):
+                    final = self.result(HELD_IN_A_CORNER, "--integrator", integrator, "--rtol", rtol)["final"]
+                    self.assertEqual(final["contact_modes"], 2 * ["stick"])
+                    for value, other in zip(final["x"], expected):
+                        self.assertAlmostEqual(value, other, delta=1e-6)
+
     def test_a_mass_that_is_lost_on_the_way_ends_the_run(self):
         """The inertia b - q of the second row is used up where q = b, whatever turns it."""
         for mass in (DIAGONAL, '[[1, 1], [1, "1 + b - q"]]'):
-            for force in ("-1", "0.1*(b - q)", "w - 1"):
+            for force in ("-1", "0.1*(b - q)", "w - 1", "0"):
                 for integrator in ("dopri5", "dop853", "radau5", "taylor"):
                     with self.subTest(mass=mass, force=force, integrator=integrator):
                         result = self.result(MASS.replace(DIAGONAL, mass).replace("FORCE", force), "--integrator", integrator, code=3)

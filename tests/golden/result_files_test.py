@@ -5,10 +5,12 @@ import csv
 import datetime
 import hashlib
 import json
+import math
 import re
 import struct
 import zipfile
 
+import contacts_test
 import tool
 
 KEYS = ["format", "saltus", "record_sha256", "model", "command", "command_line", "date", "method", "status", "states", "controls", "switching_functions",
@@ -194,6 +196,21 @@ class Arrays(tool.ToolTest):
         self.assertEqual(arrays["events.reason"], [event["reason"] for event in events])
         for i, name in enumerate(self.result["states"]):
             self.assertEqual(arrays[f"events.after({name})"], [event["x_after"][i] for event in events])
+
+    def test_events_have_the_impulses(self):
+        for model, columns in ((contacts_test.BALL, ["impulse(ground)", "impulse(ground)[1]"]),
+                               (contacts_test.SPACE, ["impulse(ground)", "impulse(ground)[1]", "impulse(ground)[2]"])):
+            arrays = self.arrays(self.write("m.toml", model), "--out", "r.events.csv")
+            impact, stick = self.result["events"]
+            with open(self.folder / "r.events.csv", newline="", encoding="utf-8") as file:
+                first, second = csv.DictReader(file)
+            self.assertEqual([name for name in first if name.startswith("impulse")], columns)
+            self.assertEqual([float(first[name]) for name in columns], impact["impulse"][0])
+            self.assertEqual([arrays[f"events.{name}"][0] for name in columns], impact["impulse"][0])
+            self.assertNotIn("impulse", stick)
+            for name in columns:
+                self.assertEqual(second[name], "")
+                self.assertTrue(math.isnan(arrays[f"events.{name}"][1]))
 
     def test_branches_are_told_by_their_labels(self):
         arrays = self.arrays("spontaneous-switch", "--branch", "all")

@@ -334,9 +334,11 @@ until = 2
         self.assertEqual((self.folder / "a.csv").read_bytes(), (self.folder / "b.csv").read_bytes())
 
     def test_numbers_are_looked_at_whatever_the_method_is(self):
-        file = self.write("bad.toml", BALL.replace("[simulate]", "[time_freezing]\na_n = 'x'\n[simulate]"))
-        for command in ("check", "simulate"):
-            self.assertIn("a_n must be a constant, found 'x'", self.run_tool(command, file, code=2)[1])
+        for number, key in (("a_n = 'x'", "a_n"), ("speed = { lower = 'x', upper = 2 }", "speed.lower"),
+                            ("speed = { lower = 1, upper = 'x' }", "speed.upper")):
+            file = self.write("bad.toml", BALL.replace("[simulate]", f"[time_freezing]\n{number}\n[simulate]"))
+            for command in ("check", "simulate"):
+                self.assertIn(f"{key} must be a constant, found 'x'", self.run_tool(command, file, code=2)[1])
 
     def test_bad_input(self):
         for change, line in (

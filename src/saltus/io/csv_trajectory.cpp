@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/io/impulse_columns_internal.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/text_stream_internal.hpp"
 #include "saltus/result/kept_columns.hpp"
@@ -61,9 +62,10 @@ void append_or_empty(std::string& text, const std::optional<Row>& row, std::size
 
 void append_events(TextStream& stream, const result::Result& result, const std::string& end) {
   const std::size_t columns = result.switching_functions.size();
+  const ImpulseColumns impulses(result);
   std::string& text = stream.text();
-  for (const auto& event : result.events) {
-    if (!stream.pass()) return;
+  for (std::size_t k = 0; k < result.events.size() && stream.pass(); ++k) {
+    const auto event = result.events[k];
     fmt::format_to(std::back_inserter(text), "{},{},{},{}", event.t, name(event.kind),
                    csv_field(event.name.value_or("")), csv_field(fmt::format("{}", fmt::join(event.surfaces, ";"))));
     append(text, event.x);
@@ -72,6 +74,10 @@ void append_events(TextStream& stream, const result::Result& result, const std::
     append_or_empty(text, event.mode_after, columns);
     append_or_empty(text, event.alpha_before, columns);
     append_or_empty(text, event.alpha_after, columns);
+    for (std::size_t i = 0; i < impulses.names.size(); ++i) {
+      const auto impulse = impulses.value(result.events, k, i);
+      text += impulse ? fmt::format(",{}", *impulse) : ",";
+    }
     text += !event.unique ? "," : *event.unique ? ",true" : ",false";
     text += "," + csv_field(event.reason) + end + "\n";
   }
@@ -111,6 +117,7 @@ std::string head_of_events(const result::Result& result) {
   for (const auto* quantity : {"mode_before", "mode_after", "alpha_before", "alpha_after"}) {
     append_heads(text, quantity, result.switching_functions);
   }
+  append_names(text, ImpulseColumns(result).names);
   return text + ",unique,reason";
 }
 

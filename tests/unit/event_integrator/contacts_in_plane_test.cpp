@@ -228,6 +228,36 @@ TEST(ContactsInPlane, ASlipBeginsWhereItsDirectionChangesTheNormalForce) {
   }
 }
 
+/// A puck on springs comes to rest while its friction turns: a step runs through no rest unseen, whatever its method.
+TEST(ContactsInPlane, ASlipThatEndsUnderATurningForceTakesFewSteps) {
+  for (const double speed : {-1.93, 0.3, 1.0}) {
+    SCOPED_TRACE(speed);
+    std::vector<std::vector<double>> ends;
+    for (const auto method : every_method) {
+      model::Builder model("puck");
+      const SX x = model.state("x", {-0.98}), y = model.state("y", {0.47}), z = model.state("z", {0.0});
+      static_cast<void>(model.state("vx", {speed}));
+      static_cast<void>(model.state("vy", {1.52}));
+      static_cast<void>(model.state("vz", {0.0}));
+      model.mechanics({.positions = {"x", "y", "z"},
+                       .velocities = {"vx", "vy", "vz"},
+                       .potential = 10.0 * z + 0.895 * x * x + 2.965 * y * y});
+      model.contact("ground", z, {.tangent = {{"x", 1.0}}, .friction = 0.49, .second_tangent = {{"y", 1.0}}});
+      IntegrationOptions options;
+      options.method = method;
+      options.until = 4.0;
+      options.max_steps = 1500;
+      const auto run = run_model(model, options);
+      ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+      EXPECT_EQ(run.final.contact_modes, std::vector<result::ContactMode>{result::ContactMode::stick});
+      ends.push_back(run.final.x);
+    }
+    for (const auto& end : ends) {
+      for (std::size_t i = 0; i < 6; ++i) EXPECT_NEAR(end[i], ends.front()[i], 1e-7);
+    }
+  }
+}
+
 /// A block lies on a plate, both move, and the force on the block grows and turns. From s = t - 1 = 0 on it slips with
 /// the velocity s^2 e(3 s), e(a) = (cos a, sin a), for which slip begins as slowly as it can: friction has a direction
 /// where the velocity is a difference of speeds of 1 that has lost all its digits to them.

@@ -1,4 +1,5 @@
 // Contacts whose forces the motion does not determine, and motions that it leaves open with them.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -203,6 +204,30 @@ TEST(ContactsWithOpenForces, AMotorPressedOnItsStopRestsThere) {
     EXPECT_NEAR(run.final.x[0], 0.5, 1e-12);
     EXPECT_NEAR(run.final.x[1], 0.0, 1e-15);
     EXPECT_NEAR(run.final.x[2], 1.5 * (1.0 - std::exp(-4.0)), 1e-7);
+  }
+}
+
+/// Two stops without clearance: of both the one carries that the force will press on, at the start, where it is 0, too.
+TEST(ContactsWithOpenForces, StopsWithoutClearanceCarryInTurn) {
+  for (const double sign : {1.0, -1.0}) {
+    SCOPED_TRACE(sign);
+    model::Builder model("body");
+    const SX x = model.state("x", {0.0});
+    static_cast<void>(model.state("v", {0.0}));
+    model.mechanics({.positions = {"x"}, .velocities = {"v"}, .force = {{"v", sign * sin(model.time())}}});
+    model.contact("lower", x, {});
+    model.contact("upper", -x, {});
+    const auto run = run_tightly(model, 8.0);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    EXPECT_LE(run.events.size(), 2U);
+    EXPECT_EQ(run.final.x[0], 0.0);
+    EXPECT_EQ(run.final.x[1], 0.0);
+    for (std::size_t row = 0; row < run.trajectory.t.size(); ++row) {
+      const auto& outputs = run.trajectory.outputs[row];  // gap, force and impulse of both, then the energy
+      const double force = sign * std::sin(run.trajectory.t[row]);
+      EXPECT_NEAR(outputs[1], std::max(0.0, -force), 1e-9) << run.trajectory.t[row];
+      EXPECT_NEAR(outputs[4], std::max(0.0, force), 1e-9) << run.trajectory.t[row];
+    }
   }
 }
 

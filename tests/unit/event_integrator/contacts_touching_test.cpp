@@ -382,6 +382,27 @@ TEST(ContactsThatTouch, AKinkAtAVelocityThatIsHeldMakesNoEvents) {
   }
 }
 
+/// A body thrown, or let go, where the gap has no gradient: nothing says where to push it.
+TEST(ContactsThatTouch, AGapWithoutGradientHasNoNormal) {
+  for (const auto method : every_method) {
+    for (const double start : {0.5, 0.0}) {
+      SCOPED_TRACE(::testing::Message() << static_cast<int>(method) << " " << start);
+      model::Builder model("body");
+      const SX x = model.state("x", {start});
+      static_cast<void>(model.state("v", {start > 0.0 ? -1.0 : 0.0}));
+      model.mechanics({.positions = {"x"}, .velocities = {"v"}, .potential = 10.0 * x});
+      model.contact("ground", x * x * x, {});
+      IntegrationOptions options;
+      options.method = method;
+      options.until = 1.0;
+      const auto run = run_model(model, options);
+      EXPECT_EQ(run.status.termination, result::Termination::outside_class);
+      EXPECT_NE(run.status.message.find("the gap of 'ground' has no normal"), std::string::npos) << run.status.message;
+      EXPECT_NEAR(run.final.x[0], 0.0, 1e-4);
+    }
+  }
+}
+
 /// A gap that jumps in time: the table drops, and the body on it falls freely; into a table that rises nothing follows.
 TEST(ContactsThatTouch, ATableThatDropsLeavesTheBodyInTheAir) {
   for (const auto method : {ode::Method::dopri5, ode::Method::dop853, ode::Method::radau5, ode::Method::taylor}) {

@@ -30,7 +30,7 @@ const isAlarming = (row) => columns.unique?.[row] === 0;
 // Where a run stopped early is no end of it.
 const isDone = (row) => ["completed", "stopped_by_event"].includes(columns.status[row]);
 const ofDone = (of) => (row) => (isDone(row) ? of(row) : null);
-const doubtOf = (row) => isAlarming(row) ? "; the solution is not unique, --branch all follows the others" : columns.unique?.[row] < 0 ? "; uniqueness not decided" : "";
+const doubtOf = (row) => isAlarming(row) ? "; the solution is not unique, --branch all follows the others (but those of contacts)" : columns.unique?.[row] < 0 ? "; uniqueness not decided" : "";
 const noteOf = (row) => (isDone(row) ? doubtOf(row) : `; ${columns.status[row]}`);
 // Those of kept events; a run without one has a row that names none.
 const eventRows = columns.kind ? columns.run.map((_, row) => row).filter((row) => columns.kind[row]) : [];

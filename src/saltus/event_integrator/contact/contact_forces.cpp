@@ -19,6 +19,9 @@ using Eigen::VectorXd;
 
 using Eigen::Vector2d;
 
+/// Of margins: rounding of solves, and of the place where a mode was found to end.
+constexpr double holds = -1e-8;
+
 std::vector<ContactMode> mode_options(const ContactPoint& point, int i) {
   if (point.friction[static_cast<std::size_t>(i)] == 0.0) return {ContactMode::closed, ContactMode::open};
   if (point.in_plane(i)) {
@@ -137,29 +140,44 @@ void drop_idle(const ContactPoint& point, const std::vector<int>& resting, HeldR
   drop_idle(point, resting, rows, result);
 }
 
-/// Of forces that do not change the motion those that hold best: the margin is a concave function of them.
+/// Goes along forces that do not change the motion to where the modes hold best: the margin is a concave function.
+void take_best_along(const VectorXd& open, const ContactPoint& point, const std::vector<int>& resting,
+                     ContactForces& result) {
+  constexpr double moved = 1e-9, widest = 1e6, golden = 0.6180339887498949;
+  constexpr int refinements = 60;
+  const VectorXd way = open * (result.forces.cwiseAbs().maxCoeff() / open.cwiseAbs().maxCoeff());
+  if (!((point.influence * way).cwiseAbs().maxCoeff() <= moved * point.terms)) return;
+  const ContactForces start = result;
+  const auto margin_at = [&](double length) {
+    result.forces = start.forces + length * way;
+    return result.margin = margin_of(point, resting, result);
+  };
+  double low = -1.0, high = 1.0;
+  while (high < widest && margin_at(high) > margin_at(0.5 * high)) high *= 2.0;
+  while (low > -widest && margin_at(low) > margin_at(0.5 * low)) low *= 2.0;
+  for (int step = 0; step < refinements; ++step) {
+    const double right = low + golden * (high - low), left = high - golden * (high - low);
+    const bool rises = margin_at(left) < margin_at(right);
+    (rises ? low : high) = rises ? left : right;
+  }
+  if (!(margin_at(0.5 * (low + high)) > start.margin)) result = start;
+}
+
+/// Along one after the other; while the modes do not hold, along mixtures of them, too: the margin has edges, on which
+/// no single one leads on.
 void take_best(const ContactPoint& point, const std::vector<int>& resting, ContactForces& result) {
   if (!result.is_open) return;
   const Eigen::MatrixXd open = held_rows(point, resting, result).open(point.influence);
-  constexpr double moved = 1e-9, widest = 1e6, golden = 0.6180339887498949;
-  constexpr int refinements = 60;
-  for (Eigen::Index k = 0; k < open.cols(); ++k) {
-    const VectorXd way = open.col(k) * (result.forces.cwiseAbs().maxCoeff() / open.col(k).cwiseAbs().maxCoeff());
-    if (!((point.influence * way).cwiseAbs().maxCoeff() <= moved * point.terms)) continue;
-    const ContactForces start = result;
-    const auto margin_at = [&](double length) {
-      result.forces = start.forces + length * way;
-      return result.margin = margin_of(point, resting, result);
-    };
-    double low = -1.0, high = 1.0;
-    while (high < widest && margin_at(high) > margin_at(0.5 * high)) high *= 2.0;
-    while (low > -widest && margin_at(low) > margin_at(0.5 * low)) low *= 2.0;
-    for (int step = 0; step < refinements; ++step) {
-      const double right = low + golden * (high - low), left = high - golden * (high - low);
-      const bool rises = margin_at(left) < margin_at(right);
-      (rises ? low : high) = rises ? left : right;
+  for (Eigen::Index k = 0; k < open.cols(); ++k) take_best_along(open.col(k), point, resting, result);
+  constexpr int mixtures = 20;
+  constexpr double golden_angle = 2.399963229728653;
+  for (Eigen::Index n = 1; n < mixtures * open.cols() && open.cols() > 1 && result.margin < holds; ++n) {
+    VectorXd mixture = VectorXd::Zero(open.rows());
+    for (Eigen::Index k = 0; k < open.cols(); ++k) {
+      mixture +=
+          std::sin(golden_angle * static_cast<double>(n * (k + 1))) / open.col(k).cwiseAbs().maxCoeff() * open.col(k);
     }
-    if (!(margin_at(0.5 * (low + high)) > start.margin)) result = start;
+    take_best_along(mixture, point, resting, result);
   }
 }
 
@@ -186,7 +204,7 @@ bool is_determined(const ContactPoint& point, const std::vector<int>& resting, c
   if (!found.is_open && found.idle.empty()) return true;
   const Eigen::MatrixXd open = held_rows(point, resting, base).open(point.influence);
   const double response = point.influence.cwiseAbs().maxCoeff();
-  constexpr double small = 1e-6, moved = 1e-12, holds = -1e-8;
+  constexpr double small = 1e-6, moved = 1e-12;
   for (Eigen::Index k = 0; k < open.cols(); ++k) {
     const Eigen::VectorXd forces = open.col(k) * (small * point.terms / (response * open.col(k).cwiseAbs().maxCoeff()));
     const Eigen::VectorXd change = point.influence * forces;
@@ -241,6 +259,15 @@ bool forces_in(const ContactPoint& point, const std::vector<int>& resting, const
   return find_forces(point, resting, modes, rows, result);
 }
 
+bool carry_without(const ContactPoint& point, const std::vector<int>& resting, const std::vector<int>& idle,
+                   ContactForces& found) {
+  HeldRows rows(point.velocity.size());
+  found.idle = idle;
+  if (!solve_forces(point, resting, rows, found)) return false;
+  found.margin = margin_of(point, resting, found);
+  return found.margin >= holds;
+}
+
 std::vector<ContactForces> admissible_forces(const ContactPoint& point, const std::vector<int>& resting,
                                              const std::vector<std::vector<ContactMode>>& excluded) {
   std::vector<std::vector<ContactMode>> all;
@@ -259,8 +286,7 @@ std::vector<ContactForces> admissible_forces(const ContactPoint& point, const st
   constexpr long most = 100000;
   for (long tried = 0; tried < most; ++tried) {
     for (std::size_t k = 0; k < all.size(); ++k) modes[static_cast<std::size_t>(resting[k])] = all[k][number[k]];
-    // Rounding of solves, and of the place where a mode was found to end.
-    if (find_forces(point, resting, modes, rows, found) && found.margin >= -1e-8) result.push_back(std::move(found));
+    if (find_forces(point, resting, modes, rows, found) && found.margin >= holds) result.push_back(std::move(found));
     std::size_t k = 0;
     while (k < all.size() && ++number[k] == all[k].size()) number[k++] = 0;
     if (k == all.size()) break;

@@ -39,6 +39,10 @@ struct ContactForces {
 [[nodiscard]] bool forces_in(const ContactPoint& point, const std::vector<int>& resting,
                              const std::vector<ContactMode>& modes, ContactForces& result);
 
+/// Solves anew with other contacts idle; returns whether the modes still hold.
+[[nodiscard]] bool carry_without(const ContactPoint& point, const std::vector<int>& resting,
+                                 const std::vector<int>& idle, ContactForces& found);
+
 /// Returns the modes in which contacts at rest (gap and its rate 0) may go on: 0 <= normal force, complementary to 0 <=
 /// normal acceleration; |tangential force| <= friction normal force, with equality against the slip or, where there is
 /// none, against the tangential acceleration. Found by trying all combinations, those with most contact first.

@@ -106,10 +106,6 @@ bool Contacts::touches(int contact, const std::vector<double>& x, const std::vec
 void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
                      const std::vector<int>& ended) const {
   const int m = point.contacts();
-  VectorXd terms = VectorXd::Zero(point.velocity.size());
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    terms += values_.rows.col(static_cast<Eigen::Index>(k)).cwiseAbs() * std::abs(x[at(system_.velocities[k])]);
-  }
   const double small = small_velocity * fastest(moment, point, x), end = none_below * slowest(moment, point, x);
   const auto is_over = [&](int i) {
     return slips(mode_of(i, x)) && point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
@@ -125,7 +121,8 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
     const auto mode = mode_of(contact, x);
     const bool slip_ends = slip_has_ended[at(contact)];
     const bool held = row < m ? mode != ContactMode::open : mode == ContactMode::stick || slip_ends;
-    if (held || std::abs(point.velocity(row)) <= 16.0 * rounding_unit * terms(row)) point.velocity(row) = 0.0;
+    const auto rounding = [&] { return 16.0 * rounding_unit * terms_of(values_.rows, row, system_.velocities, x); };
+    if (held || std::abs(point.velocity(row)) <= rounding()) point.velocity(row) = 0.0;
   }
 }
 
@@ -143,6 +140,11 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   std::vector<int> touching;
   for (int i = 0; i < point.contacts(); ++i) {
     if (touches(i, x, ended)) touching.push_back(i);
+  }
+  if (const auto flat = without_normal(moment, touching, x); !flat.empty()) {
+    return fmt::format(
+        "the gap of {} has no normal at t = {:.17g}, where its gradient is 0: write it as a distance (x for x^3)",
+        names(flat), moment.t);
   }
   auto excluded = modes_that_end(moment, point, ended, x);
   const bool closing =
@@ -256,7 +258,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
         "jam)",
         names(touching), moment.t);
   }
-  const std::size_t chosen = found.size() == 1 ? 0 : best_ahead(moment, point, resting, found, x);
+  const std::size_t chosen = best_ahead(moment, point, resting, found, x);
   if (!have_one_motion(point, resting, found, chosen)) {
     if (!why_open_.empty()) why_open_ += "; ";
     why_open_ += "the forces of what touches leave more than one motion open";
@@ -274,14 +276,17 @@ void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<dou
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * rate[i];
 }
 
-/// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin.
+/// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin:
+/// with those contacts idle that will be.
 std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint& point,
-                                 const std::vector<int>& resting, const std::vector<ContactForces>& found,
+                                 const std::vector<int>& resting, std::vector<ContactForces>& found,
                                  const std::vector<double>& x) {
+  constexpr double clear = 1e-4;
+  if (found.size() == 1 && (found[0].idle.empty() || found[0].margin > clear)) return 0;
   std::size_t best = 0;
   double largest = -std::numeric_limits<double>::infinity();
+  std::vector<int> idle = found[0].idle;
   const double h = ahead_by * moment.time_scale;
-  constexpr double clear = 1e-4;
   const ContactPoint here = point_at(moment.t, moment.alpha, x);
   const evaluation::ContactValues values = values_;
   for (std::size_t k = 0; k < found.size(); ++k) {
@@ -307,7 +312,11 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint
     if (held > largest) {
       largest = held;
       best = k;
+      idle = forces.idle;
     }
+  }
+  if (ContactForces carried = found[best]; idle != carried.idle && carry_without(point, resting, idle, carried)) {
+    found[best] = std::move(carried);
   }
   return best;
 }

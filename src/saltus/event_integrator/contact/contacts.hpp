@@ -64,8 +64,8 @@ class Contacts {
 
   /// Returns whether positions or velocities differ.
   [[nodiscard]] bool are_moved(const std::vector<double>& x, const std::vector<double>& x_after) const;
-  /// Returns whether a gap has jumped, or a velocity along one: a closed gap is not 0 any more, an open one is negative,
-  /// what sticks moves, or what slips has another speed than it may have.
+  /// Returns whether a gap has jumped, or a velocity along one: a closed gap is not 0 any more, an open one is
+  /// negative, what sticks moves, or what slips has another speed than it may have.
   [[nodiscard]] bool have_jumped(const ContactMoment& moment, const std::vector<double>& x);
   /// Opens all contacts, as before a start. Returns what is wrong if bodies overlap.
   [[nodiscard]] std::optional<std::string> begin_anew(const ContactMoment& moment, std::vector<double>& x);
@@ -95,7 +95,8 @@ class Contacts {
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
   /// Returns whether friction of a slip in a plane turns so fast that explicit steps would be short, and many.
   [[nodiscard]] bool turns_fast(const ContactMoment& moment, const std::vector<double>& x);
-  /// Returns the parts of the tolerances that slips in a plane bear, down to the speed at which they are looked at next.
+  /// Returns the parts of the tolerances that slips in a plane bear, down to the speed at which they are looked at
+  /// next.
   [[nodiscard]] ode::Tolerances bearable(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns their names, for messages.
   [[nodiscard]] std::string names(const std::vector<int>& contacts) const;
@@ -134,7 +135,11 @@ class Contacts {
                                      const std::vector<double>& x) const;
   void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
   [[nodiscard]] std::optional<int> open_with_gap(int function, const std::vector<double>& x) const;
+  [[nodiscard]] std::vector<int> without_normal(const ContactMoment& moment, const std::vector<int>& touching,
+                                                const std::vector<double>& x) const;
   [[nodiscard]] double no_gap(int contact, const std::vector<double>& x) const;
+  [[nodiscard]] static double terms_of(const evaluation::ContactValues::Rows& rows, int row,
+                                       const std::vector<int>& states, const std::vector<double>& x);
   [[nodiscard]] double gap_terms(int contact, const std::vector<double>& x) const;
   [[nodiscard]] double pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const;
   [[nodiscard]] bool rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
@@ -170,7 +175,7 @@ class Contacts {
                                                       std::vector<std::vector<ContactMode>> excluded,
                                                       ContactPoint& point, std::vector<double>& x);
   [[nodiscard]] std::size_t best_ahead(const ContactMoment& moment, const ContactPoint& point,
-                                       const std::vector<int>& resting, const std::vector<ContactForces>& found,
+                                       const std::vector<int>& resting, std::vector<ContactForces>& found,
                                        const std::vector<double>& x);
   void enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
              std::vector<double>& x);

@@ -1,6 +1,7 @@
 // Which gaps and rates of contacts are none.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -10,13 +11,33 @@
 
 namespace saltus::event_integrator {
 
-/// What the gap is made of: what its rounding is relative to.
-double Contacts::gap_terms(int contact, const std::vector<double>& x) const {
-  double terms = 0.0;
+/// Those of what touches whose gaps have no gradient, and so no normal, here, against where the motion goes on to.
+std::vector<int> Contacts::without_normal(const ContactMoment& moment, const std::vector<int>& touching,
+                                          const std::vector<double>& x) const {
+  constexpr double none = 1e-3;
+  auto ahead = x;
   for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    terms += std::abs(values_.rows(contact, static_cast<Eigen::Index>(k)) * x[at(system_.positions[k])]);
+    ahead[at(system_.positions[k])] += ahead_by * moment.time_scale * x[at(system_.velocities[k])];
   }
+  evaluation::ContactValues later;
+  kernel_.contacts(moment.t, ahead.data(), moment.alpha.data(), later);
+  std::vector<int> found;
+  std::copy_if(touching.begin(), touching.end(), std::back_inserter(found), [&](int i) {
+    return contacts_[at(i)].has_gap && values_.rows.row(i).norm() <= none * later.rows.row(i).norm();
+  });
+  return found;
+}
+
+/// The sizes of the terms of a row times positions, or velocities: what the rounding of a gap, or rate, is relative to.
+double Contacts::terms_of(const evaluation::ContactValues::Rows& rows, int row, const std::vector<int>& states,
+                          const std::vector<double>& x) {
+  double terms = 0.0;
+  for (std::size_t k = 0; k < states.size(); ++k) terms += std::abs(rows(row, index(k)) * x[at(states[k])]);
   return terms;
+}
+
+double Contacts::gap_terms(int contact, const std::vector<double>& x) const {
+  return terms_of(values_.rows, contact, system_.positions, x);
 }
 
 /// How large a gap may be that is 0 to the rounding of its terms.
@@ -54,10 +75,8 @@ bool Contacts::rises_by_nothing(const ContactMoment& moment, int contact, const 
 bool Contacts::closes_flatly(const ContactMoment& moment, int contact, const ContactPoint& point,
                              const std::vector<double>& x) const {
   const double speed = std::abs(point.normal_velocity(contact)), acceleration = point.acceleration(contact);
-  double terms = std::abs(acceleration) * std::max(std::abs(moment.t), moment.time_scale);
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    terms += std::abs(values_.rows(contact, static_cast<Eigen::Index>(k)) * x[at(system_.velocities[k])]);
-  }
+  const double terms = std::abs(acceleration) * std::max(std::abs(moment.t), moment.time_scale) +
+                       terms_of(values_.rows, contact, system_.velocities, x);
   if (speed <= 64.0 * rounding_unit * terms) return true;
   if (speed > rests_below * slowest(moment, point, x)) return false;
   auto ahead = x;
@@ -159,13 +178,12 @@ auto Contacts::gap_motion(int function, const ContactMoment& moment, const std::
   for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * slope[i];
   kernel_.contacts(moment.t + h, ahead.data(), moment.alpha.data(), later);
   // A guard is positive where its gap is negative.
-  GapMotion motion{0.0, -here.velocity(*contact), 0.0, (here.velocity(*contact) - later.velocity(*contact)) / h};
+  GapMotion motion{terms_of(here.rows, *contact, system_.positions, x), -here.velocity(*contact),
+                   terms_of(here.rows, *contact, system_.velocities, x),
+                   (here.velocity(*contact) - later.velocity(*contact)) / h};
   double along_time = here.velocity(*contact);
   for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    const double normal = here.rows(*contact, index(k)), term = normal * x[at(system_.velocities[k])];
-    motion.size += std::abs(normal * x[at(system_.positions[k])]);
-    motion.terms += std::abs(term);
-    along_time -= term;
+    along_time -= here.rows(*contact, index(k)) * x[at(system_.velocities[k])];
   }
   motion.terms += std::abs(along_time);
   motion.size += std::abs(along_time * moment.t);

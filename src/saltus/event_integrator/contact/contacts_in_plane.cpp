@@ -57,14 +57,15 @@ void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x)
 }
 
 /// The direction settles within |v| over the push of friction, which limits explicit steps. Where a growing force
-/// breaks a contact away the speed grows like t^2: each time it doubles takes as many of them as 1/t.
+/// breaks a contact away the speed grows like t^2: each time it doubles takes as many of them as 1/t. The last step may
+/// be as short as that limit already.
 bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>& x) {
   const auto [modes, closed] = modes_at(x);
   if (!contains(modes, ContactMode::slip)) return false;
   const ContactPoint point = point_at(moment.t, moment.alpha, x);
   ContactForces forces;
   if (!forces_in(point, closed, modes, forces)) return false;
-  constexpr double steps = 30.0, limit = 3.0;
+  constexpr double steps = 30.0, limit = 1.0;
   return std::any_of(closed.begin(), closed.end(), [&](int i) {
     if (modes[at(i)] != ContactMode::slip) return false;
     const Eigen::Vector2d velocity = point.along(point.velocity, i);
@@ -88,14 +89,11 @@ ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vecto
     if (modes[at(i)] != ContactMode::slip) continue;
     const double wanted = std::sqrt(x[at(contacts_[at(i)].speeds)]);
     for (int k = 0; k < 2; ++k) {
-      double terms = 0.0, slope = 0.0;
-      for (std::size_t state = 0; state < system_.velocities.size(); ++state) {
-        const double weight = std::abs(values_.rows(point.tangent_row(i, k), index(state)));
-        terms += weight * std::abs(x[at(system_.velocities[state])]);
-        slope += weight;
-      }
+      const int row = point.tangent_row(i, k);
+      const double terms = terms_of(values_.rows, row, system_.velocities, x),
+                   slope = values_.rows.row(row).cwiseAbs().sum();
       parts.rtol = std::min(parts.rtol, part_of_slip * wanted / (moment.tolerances.rtol * terms));
-      parts.atol = std::min(parts.atol, wanted / (moment.tolerances.atol * slope));
+      parts.atol = std::min(parts.atol, part_of_slip * wanted / (moment.tolerances.atol * slope));
     }
   }
   return parts;

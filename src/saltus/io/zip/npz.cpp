@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/io/impulse_columns_internal.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/text_stream_internal.hpp"
 #include "saltus/io/zip/npy.hpp"
@@ -197,6 +198,10 @@ void add_events(const result::Result& result, SpooledColumns& columns) {
   columns.table<double>("mode_after", functions, "<f8", of(&Events::mode_after));
   columns.table<double>("alpha_before", functions, "<f8", of(&Events::alpha_before));
   columns.table<double>("alpha_after", functions, "<f8", of(&Events::alpha_after));
+  const ImpulseColumns impulses(result);
+  columns.table<double>("", impulses.names, "<f8", [&](std::size_t k, std::size_t i) {
+    return impulses.value(events, k, i).value_or(std::numeric_limits<double>::quiet_NaN());
+  });
   columns.numbers<std::int8_t>("unique", "|i1", [&](std::size_t k) { return result::unique_number(events.unique(k)); });
   columns.words("reason", [&](std::size_t k) { return std::string(events.reason(k)); });
 }

@@ -62,7 +62,7 @@ class MechanicsBuild {
       if (!with_contacts) return with_contacts.error();
       force = *with_contacts;
     }
-    set_dynamics(factors.solve(force));
+    set_dynamics(factors.accelerations(force));
     const SX kinetic = SX::mtimes(v_.T(), SX::mtimes(mechanics_.mass, v_)) / 2.0;
     if (!is_taken("energy")) {
       statement_.automatic_outputs.push_back({"energy", SX::densify(kinetic + mechanics_.potential).scalar()});

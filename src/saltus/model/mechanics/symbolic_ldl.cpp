@@ -38,15 +38,24 @@ SymbolicLdl::SymbolicLdl(const SX& m, const SX& moving)
       lower_(i, j) = e.is_zero() ? SXElem(0.0) : e / pivot;
     }
   }
-  // NOTE: a root adds less than the rounding of a positive pivot, and is no number of a negative one.
-  constexpr double nothing = 1e-300;
+  // NOTE: a root adds less than the rounding of a positive pivot, and is no number of a negative one. CasADi would fold
+  // a product that is always 0; an exponential below all numbers it keeps.
+  constexpr double nothing = 1e-300, below_all = -1e3;
   divisors_ = pivots_;
+  zeros_ = SX::zeros(n, 1);
   for (casadi_int j = 0; j < n; ++j) {
-    if (SX::depends_on(pivots_(j), moving)) divisors_(j) = pivots_(j) + nothing * sqrt(pivots_(j));
+    if (!SX::depends_on(pivots_(j), moving)) continue;
+    divisors_(j) = pivots_(j) + nothing * sqrt(pivots_(j));
+    zeros_(j) = exp(below_all - sqrt(pivots_(j)));
   }
 }
 
-SX SymbolicLdl::solve(const SX& right) const {
+SX SymbolicLdl::solve(const SX& right) const { return solve(right, SX::zeros(lower_.size1(), 1)); }
+
+SX SymbolicLdl::accelerations(const SX& force) const { return solve(force, zeros_); }
+
+/// @param zeros  n: what a row has for a right-hand side that is 0
+SX SymbolicLdl::solve(const SX& right, const SX& zeros) const {
   const casadi_int n = lower_.size1();
   SX x = SX::densify(right);
   for (casadi_int c = 0; c < x.size2(); ++c) {
@@ -58,7 +67,7 @@ SX SymbolicLdl::solve(const SX& right) const {
     }
     for (casadi_int i = 0; i < n; ++i) {
       const SXElem e = ldl_entry(x, i, c);
-      x(i, c) = e.is_zero() ? e : e / ldl_entry(divisors_, i, 0);
+      x(i, c) = e.is_zero() ? ldl_entry(zeros, i, 0) : e / ldl_entry(divisors_, i, 0);
     }
     for (casadi_int i = n - 1; i >= 0; --i) {
       SXElem e = ldl_entry(x, i, c);

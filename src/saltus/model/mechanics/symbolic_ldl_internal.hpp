@@ -14,13 +14,18 @@ class SymbolicLdl {
 
   /// Returns M^-1 B, which is not finite where a pivot is negative. @param right  n x k
   [[nodiscard]] casadi::SX solve(const casadi::SX& right) const;
+  /// Returns M^-1 f, which is no number where a pivot is negative, though nothing may be divided by it.
+  [[nodiscard]] casadi::SX accelerations(const casadi::SX& force) const;
   /// Returns the entries of D: M is positive definite where all are positive.
   [[nodiscard]] const casadi::SX& pivots() const { return pivots_; }
 
  private:
+  [[nodiscard]] casadi::SX solve(const casadi::SX& right, const casadi::SX& zeros) const;
+
   casadi::SX lower_;     ///< n x n, below the diagonal
   casadi::SX pivots_;    ///< n
   casadi::SX divisors_;  ///< n: no number where a pivot is negative
+  casadi::SX zeros_;     ///< n: 0, and likewise
 };
 
 /// Solves A^-1 b by elimination in the order of the rows: for matrices whose leading minors are not 0.

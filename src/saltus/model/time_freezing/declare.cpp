@@ -60,6 +60,8 @@ Expected<FreezingNumbers> freezing_numbers(const Description& description, Model
   for (const auto& key : {Key{"a_n", stated.a_n, numbers.a_n}, Key{"stiffness", stated.stiffness, stiffness},
                           Key{"stabilisation", stated.stabilisation, numbers.stabilisation, Range::not_negative},
                           Key{"stabilisation.initial", stated.stabilisation_initial, initial, Range::not_negative},
+                          Key{"speed.lower", stated.speed_lower, numbers.speed_lower},
+                          Key{"speed.upper", stated.speed_upper, numbers.speed_upper},
                           Key{"transfer", stated.transfer, numbers.transfer}, Key{"eps_t", stated.eps_t, numbers.eps_t},
                           Key{"correction", stated.correction, numbers.correction, Range::not_negative},
                           Key{"penetration", stated.penetration, numbers.penetration, Range::positive_or_infinite}}) {
