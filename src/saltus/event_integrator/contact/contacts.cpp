@@ -37,12 +37,14 @@ bool Contacts::owns(int jump) const {
 /// Of the accelerations that the forces of closed contacts cancel, by the sizes of these forces in t and x.
 double Contacts::force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
                              const std::vector<double>& x) const {
+  const auto presses = [&](const auto& contact) { return contact.has_gap && x[at(contact.active)] != 0.0; };
+  if (std::none_of(contacts_.begin(), contacts_.end(), presses)) return 0.0;
   std::vector<double> magnitude(guards_.size()), slope(guards_.size());
   kernel_.scales(t, x.data(), alpha.data(), magnitude.data(), slope.data());
   double largest = 0.0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const auto& contact = contacts_[i];
-    if (!contact.has_gap || x[at(contact.active)] == 0.0) continue;
+    if (!presses(contact)) continue;
     const double force = magnitude[at(kernel_.jump_guard(contact.jump, 0))] * x[at(contact.force_unit)];
     const auto row = static_cast<Eigen::Index>(i);
     if (std::isfinite(force)) largest = std::max(largest, force * point.influence(row, row));
@@ -70,13 +72,19 @@ double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, 
 }
 
 ContactPoint Contacts::point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
-  kernel_.contacts(t, x.data(), alpha.data(), values_);
-  ContactPoint point;
-  point.influence = values_.rows * values_.responses;
-  point.velocity = values_.velocity;
-  point.acceleration = values_.acceleration;
+  ContactPoint point = motion_at(t, alpha, x);
   point.free_terms = acceleration_terms(t, alpha, x);
   point.terms = std::max(point.free_terms, force_terms(point, t, alpha, x));
+  return point;
+}
+
+/// A point without the sizes of its terms.
+ContactPoint Contacts::motion_at(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
+  kernel_.contacts(t, x.data(), alpha.data(), values_);
+  ContactPoint point;
+  point.influence.noalias() = values_.rows * values_.responses;
+  point.velocity = values_.velocity;
+  point.acceleration = values_.acceleration;
   point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<Eigen::Index>(i)) : 0.0);
@@ -162,6 +170,7 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
     if (!ends) {
       x = x_before;
       point = before;
+      kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
       why_open_.clear();
       for (const int i : touching) point.velocity(i) = std::max(point.velocity(i), 0.0);
     }
@@ -259,7 +268,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
     if (!why_open_.empty()) why_open_ += "; ";
     why_open_ += "the forces of what touches leave more than one motion open";
   }
-  put_at_rest(moment, point, resting, x);
+  put_at_rest(point, resting, x);
   enter(moment, point, found[chosen], x);
   static_cast<void>(project(moment.t, moment.alpha, x, touching));
   bound_speeds(moment, x);
@@ -273,6 +282,7 @@ void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<dou
 }
 
 /// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin.
+/// Values are those at x, and stay so.
 std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint& point,
                                  const std::vector<int>& resting, const std::vector<ContactForces>& found,
                                  const std::vector<double>& x) {
@@ -280,14 +290,17 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint
   double largest = -std::numeric_limits<double>::infinity();
   const double h = ahead_by * moment.time_scale;
   constexpr double clear = 1e-4;
-  const ContactPoint here = point_at(moment.t, moment.alpha, x);
+  ContactPoint here = point;
+  here.velocity = values_.velocity;
   const evaluation::ContactValues values = values_;
+  std::vector<double> ahead;
   for (std::size_t k = 0; k < found.size(); ++k) {
-    auto ahead = x;
-    values_ = values;
+    ahead = x;
     enter(moment, here, found[k], ahead);
     move_ahead(moment, h, ahead);
-    ContactPoint later = point_at(moment.t + h, moment.alpha, ahead);
+    ContactPoint later = motion_at(moment.t + h, moment.alpha, ahead);
+    values_ = values;
+    later.terms = point.terms;
     for (const int i : resting) {
       // The sign of the slip is that of the mode; where it begins without an acceleration, that of a rounding.
       const auto mode = found[k].modes[at(i)];

@@ -43,11 +43,17 @@ class Contacts {
   struct GapMotion {
     double size, rate, terms, bend;  ///< sizes of the terms of the gap, and of its rate; the guard's derivatives
   };
+  /// Holds the values of all contacts along a slope, for those that are asked one after the other.
+  struct Along {
+    bool known = false;
+    std::vector<double> x, slope, ahead;
+    evaluation::ContactValues here, later;
+  };
   /// Returns how a guard that is the gap of an open contact moves along a slope; nothing of other ones. The second
   /// derivative is a difference.
   [[nodiscard]] std::optional<GapMotion> gap_motion(int function, const ContactMoment& moment,
-                                                    const std::vector<double>& x,
-                                                    const std::vector<double>& slope) const;
+                                                    const std::vector<double>& x, const std::vector<double>& slope,
+                                                    Along& along) const;
   /// Returns those whose jumps are in a list, or for which a condition on their jumps holds.
   template <class Condition>
   [[nodiscard]] std::vector<int> with_jumps(Condition condition) const {
@@ -64,8 +70,8 @@ class Contacts {
 
   /// Returns whether positions or velocities differ.
   [[nodiscard]] bool are_moved(const std::vector<double>& x, const std::vector<double>& x_after) const;
-  /// Returns whether a gap has jumped, or a velocity along one: a closed gap is not 0 any more, an open one is negative,
-  /// what sticks moves, or what slips has another speed than it may have.
+  /// Returns whether a gap has jumped, or a velocity along one: a closed gap is not 0 any more, an open one is
+  /// negative, what sticks moves, or what slips has another speed than it may have.
   [[nodiscard]] bool have_jumped(const ContactMoment& moment, const std::vector<double>& x);
   /// Opens all contacts, as before a start. Returns what is wrong if bodies overlap.
   [[nodiscard]] std::optional<std::string> begin_anew(const ContactMoment& moment, std::vector<double>& x);
@@ -95,7 +101,8 @@ class Contacts {
   [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
   /// Returns whether friction of a slip in a plane turns so fast that explicit steps would be short, and many.
   [[nodiscard]] bool turns_fast(const ContactMoment& moment, const std::vector<double>& x);
-  /// Returns the parts of the tolerances that slips in a plane bear, down to the speed at which they are looked at next.
+  /// Returns the parts of the tolerances that slips in a plane bear, down to the speed at which they are looked at
+  /// next.
   [[nodiscard]] ode::Tolerances bearable(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns their names, for messages.
   [[nodiscard]] std::string names(const std::vector<int>& contacts) const;
@@ -116,6 +123,7 @@ class Contacts {
   static constexpr double none_at_start = 1e-12;
 
   [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  [[nodiscard]] ContactPoint motion_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
   [[nodiscard]] double force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
                                    const std::vector<double>& x) const;
   [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha,
@@ -181,8 +189,7 @@ class Contacts {
   bool correct_positions(const std::vector<int>& touching, std::vector<double>& x);
   void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x);
   void correct_velocities(Slips slips, std::vector<double>& x);
-  void put_at_rest(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
-                   std::vector<double>& x);
+  void put_at_rest(const ContactPoint& point, const std::vector<int>& resting, std::vector<double>& x);
   void drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
                           std::vector<double>& x) const;
   void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;

@@ -121,9 +121,8 @@ void Contacts::drop_own_roundings(const std::vector<int>& rows, const std::vecto
 }
 
 /// What counts as 0 is 0, along the ground, too: a slip that begins from a rounding against it would end at once.
-void Contacts::put_at_rest(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
-                           std::vector<double>& x) {
-  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
+/// Values are those at x.
+void Contacts::put_at_rest(const ContactPoint& point, const std::vector<int>& resting, std::vector<double>& x) {
   std::vector<int> rows;
   RowBasis basis(values_.rows);
   for (const int i : resting) {

@@ -62,8 +62,7 @@ bool Run::execute_jump() {
   // What is left of a zero depends on the selections behind the jump.
   if (!here_.state.alpha.empty())
     here_.state.alpha = selections_at(switching_context_, here_.t, here_.x.data(), here_.state.alpha);
-  cascade_.drop_zeros();
-  cascade_.read_user_signs();
+  cascade_.look_behind_jump();
   jumps_.update(jump_point());
   return !jumps_have_problem();
 }

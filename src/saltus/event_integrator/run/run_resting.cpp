@@ -107,8 +107,7 @@ bool Run::leaves_resting_with_cells() {
   if (stay) return false;
   holding_.release_all();
   search_.set_held({});
-  cascade_.drop_zeros();
-  cascade_.read_user_signs();
+  cascade_.look_behind_jump();
   jumps_.update(jump_point());
   return true;
 }

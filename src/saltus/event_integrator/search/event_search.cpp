@@ -266,6 +266,7 @@ bool EventSearch::stays_away(std::size_t i) const {
 
 /// The curved functions that may vanish within the bounds of the step; returns whether there are any.
 bool EventSearch::find_near() {
+  sampled_is_known_ = true;
   sampled_.clear();
   if (mode_.curved.empty()) return false;
   if (mode_.curved_parts.phi) {
@@ -287,7 +288,7 @@ bool EventSearch::find_near() {
 }
 
 bool EventSearch::may_vanish(const ode::Stepper& stepper) {
-  range_.known = false;
+  range_.known = sampled_is_known_ = false;
   if (mode_.present == 0) return false;
   if (!specials_leave(stepper)) return true;
   return !range_.read(stepper) || mode_.forms.may_vanish(range_.bounds) || find_near();
@@ -296,12 +297,13 @@ bool EventSearch::may_vanish(const ode::Stepper& stepper) {
 /// The functions that the exact search has to look at.
 void EventSearch::find_suspects(const ode::DenseStep& step) {
   suspects_.clear();
+  const bool is_known = std::exchange(sampled_is_known_, false) && range_.known;
   range_.read(step);
   mode_.forms.append_suspects(range_.bounds, suspects_);
   for (const std::size_t i : special_) {
     if (mode_.forms.has(i)) suspects_.push_back(i);
   }
-  if (find_near()) {
+  if (is_known ? !sampled_.empty() : find_near()) {
     if (five_nodes_suffice_) sample(step, 0.0, 1.0, sampled_, {0, 2});
     for (const std::size_t i : sampled_) {
       if (!is_far(i)) suspects_.push_back(i);
@@ -327,10 +329,12 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location,
   find_suspects(step);
   if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
+  bool has_scales = false;  // of the functions of the kernel where the step starts
   if (suspects_.size() == 1 && mode_.is_threshold(suspects_.front())) {  // the usual event
     set_noise(suspects_.front(), x_.data());
   } else {
     rescale(step.t, x_.data(), suspects_);
+    has_scales = mode_.parts_of(suspects_).phi;
     sampled_.clear();
     for (const std::size_t i : suspects_) {
       if (!mode_.forms.has(i)) sampled_.push_back(i);
@@ -350,7 +354,9 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location,
     find_candidates();
     if (candidates_ == suspects_) return outcome;  // their roundings are known
     step.evaluate(0.0, x_.data());
-    rescale(step.t, x_.data(), candidates_);
+    FunctionParts parts = mode_.parts_of(candidates_);
+    if (has_scales) parts.phi = parts.nested = false;
+    rescale(step.t, x_.data(), candidates_, parts);
   }
   return outcome;
 }

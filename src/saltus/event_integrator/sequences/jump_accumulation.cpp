@@ -51,8 +51,9 @@ void JumpAccumulation::note_bounces(const JumpCascade& cascade) {
     if (!cascade.contacts().owns(executed.jump)) continue;
     std::vector<double> slope(executed.x.size());
     kernel_.field(here_.t, executed.x.data(), here_.state.alpha.data(), slope.data());
-    const auto gap = cascade.contacts().gap_motion(kernel_.jump_guard(executed.jump, 0),
-                                                   {here_.t, here_.state.alpha, here_.time_scale}, executed.x, slope);
+    Contacts::Along along;
+    const auto gap = cascade.contacts().gap_motion(
+        kernel_.jump_guard(executed.jump, 0), {here_.t, here_.state.alpha, here_.time_scale}, executed.x, slope, along);
     if (!gap) continue;
     shortest_cycle_[at(executed.jump)] = gap->rate != 0.0 ? unresolved * gap->size / std::abs(gap->rate) : 0.0;
   }
