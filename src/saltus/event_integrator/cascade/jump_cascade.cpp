@@ -97,25 +97,11 @@ bool JumpCascade::stays_at_zero(int function) const {
 void JumpCascade::drop_zeros() {
   if (zeros_.empty()) return;
   find_values();
-  keep_zeros();
+  std::erase_if(zeros_, [&](int function) { return !stays_at_zero(function); });
 }
 
 void JumpCascade::read_user_signs() {
   find_values();
-  find_signs();
-}
-
-void JumpCascade::look_behind_jump() {
-  find_values();
-  keep_zeros();
-  find_signs();
-}
-
-void JumpCascade::keep_zeros() {
-  std::erase_if(zeros_, [&](int function) { return !stays_at_zero(function); });
-}
-
-void JumpCascade::find_signs() {
   auto& signs = user_signs_ = search_.user_signs();
   auto& vanish = user_zeros_;
   vanish.assign(signs.size(), false);

@@ -66,8 +66,6 @@ class JumpCascade {
   /// Reads the signs of all user functions at the point as it is. One that was located here and is still at zero keeps
   /// the sign just behind this time; one that a jump has put there has none yet (0).
   void read_user_signs();
-  /// Does both.
-  void look_behind_jump();
   /// Forgets motions along the mode before, as the mode is decided anew.
   void forget_motions() {
     motions_.assign(motions_.size(), std::nullopt);
@@ -98,8 +96,6 @@ class JumpCascade {
   [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
   [[nodiscard]] SwitchingPoint at_this_time() const;
   void find_values();
-  void keep_zeros();
-  void find_signs();
   [[nodiscard]] bool is_open_at_zero(int function);
   [[nodiscard]] double time_resolution() const;
   [[nodiscard]] double resolution(int function) const;

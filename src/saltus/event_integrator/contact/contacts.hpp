@@ -123,11 +123,12 @@ class Contacts {
   static constexpr double none_at_start = 1e-12;
 
   [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
-  [[nodiscard]] ContactPoint motion_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  void read_point(double t, const std::vector<double>& alpha, const std::vector<double>& x, ContactPoint& point);
+  void read_motion(double t, const std::vector<double>& alpha, const std::vector<double>& x, ContactPoint& point);
   [[nodiscard]] double force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
-                                   const std::vector<double>& x) const;
-  [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha,
-                                          const std::vector<double>& x) const;
+                                   const std::vector<double>& x);
+  [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  void drop_forces(std::vector<double>& x) const;
   [[nodiscard]] ContactMode mode_of(int contact, const std::vector<double>& x) const;
   struct Modes {
     std::vector<ContactMode> modes;  ///< of all contacts
@@ -213,6 +214,11 @@ class Contacts {
     Eigen::LDLT<Eigen::MatrixXd> factors;
   };
   Projection projection_;  ///< work space: steps allocate nothing
+  struct Terms {
+    std::vector<double> open, rate;  ///< a state without forces
+    std::vector<double> magnitude, slope;
+  };
+  Terms terms_;  ///< likewise
   std::string why_open_;
   std::vector<int> last_bounces_;
 };

@@ -62,7 +62,8 @@ bool Run::execute_jump() {
   // What is left of a zero depends on the selections behind the jump.
   if (!here_.state.alpha.empty())
     here_.state.alpha = selections_at(switching_context_, here_.t, here_.x.data(), here_.state.alpha);
-  cascade_.look_behind_jump();
+  cascade_.drop_zeros();
+  cascade_.read_user_signs();
   jumps_.update(jump_point());
   return !jumps_have_problem();
 }

@@ -107,7 +107,8 @@ bool Run::leaves_resting_with_cells() {
   if (stay) return false;
   holding_.release_all();
   search_.set_held({});
-  cascade_.look_behind_jump();
+  cascade_.drop_zeros();
+  cascade_.read_user_signs();
   jumps_.update(jump_point());
   return true;
 }

@@ -324,23 +324,50 @@ void EventSearch::find_candidates() {
   if (candidates_.size() > 1) std::sort(candidates_.begin(), candidates_.end());
 }
 
+/// Whether all suspects are curved functions of the kernel that are not at zero where the step starts.
+bool EventSearch::are_away_at_start() const {
+  return std::all_of(suspects_.begin(), suspects_.end(), [&](std::size_t i) {
+    const auto& function = mode_.functions[i];
+    return uses_phi(function) && !mode_.forms.has(i) && function.sign != 0 && function.zero_order == 0;
+  });
+}
+
+/// Whether the samples of the whole step show that a function keeps its sign, whatever its rounding is.
+bool EventSearch::clearly_keeps_sign(const ode::DenseStep& step, std::size_t i) {
+  std::array<double, ode::event_nodes> values;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * mode_.functions.size() + i];
+  const auto coefficients = ode::to_bernstein(values);
+  double margin = std::numeric_limits<double>::max(), size = 0.0;
+  for (const double b : coefficients) {
+    if (!(mode_.functions[i].sign * b > 0.0)) return false;
+    margin = std::min(margin, std::abs(b));
+    size = std::max(size, std::abs(b));
+  }
+  const double wanted = std::max(0.125 * margin, 0.1 * errors_.of_run().rtol * size);
+  return chebyshev_tail(values) <= wanted && !misses(step, 0.0, 1.0, i, coefficients, wanted);
+}
+
 SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location, Hit& hit) {
   if (mode_.present == 0) return SearchOutcome::none;
   find_suspects(step);
   if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
-  bool has_scales = false;  // of the functions of the kernel where the step starts
+  // Those between the ones that find_suspects has sampled.
+  const Nodes rest = five_nodes_suffice_ ? Nodes{1, 2} : Nodes{0, 1};
   if (suspects_.size() == 1 && mode_.is_threshold(suspects_.front())) {  // the usual event
     set_noise(suspects_.front(), x_.data());
+  } else if (are_away_at_start()) {
+    sample(step, 0.0, 1.0, suspects_, rest);
+    if (std::all_of(suspects_.begin(), suspects_.end(), [&](auto i) { return clearly_keeps_sign(step, i); }))
+      return SearchOutcome::none;
+    step.evaluate(0.0, x_.data());
+    rescale(step.t, x_.data(), suspects_);
   } else {
     rescale(step.t, x_.data(), suspects_);
-    has_scales = mode_.parts_of(suspects_).phi;
     sampled_.clear();
     for (const std::size_t i : suspects_) {
       if (!mode_.forms.has(i)) sampled_.push_back(i);
     }
-    // Those between the ones that find_suspects has sampled.
-    const Nodes rest = five_nodes_suffice_ ? Nodes{1, 2} : Nodes{0, 1};
     if (!sampled_.empty()) sample(step, 0.0, 1.0, sampled_, rest);
   }
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);
@@ -354,9 +381,7 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location,
     find_candidates();
     if (candidates_ == suspects_) return outcome;  // their roundings are known
     step.evaluate(0.0, x_.data());
-    FunctionParts parts = mode_.parts_of(candidates_);
-    if (has_scales) parts.phi = parts.nested = false;
-    rescale(step.t, x_.data(), candidates_, parts);
+    rescale(step.t, x_.data(), candidates_);
   }
   return outcome;
 }
