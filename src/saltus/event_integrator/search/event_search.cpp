@@ -53,21 +53,6 @@ const std::array<ode::BernsteinCoefficients, checked_places.size()>& weights_at_
   return table;
 }
 
-/// Size of the last two Chebyshev coefficients of an interpolant: what the next ones may be expected to be.
-double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
-  constexpr int n = ode::event_degree;
-  double tail = 0.0;
-  for (const int degree : {n - 1, n}) {
-    double sum = 0.0;
-    for (int k = 0; k <= n; ++k) {
-      const double weight = (k == 0 || k == n) ? 0.5 : 1.0;
-      sum += weight * values[at(k)] * tail_cosines()[at(degree - n + 1)][at(k)];
-    }
-    tail += std::abs(sum) * (degree == n ? 1.0 : 2.0) / n;
-  }
-  return tail;
-}
-
 /// Whether an interpolant that misses its function by `error` or so shows one passage through zero all the same: but
 /// for a band around zero, eight times as wide, the function is on one side before it and on the other one behind it.
 /// The place is then as good as the band is narrow, and location goes on from the retaken step: an error of a
@@ -94,6 +79,20 @@ bool stays_far(const std::array<double, 5>& v, int sign) {
 }
 
 }  // namespace
+
+double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
+  constexpr int n = ode::event_degree;
+  double tail = 0.0;
+  for (const int degree : {n - 1, n}) {
+    double sum = 0.0;
+    for (int k = 0; k <= n; ++k) {
+      const double weight = (k == 0 || k == n) ? 0.5 : 1.0;
+      sum += weight * values[at(k)] * tail_cosines()[at(degree - n + 1)][at(k)];
+    }
+    tail += std::abs(sum) * (degree == n ? 1.0 : 2.0) / n;
+  }
+  return tail;
+}
 
 /// The argument of a cell may be undefined where a branch that is not taken holds it; a step that looks beyond the end
 /// of its region may find it defined there.
@@ -266,7 +265,7 @@ bool EventSearch::stays_away(std::size_t i) const {
 
 /// The curved functions that may vanish within the bounds of the step; returns whether there are any.
 bool EventSearch::find_near() {
-  sampled_is_known_ = true;
+  range_.near_is_known = true;
   sampled_.clear();
   if (mode_.curved.empty()) return false;
   if (mode_.curved_parts.phi) {
@@ -288,7 +287,7 @@ bool EventSearch::find_near() {
 }
 
 bool EventSearch::may_vanish(const ode::Stepper& stepper) {
-  range_.known = sampled_is_known_ = false;
+  range_.known = range_.near_is_known = false;
   if (mode_.present == 0) return false;
   if (!specials_leave(stepper)) return true;
   return !range_.read(stepper) || mode_.forms.may_vanish(range_.bounds) || find_near();
@@ -297,7 +296,7 @@ bool EventSearch::may_vanish(const ode::Stepper& stepper) {
 /// The functions that the exact search has to look at.
 void EventSearch::find_suspects(const ode::DenseStep& step) {
   suspects_.clear();
-  const bool is_known = std::exchange(sampled_is_known_, false) && range_.known;
+  const bool is_known = std::exchange(range_.near_is_known, false) && range_.known;
   range_.read(step);
   mode_.forms.append_suspects(range_.bounds, suspects_);
   for (const std::size_t i : special_) {
@@ -322,29 +321,6 @@ void EventSearch::find_candidates() {
     if (mode_.forms.has(i)) candidates_.push_back(i);
   }
   if (candidates_.size() > 1) std::sort(candidates_.begin(), candidates_.end());
-}
-
-/// Whether all suspects are curved functions of the kernel that are not at zero where the step starts.
-bool EventSearch::are_away_at_start() const {
-  return std::all_of(suspects_.begin(), suspects_.end(), [&](std::size_t i) {
-    const auto& function = mode_.functions[i];
-    return uses_phi(function) && !mode_.forms.has(i) && function.sign != 0 && function.zero_order == 0;
-  });
-}
-
-/// Whether the samples of the whole step show that a function keeps its sign, whatever its rounding is.
-bool EventSearch::clearly_keeps_sign(const ode::DenseStep& step, std::size_t i) {
-  std::array<double, ode::event_nodes> values;
-  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * mode_.functions.size() + i];
-  const auto coefficients = ode::to_bernstein(values);
-  double margin = std::numeric_limits<double>::max(), size = 0.0;
-  for (const double b : coefficients) {
-    if (!(mode_.functions[i].sign * b > 0.0)) return false;
-    margin = std::min(margin, std::abs(b));
-    size = std::max(size, std::abs(b));
-  }
-  const double wanted = std::max(0.125 * margin, 0.1 * errors_.of_run().rtol * size);
-  return chebyshev_tail(values) <= wanted && !misses(step, 0.0, 1.0, i, coefficients, wanted);
 }
 
 SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location, Hit& hit) {

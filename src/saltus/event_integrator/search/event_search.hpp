@@ -197,7 +197,6 @@ class EventSearch {
   std::vector<std::size_t> special_;   ///< functions with an unknown sign, or a zero at the start of the next step
   std::vector<std::size_t> suspects_;  ///< of this step, ascending
   std::vector<std::size_t> sampled_;   ///< functions without a form that may vanish in this step; of them the suspects
-  bool sampled_is_known_ = false;      ///< of the bounds of this step
   std::vector<std::size_t> candidates_;  ///< of this step, ascending
   std::vector<std::size_t> inspected_;   ///< at the start of a mode: those whose values matter there
   TurnedSurfaces turned_;                ///< likewise
