@@ -80,6 +80,8 @@ TEST(RandomContacts, NothingPassesThroughAndNoEnergyIsMade) {
   }
 }
 
+using Mode = event_integrator::ContactMode;
+
 /// Frictionless contacts at rest of a body with as many positions as `rank`.
 ContactPoint random_point(int contacts, int rank, std::mt19937& dice) {
   std::uniform_real_distribution<double> part(-1.0, 1.0);
@@ -97,13 +99,12 @@ ContactPoint random_point(int contacts, int rank, std::mt19937& dice) {
   return point;
 }
 
-std::set<std::vector<ContactMode>> modes_by_all_combinations(const ContactPoint& point,
-                                                             const std::vector<int>& resting) {
-  std::set<std::vector<ContactMode>> found;
+std::set<std::vector<Mode>> modes_by_all_combinations(const ContactPoint& point, const std::vector<int>& resting) {
+  std::set<std::vector<Mode>> found;
   for (unsigned closed = 0; closed < 1U << resting.size(); ++closed) {
-    std::vector<ContactMode> modes(resting.size(), ContactMode::open);
+    std::vector<Mode> modes(resting.size(), Mode::open);
     for (std::size_t k = 0; k < modes.size(); ++k) {
-      if ((closed >> k & 1U) != 0) modes[k] = ContactMode::closed;
+      if ((closed >> k & 1U) != 0) modes[k] = Mode::closed;
     }
     ContactForces forces;
     if (forces_in(point, resting, modes, forces) && forces.margin >= -1e-8) found.insert(modes);
@@ -114,8 +115,8 @@ std::set<std::vector<ContactMode>> modes_by_all_combinations(const ContactPoint&
 void expect_the_same_modes(const ContactPoint& point) {
   std::vector<int> resting;
   for (int i = 0; i < point.contacts(); ++i) resting.push_back(i);
-  std::set<std::vector<ContactMode>> found;
-  for (const auto& forces : admissible_forces(point, resting, std::vector<std::vector<ContactMode>>(resting.size()))) {
+  std::set<std::vector<Mode>> found;
+  for (const auto& forces : admissible_forces(point, resting, std::vector<std::vector<Mode>>(resting.size()))) {
     found.insert(forces.modes);
   }
   EXPECT_FALSE(found.empty());
