@@ -1,9 +1,13 @@
-// Random bodies with random contacts: nothing passes through, no energy comes from nowhere, every run ends.
+// Random bodies with random contacts: nothing passes through, no energy comes from nowhere, every run ends. Modes that
+// hold are those of all combinations, tried one after the other.
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <set>
+#include <vector>
 
 #include "run_model.hpp"
+#include "saltus/event_integrator/contact/contact_forces.hpp"
 
 namespace saltus::event_integrator::testing {
 namespace {
@@ -73,6 +77,68 @@ TEST(RandomContacts, NothingPassesThroughAndNoEnergyIsMade) {
       EXPECT_LE(outputs.back(), energy + 1e-8) << seed;  // the tolerance of the steps between
       energy = outputs.back();
     }
+  }
+}
+
+using Mode = event_integrator::ContactMode;
+
+/// Frictionless contacts at rest of a body with as many positions as `rank`.
+ContactPoint random_point(int contacts, int rank, std::mt19937& dice) {
+  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  const Eigen::MatrixXd rows = Eigen::MatrixXd::NullaryExpr(contacts, rank, [&] { return part(dice); });
+  ContactPoint point;
+  point.influence = rows * rows.transpose();
+  point.velocity.setZero(contacts);
+  point.acceleration = rows * Eigen::VectorXd::NullaryExpr(rank, [&] { return part(dice); });
+  point.free_terms = point.terms = point.acceleration.cwiseAbs().maxCoeff();
+  const auto m = static_cast<std::size_t>(contacts);
+  point.friction.assign(m, 0.0);
+  point.restitution.assign(m, 0.0);
+  point.tangents.assign(m, 0);
+  point.has_gap.assign(m, true);
+  return point;
+}
+
+std::set<std::vector<Mode>> modes_by_all_combinations(const ContactPoint& point, const std::vector<int>& resting) {
+  std::set<std::vector<Mode>> found;
+  for (unsigned closed = 0; closed < 1U << resting.size(); ++closed) {
+    std::vector<Mode> modes(resting.size(), Mode::open);
+    for (std::size_t k = 0; k < modes.size(); ++k) {
+      if ((closed >> k & 1U) != 0) modes[k] = Mode::closed;
+    }
+    ContactForces forces;
+    if (forces_in(point, resting, modes, forces) && forces.margin >= -1e-8) found.insert(modes);
+  }
+  return found;
+}
+
+void expect_the_same_modes(const ContactPoint& point) {
+  std::vector<int> resting;
+  for (int i = 0; i < point.contacts(); ++i) resting.push_back(i);
+  std::set<std::vector<Mode>> found;
+  for (const auto& forces : admissible_forces(point, resting, std::vector<std::vector<Mode>>(resting.size()))) {
+    found.insert(forces.modes);
+  }
+  EXPECT_FALSE(found.empty());
+  EXPECT_EQ(found, modes_by_all_combinations(point, resting));
+}
+
+TEST(ContactForces, WithoutFrictionTheModesThatHoldAreThoseOfAllCombinations) {
+  std::mt19937 dice(5);
+  for (int run = 0; run < 60; ++run) {
+    const int contacts = 3 + run % 3;
+    expect_the_same_modes(random_point(contacts, contacts, dice));
+    expect_the_same_modes(random_point(contacts, contacts - 1, dice));  // forces are open
+  }
+}
+
+TEST(ContactForces, WhatTouchesWithoutAForceMayBeOpenAndClosed) {
+  std::mt19937 dice(7);
+  for (int run = 0; run < 40; ++run) {
+    auto point = random_point(4, 4, dice);
+    // The first one presses, the second one neither presses nor leaves.
+    point.acceleration = -point.influence * Eigen::Vector4d(1.0, 0.0, 0.5, 0.0) + Eigen::Vector4d(0.0, 0.0, 0.0, 1.0);
+    expect_the_same_modes(point);
   }
 }
 

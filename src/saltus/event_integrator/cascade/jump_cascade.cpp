@@ -27,7 +27,8 @@ void JumpCascade::begin() {
   for (auto* values : {&zero_values_, &values_.value, &values_.magnitude, &values_.slope}) values->resize(n);
   kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), zero_values_.data());
   largest_rates_.assign(n, {});
-  motions_.assign(n, std::nullopt);
+  motions_.resize(n);
+  forget_motions();
   held_before_ = holding_.held().all();
   resting_.clear();
   if (kernel_.switching_functions() > 0) transition_ = {};
@@ -146,7 +147,8 @@ Motion JumpCascade::find_motion(int function) {
   // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
   // than sign_tolerance / 1000 of them.
   constexpr double cancelled = 1e-3;
-  const auto gap = contacts_.gap_motion(function, {here_.t, here_.state.alpha, here_.time_scale}, here_.x, here_.slope);
+  const auto gap =
+      contacts_.gap_motion(function, {here_.t, here_.state.alpha, here_.time_scale}, here_.x, here_.slope, along_);
   const Rate rate = gap ? Rate{gap->rate, gap->terms} : rates_.here(function);
   const Rate& here = largest_rates_[at(function)];
   // What kept its rate at 0 has just let go: errors are left of it, unless a jump changes it.

@@ -67,7 +67,10 @@ class JumpCascade {
   /// the sign just behind this time; one that a jump has put there has none yet (0).
   void read_user_signs();
   /// Forgets motions along the mode before, as the mode is decided anew.
-  void forget_motions() { motions_.assign(motions_.size(), std::nullopt); }
+  void forget_motions() {
+    motions_.assign(motions_.size(), std::nullopt);
+    along_.known = false;
+  }
   /// Gives functions that are at zero behind jumps the signs to which the motion takes them.
   void give_directions();
   /// Gives guards that are left in the mode that was entered here the sign to which they go. Before, what slid kept
@@ -128,6 +131,7 @@ class JumpCascade {
   std::vector<double> zero_values_;  ///< what is left
   std::vector<Rate> largest_rates_;  ///< by event function: of guards of jumps at this time
   std::vector<std::optional<Motion>> motions_;  ///< by event function: found since the mode here was decided
+  Contacts::Along along_;                       ///< the motion here
   std::vector<HeldGuard> held_before_;
   std::vector<LeftGuard> left_;
   std::vector<int> resting_;

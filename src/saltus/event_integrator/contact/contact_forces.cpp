@@ -36,15 +36,23 @@ std::vector<ContactMode> mode_options(const ContactPoint& point, int i) {
   return {ContactMode::stick, ContactMode::slip_up, ContactMode::slip_down, ContactMode::open};
 }
 
-/// The least margin of all conditions.
-double margin_of(const ContactPoint& point, const std::vector<int>& resting, const ContactForces& found) {
+/// What accelerations and forces are relative to.
+struct Sizes {
+  double acceleration, force;
+};
+
+Sizes sizes_of(const ContactPoint& point, const ContactForces& found) {
   // Where a body leaves a gap, what is left of its force and acceleration is the rounding of their terms.
   constexpr double rounded = 1e-5;
-  const double largest = std::max(
-      rounded * point.terms, (point.acceleration.cwiseAbs() + (point.influence * found.forces).cwiseAbs()).maxCoeff());
+  const double largest = (point.acceleration.cwiseAbs() + (point.influence * found.forces).cwiseAbs()).maxCoeff();
   const double response = point.influence.cwiseAbs().maxCoeff();
-  const double force =
-      std::max(response > 0.0 ? rounded * point.terms / response : 0.0, found.forces.cwiseAbs().maxCoeff());
+  const double force = response > 0.0 ? rounded * point.terms / response : 0.0;
+  return {std::max(rounded * point.terms, largest), std::max(force, found.forces.cwiseAbs().maxCoeff())};
+}
+
+/// The least margin of all conditions.
+double margin_of(const ContactPoint& point, const std::vector<int>& resting, const ContactForces& found) {
+  const auto [largest, force] = sizes_of(point, found);
   const auto part = [](double value, double size) { return size > 0.0 ? value / size : 0.0; };
   double least = std::numeric_limits<double>::infinity();
   const auto note = [&](double value, double size) { least = std::min(least, part(value, size)); };
@@ -251,6 +259,50 @@ bool find_forces(const ContactPoint& point, const std::vector<int>& resting, con
   return true;
 }
 
+/// The forces of frictionless contacts whose rows do not depend on each other, by an active set: who pulls most opens,
+/// who closes most is closed. False where that finds nothing.
+bool find_only_forces(const ContactPoint& point, const std::vector<int>& resting, HeldRows& rows,
+                      ContactForces& found) {
+  found.modes.assign(point.friction.size(), ContactMode::open);
+  found.directions.assign(found.modes.size(), Vector2d::Zero());
+  for (const int i : resting) found.modes[static_cast<std::size_t>(i)] = ContactMode::closed;
+  for (std::size_t step = 0; step < 4 * resting.size(); ++step) {
+    if (!solve_forces(point, resting, rows, found) || found.is_open) return false;
+    const auto [acceleration, force] = sizes_of(point, found);
+    double worst = -1e-12;
+    ContactMode* changes = nullptr;
+    for (const int i : resting) {
+      auto& mode = found.modes[static_cast<std::size_t>(i)];
+      const double left = mode == ContactMode::open ? found.acceleration(i) / acceleration : found.forces(i) / force;
+      if (!(left < worst)) continue;
+      worst = left;
+      changes = &mode;
+    }
+    if (changes == nullptr) return true;
+    *changes = *changes == ContactMode::open ? ContactMode::closed : ContactMode::open;
+  }
+  return false;
+}
+
+/// Frictionless contacts whose rows do not depend on each other have one motion, by one set of forces: who clearly
+/// presses is closed in all modes that hold, who clearly leaves is open.
+/// @param options  by resting contact
+void drop_impossible(const ContactPoint& point, const std::vector<int>& resting, HeldRows& rows,
+                     std::vector<std::vector<ContactMode>>& options) {
+  const auto has_friction = [&](int i) { return point.friction[static_cast<std::size_t>(i)] != 0.0; };
+  constexpr std::size_t few = 2;  // as fast tried
+  ContactForces found;
+  if (resting.size() <= few || std::any_of(resting.begin(), resting.end(), has_friction)) return;
+  if (!find_only_forces(point, resting, rows, found)) return;
+  const auto [acceleration, force] = sizes_of(point, found);
+  constexpr double clear = 1e-3;
+  for (std::size_t k = 0; k < resting.size(); ++k) {
+    const int i = resting[k];
+    const bool presses = found.forces(i) > clear * force, leaves = found.acceleration(i) > clear * acceleration;
+    if (presses || leaves) options[k].assign(1, presses ? ContactMode::closed : ContactMode::open);
+  }
+}
+
 }  // namespace
 
 bool forces_in(const ContactPoint& point, const std::vector<int>& resting, const std::vector<ContactMode>& modes,
@@ -278,11 +330,13 @@ std::vector<ContactForces> admissible_forces(const ContactPoint& point, const st
     if (some.empty()) return {};
     all.push_back(std::move(some));
   }
+  HeldRows rows(point.velocity.size());
+  if (std::all_of(excluded.begin(), excluded.end(), [](const auto& modes) { return modes.empty(); }))
+    drop_impossible(point, resting, rows, all);
   std::vector<ContactForces> result;
   std::vector<std::size_t> number(all.size(), 0);
   std::vector<ContactMode> modes(point.friction.size(), ContactMode::open);
   ContactForces found;
-  HeldRows rows(point.velocity.size());
   constexpr long most = 100000;
   for (long tried = 0; tried < most; ++tried) {
     for (std::size_t k = 0; k < all.size(); ++k) modes[static_cast<std::size_t>(resting[k])] = all[k][number[k]];

@@ -11,7 +11,7 @@
 namespace saltus::event_integrator {
 
 /// Holds m contacts. Vectors over them have the normal parts first, then those along first tangents, then those along
-/// second ones if a contact has two (0 where there is none); r = 2 m or 3 m.
+/// second ones if a contact has two (0 where there is none); r = m, 2 m or 3 m.
 struct ContactPoint {
   Eigen::MatrixXd influence;                  ///< r x r: d velocity / d impulse, (N, T)' M^-1 (N, T)
   Eigen::VectorXd velocity;                   ///< r
@@ -27,8 +27,9 @@ struct ContactPoint {
   /// Returns the row of a tangent of a contact.
   [[nodiscard]] int tangent_row(int i, int tangent) const { return (1 + tangent) * contacts() + i; }
   [[nodiscard]] double normal_velocity(int i) const { return velocity(i); }
-  /// Returns the part of a vector along both tangents of a contact; of one tangent the second component is 0.
+  /// Returns the part of a vector along both tangents of a contact; 0 along those that it has not.
   [[nodiscard]] Eigen::Vector2d along(const Eigen::VectorXd& vector, int i) const {
+    if (tangents[static_cast<std::size_t>(i)] == 0) return {0.0, 0.0};
     return {vector(tangent_row(i, 0)), in_plane(i) ? vector(tangent_row(i, 1)) : 0.0};
   }
 };

@@ -36,13 +36,17 @@ bool Contacts::owns(int jump) const {
 
 /// Of the accelerations that the forces of closed contacts cancel, by the sizes of these forces in t and x.
 double Contacts::force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
-                             const std::vector<double>& x) const {
-  std::vector<double> magnitude(guards_.size()), slope(guards_.size());
+                             const std::vector<double>& x) {
+  const auto presses = [&](const auto& contact) { return contact.has_gap && x[at(contact.active)] != 0.0; };
+  if (std::none_of(contacts_.begin(), contacts_.end(), presses)) return 0.0;
+  auto& [open, rate, magnitude, slope] = terms_;
+  magnitude.resize(guards_.size());
+  slope.resize(guards_.size());
   kernel_.scales(t, x.data(), alpha.data(), magnitude.data(), slope.data());
   double largest = 0.0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const auto& contact = contacts_[i];
-    if (!contact.has_gap || x[at(contact.active)] == 0.0) continue;
+    if (!presses(contact)) continue;
     const double force = magnitude[at(kernel_.jump_guard(contact.jump, 0))] * x[at(contact.force_unit)];
     const auto row = static_cast<Eigen::Index>(i);
     if (std::isfinite(force)) largest = std::max(largest, force * point.influence(row, row));
@@ -50,40 +54,68 @@ double Contacts::force_terms(const ContactPoint& point, double t, const std::vec
   return largest;
 }
 
-std::vector<double> Contacts::without_forces(std::vector<double> x) const {
+void Contacts::drop_forces(std::vector<double>& x) const {
   for (const auto& contact : contacts_) {
     std::fill(x.begin() + contact.active, x.begin() + contact.force_unit, 0.0);
   }
+}
+
+std::vector<double> Contacts::without_forces(std::vector<double> x) const {
+  drop_forces(x);
   return x;
 }
 
 /// Along the motion without contact forces.
-double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) const {
-  const auto open = without_forces(x);
-  std::vector<double> rate(x.size());
+double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
+  auto& [open, rate, magnitude, slope] = terms_;
+  open = x;
+  drop_forces(open);
+  rate.resize(x.size());
   kernel_.field(t, open.data(), alpha.data(), rate.data());
-  VectorXd free(static_cast<Eigen::Index>(system_.velocities.size()));
-  for (Eigen::Index k = 0; k < free.size(); ++k) free(k) = rate[at(system_.velocities[static_cast<std::size_t>(k)])];
-  const VectorXd bias = values_.acceleration - values_.rows * free;
-  const VectorXd terms = values_.rows.cwiseAbs() * free.cwiseAbs() + bias.cwiseAbs();
-  return terms.allFinite() ? terms.maxCoeff() : 0.0;
+  double largest = 0.0;
+  for (Eigen::Index row = 0; row < values_.acceleration.size(); ++row) {
+    double terms = 0.0, along = 0.0;
+    for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
+      const double term = values_.rows(row, index(k)) * rate[at(system_.velocities[k])];
+      terms += std::abs(term);
+      along += term;
+    }
+    terms += std::abs(values_.acceleration(row) - along);
+    if (!std::isfinite(terms)) return 0.0;
+    largest = std::max(largest, terms);
+  }
+  return largest;
 }
 
 ContactPoint Contacts::point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
-  kernel_.contacts(t, x.data(), alpha.data(), values_);
   ContactPoint point;
-  point.influence = values_.rows * values_.responses;
-  point.velocity = values_.velocity;
-  point.acceleration = values_.acceleration;
+  read_point(t, alpha, x, point);
+  return point;
+}
+
+void Contacts::read_point(double t, const std::vector<double>& alpha, const std::vector<double>& x,
+                          ContactPoint& point) {
+  read_motion(t, alpha, x, point);
   point.free_terms = acceleration_terms(t, alpha, x);
   point.terms = std::max(point.free_terms, force_terms(point, t, alpha, x));
+}
+
+/// All but the sizes of terms.
+void Contacts::read_motion(double t, const std::vector<double>& alpha, const std::vector<double>& x,
+                           ContactPoint& point) {
+  kernel_.contacts(t, x.data(), alpha.data(), values_);
+  point.influence.noalias() = values_.rows * values_.responses;
+  point.velocity = values_.velocity;
+  point.acceleration = values_.acceleration;
   point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
+  point.friction.clear();
+  point.has_gap.clear();
+  point.tangents.clear();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<Eigen::Index>(i)) : 0.0);
     point.has_gap.push_back(contacts_[i].has_gap);
     point.tangents.push_back(!contacts_[i].has_friction ? 0 : contacts_[i].in_plane ? 2 : 1);
   }
-  return point;
 }
 
 ContactMode Contacts::mode_of(int contact, const std::vector<double>& x) const {
@@ -164,6 +196,7 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
     if (!ends) {
       x = x_before;
       point = before;
+      kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
       why_open_.clear();
       for (const int i : touching) point.velocity(i) = std::max(point.velocity(i), 0.0);
     }
@@ -263,7 +296,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
     if (!why_open_.empty()) why_open_ += "; ";
     why_open_ += "the forces of what touches leave more than one motion open";
   }
-  put_at_rest(moment, point, resting, x);
+  put_at_rest(point, resting, x);
   enter(moment, point, found[chosen], x);
   static_cast<void>(project(moment.t, moment.alpha, x, touching));
   bound_speeds(moment, x);
@@ -277,7 +310,7 @@ void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<dou
 }
 
 /// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin:
-/// with those contacts idle that will be.
+/// with those contacts idle that will be. Values are those at x, and stay so.
 std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint& point,
                                  const std::vector<int>& resting, std::vector<ContactForces>& found,
                                  const std::vector<double>& x) {
@@ -287,14 +320,18 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint
   double largest = -std::numeric_limits<double>::infinity();
   std::vector<int> idle = found[0].idle;
   const double h = ahead_by * moment.time_scale;
-  const ContactPoint here = point_at(moment.t, moment.alpha, x);
+  ContactPoint here = point;
+  here.velocity = values_.velocity;
   const evaluation::ContactValues values = values_;
+  std::vector<double> ahead;
+  ContactPoint later;
   for (std::size_t k = 0; k < found.size(); ++k) {
-    auto ahead = x;
-    values_ = values;
+    ahead = x;
     enter(moment, here, found[k], ahead);
     move_ahead(moment, h, ahead);
-    ContactPoint later = point_at(moment.t + h, moment.alpha, ahead);
+    read_motion(moment.t + h, moment.alpha, ahead, later);
+    values_ = values;
+    later.terms = point.terms;
     for (const int i : resting) {
       // The sign of the slip is that of the mode; where it begins without an acceleration, that of a rounding.
       const auto mode = found[k].modes[at(i)];

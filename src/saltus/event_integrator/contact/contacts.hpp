@@ -43,11 +43,17 @@ class Contacts {
   struct GapMotion {
     double size, rate, terms, bend;  ///< sizes of the terms of the gap, and of its rate; the guard's derivatives
   };
+  /// Holds the values of all contacts along a slope, for those that are asked one after the other.
+  struct Along {
+    bool known = false;
+    std::vector<double> x, slope, ahead;
+    evaluation::ContactValues here, later;
+  };
   /// Returns how a guard that is the gap of an open contact moves along a slope; nothing of other ones. The second
   /// derivative is a difference.
   [[nodiscard]] std::optional<GapMotion> gap_motion(int function, const ContactMoment& moment,
-                                                    const std::vector<double>& x,
-                                                    const std::vector<double>& slope) const;
+                                                    const std::vector<double>& x, const std::vector<double>& slope,
+                                                    Along& along) const;
   /// Returns those whose jumps are in a list, or for which a condition on their jumps holds.
   template <class Condition>
   [[nodiscard]] std::vector<int> with_jumps(Condition condition) const {
@@ -117,10 +123,12 @@ class Contacts {
   static constexpr double none_at_start = 1e-12;
 
   [[nodiscard]] ContactPoint point_at(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  void read_point(double t, const std::vector<double>& alpha, const std::vector<double>& x, ContactPoint& point);
+  void read_motion(double t, const std::vector<double>& alpha, const std::vector<double>& x, ContactPoint& point);
   [[nodiscard]] double force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
-                                   const std::vector<double>& x) const;
-  [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha,
-                                          const std::vector<double>& x) const;
+                                   const std::vector<double>& x);
+  [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x);
+  void drop_forces(std::vector<double>& x) const;
   [[nodiscard]] ContactMode mode_of(int contact, const std::vector<double>& x) const;
   struct Modes {
     std::vector<ContactMode> modes;  ///< of all contacts
@@ -186,8 +194,7 @@ class Contacts {
   bool correct_positions(const std::vector<int>& touching, std::vector<double>& x);
   void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x);
   void correct_velocities(Slips slips, std::vector<double>& x);
-  void put_at_rest(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
-                   std::vector<double>& x);
+  void put_at_rest(const ContactPoint& point, const std::vector<int>& resting, std::vector<double>& x);
   void drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
                           std::vector<double>& x) const;
   void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;
@@ -211,6 +218,11 @@ class Contacts {
     Eigen::LDLT<Eigen::MatrixXd> factors;
   };
   Projection projection_;  ///< work space: steps allocate nothing
+  struct Terms {
+    std::vector<double> open, rate;  ///< a state without forces
+    std::vector<double> magnitude, slope;
+  };
+  Terms terms_;  ///< likewise
   std::string why_open_;
   std::vector<int> last_bounces_;
 };

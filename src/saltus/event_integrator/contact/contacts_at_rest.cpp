@@ -168,15 +168,19 @@ double Contacts::tolerated(int function, const std::vector<double>& x) const {
 }
 
 auto Contacts::gap_motion(int function, const ContactMoment& moment, const std::vector<double>& x,
-                          const std::vector<double>& slope) const -> std::optional<GapMotion> {
+                          const std::vector<double>& slope, Along& along) const -> std::optional<GapMotion> {
   const auto contact = guards(function) ? open_with_gap(function, x) : std::nullopt;
   if (!contact) return std::nullopt;
-  evaluation::ContactValues here, later;
-  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), here);
+  auto& [known, at_x, along_slope, ahead, here, later] = along;
   const double h = ahead_by * moment.time_scale;
-  auto ahead = x;
-  for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * slope[i];
-  kernel_.contacts(moment.t + h, ahead.data(), moment.alpha.data(), later);
+  if (!known || at_x != x || along_slope != slope) {
+    at_x = ahead = x;
+    along_slope = slope;
+    for (std::size_t i = 0; i < x.size(); ++i) ahead[i] += h * slope[i];
+    kernel_.contacts(moment.t, x.data(), moment.alpha.data(), here);
+    kernel_.contacts(moment.t + h, ahead.data(), moment.alpha.data(), later);
+    known = true;
+  }
   // A guard is positive where its gap is negative.
   GapMotion motion{terms_of(here.rows, *contact, system_.positions, x), -here.velocity(*contact),
                    terms_of(here.rows, *contact, system_.velocities, x),

@@ -49,10 +49,10 @@ std::optional<VectorXd> Contacts::push(const ContactMoment& moment, const std::v
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
     x[at(contact.impulse)] += (*impulses)(i);
-    for (int k = 0; k < contact.tangents(); ++k) x[at(contact.impulse) + 1 + at(k)] += (*impulses)(m * (1 + k) + i);
+    for (int k = 0; k < point.tangents[at(i)]; ++k) x[at(contact.impulse) + 1 + at(k)] += (*impulses)(m * (1 + k) + i);
   }
   const double size = point.velocity.cwiseAbs().maxCoeff();
-  point = point_at(moment.t, moment.alpha, x);
+  read_point(moment.t, moment.alpha, x, point);
   drop_roundings(size, point);
   return impulses;
 }
@@ -103,7 +103,7 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
       }
     }
     change_velocities(still, -values_.velocity(still), x);
-    point = point_at(moment.t, moment.alpha, x);
+    read_point(moment.t, moment.alpha, x, point);
     point.velocity(still).setZero();
     drop_roundings(fastest, point);
   }

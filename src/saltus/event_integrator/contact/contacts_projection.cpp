@@ -70,8 +70,9 @@ bool Contacts::correct_positions(const std::vector<int>& touching, std::vector<d
     std::copy_if(touching.begin(), touching.end(), std::back_inserter(rows),
                  [&](int row) { return values_.gap(row) < 0.0 && basis.takes(row); });
   }
-  projection_.change = values_.gap(rows);
-  if (projection_.change.isZero(0.0)) return false;
+  if (std::all_of(rows.begin(), rows.end(), [&](int row) { return values_.gap(row) == 0.0; })) return false;
+  projection_.change.resize(index(rows.size()));
+  for (std::size_t k = 0; k < rows.size(); ++k) projection_.change(index(k)) = values_.gap(rows[k]);
   const VectorXd& moved = least_change(rows, projection_.change);
   bool changed = false;
   for (std::size_t k = 0; k < system_.positions.size(); ++k) {
@@ -97,10 +98,14 @@ void Contacts::correct_velocities(Slips slips, std::vector<double>& x) {
   auto& rows = projection_.rows;
   auto& change = projection_.change;
   rows = held;
-  if (values_.velocity(rows).isZero(0.0) && values_.velocity == velocity) return;
+  const bool at_rest = std::all_of(rows.begin(), rows.end(), [&](int row) { return values_.velocity(row) == 0.0; });
+  if (at_rest && values_.velocity == velocity) return;
   if (slips == Slips::kept) keep_slips(x, rows);
-  change = -values_.velocity(rows);
-  for (std::size_t r = held.size(); r < rows.size(); ++r) change(index(r)) += velocity(rows[r]);
+  change.resize(index(rows.size()));
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const double wanted = r < held.size() ? 0.0 : velocity(rows[r]);
+    change(index(r)) = wanted - values_.velocity(rows[r]);
+  }
   change_velocities(rows, change, x);
   drop_own_roundings(held, before, x);
 }
@@ -121,9 +126,8 @@ void Contacts::drop_own_roundings(const std::vector<int>& rows, const std::vecto
 }
 
 /// What counts as 0 is 0, along the ground, too: a slip that begins from a rounding against it would end at once.
-void Contacts::put_at_rest(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
-                           std::vector<double>& x) {
-  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
+/// Values are those at x.
+void Contacts::put_at_rest(const ContactPoint& point, const std::vector<int>& resting, std::vector<double>& x) {
   std::vector<int> rows;
   RowBasis basis(values_.rows);
   for (const int i : resting) {

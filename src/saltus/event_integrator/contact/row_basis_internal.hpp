@@ -1,9 +1,6 @@
 // Rows of a matrix that do not depend on each other.
 #pragma once
 
-#include <optional>
-#include <vector>
-
 #include <Eigen/Core>
 
 namespace saltus::event_integrator {
@@ -11,27 +8,30 @@ namespace saltus::event_integrator {
 /// Collects rows that do not depend on each other: those that may be held at once.
 class RowBasis {
  public:
-  explicit RowBasis(const Eigen::MatrixXd& rows) : rows_(rows) {}
-  [[nodiscard]] bool holds(int row) const { return !part_beside(row); }
+  explicit RowBasis(const Eigen::MatrixXd& rows) : rows_(rows), basis_(rows.cols(), rows.cols()), part_(rows.cols()) {}
+  [[nodiscard]] bool holds(int row) { return !leaves_part(row); }
   /// Adds a row unless it depends on those that were taken.
   bool takes(int row) {
-    const auto part = part_beside(row);
-    if (part) basis_.push_back(part->normalized());
-    return part.has_value();
+    if (!leaves_part(row)) return false;
+    basis_.col(taken_++) = part_ / part_.norm();
+    return true;
   }
 
  private:
-  [[nodiscard]] std::optional<Eigen::VectorXd> part_beside(int row) const {
-    Eigen::VectorXd e = rows_.row(row).transpose();
-    const double size = e.norm();
-    for (const auto& b : basis_) e -= b.dot(e) * b;
-    for (const auto& b : basis_) e -= b.dot(e) * b;
-    if (!(e.norm() > 1e-9 * size)) return std::nullopt;
-    return e;
+  /// Finds the part beside the rows that were taken.
+  [[nodiscard]] bool leaves_part(int row) {
+    part_ = rows_.row(row).transpose();
+    const double size = part_.norm();
+    for (int twice = 0; twice < 2 && taken_ > 0; ++twice) {
+      for (Eigen::Index k = 0; k < taken_; ++k) part_ -= basis_.col(k).dot(part_) * basis_.col(k);
+    }
+    return taken_ < basis_.cols() && part_.norm() > 1e-9 * size;
   }
 
   const Eigen::MatrixXd& rows_;
-  std::vector<Eigen::VectorXd> basis_;
+  Eigen::MatrixXd basis_;  ///< columns
+  Eigen::Index taken_ = 0;
+  Eigen::VectorXd part_;
 };
 
 }  // namespace saltus::event_integrator

@@ -53,21 +53,6 @@ const std::array<ode::BernsteinCoefficients, checked_places.size()>& weights_at_
   return table;
 }
 
-/// Size of the last two Chebyshev coefficients of an interpolant: what the next ones may be expected to be.
-double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
-  constexpr int n = ode::event_degree;
-  double tail = 0.0;
-  for (const int degree : {n - 1, n}) {
-    double sum = 0.0;
-    for (int k = 0; k <= n; ++k) {
-      const double weight = (k == 0 || k == n) ? 0.5 : 1.0;
-      sum += weight * values[at(k)] * tail_cosines()[at(degree - n + 1)][at(k)];
-    }
-    tail += std::abs(sum) * (degree == n ? 1.0 : 2.0) / n;
-  }
-  return tail;
-}
-
 /// Whether an interpolant that misses its function by `error` or so shows one passage through zero all the same: but
 /// for a band around zero, eight times as wide, the function is on one side before it and on the other one behind it.
 /// The place is then as good as the band is narrow, and location goes on from the retaken step: an error of a
@@ -94,6 +79,20 @@ bool stays_far(const std::array<double, 5>& v, int sign) {
 }
 
 }  // namespace
+
+double chebyshev_tail(const std::array<double, ode::event_nodes>& values) {
+  constexpr int n = ode::event_degree;
+  double tail = 0.0;
+  for (const int degree : {n - 1, n}) {
+    double sum = 0.0;
+    for (int k = 0; k <= n; ++k) {
+      const double weight = (k == 0 || k == n) ? 0.5 : 1.0;
+      sum += weight * values[at(k)] * tail_cosines()[at(degree - n + 1)][at(k)];
+    }
+    tail += std::abs(sum) * (degree == n ? 1.0 : 2.0) / n;
+  }
+  return tail;
+}
 
 /// The argument of a cell may be undefined where a branch that is not taken holds it; a step that looks beyond the end
 /// of its region may find it defined there.
@@ -266,6 +265,7 @@ bool EventSearch::stays_away(std::size_t i) const {
 
 /// The curved functions that may vanish within the bounds of the step; returns whether there are any.
 bool EventSearch::find_near() {
+  range_.near_is_known = true;
   sampled_.clear();
   if (mode_.curved.empty()) return false;
   if (mode_.curved_parts.phi) {
@@ -287,7 +287,7 @@ bool EventSearch::find_near() {
 }
 
 bool EventSearch::may_vanish(const ode::Stepper& stepper) {
-  range_.known = false;
+  range_.known = range_.near_is_known = false;
   if (mode_.present == 0) return false;
   if (!specials_leave(stepper)) return true;
   return !range_.read(stepper) || mode_.forms.may_vanish(range_.bounds) || find_near();
@@ -296,12 +296,13 @@ bool EventSearch::may_vanish(const ode::Stepper& stepper) {
 /// The functions that the exact search has to look at.
 void EventSearch::find_suspects(const ode::DenseStep& step) {
   suspects_.clear();
+  const bool is_known = std::exchange(range_.near_is_known, false) && range_.known;
   range_.read(step);
   mode_.forms.append_suspects(range_.bounds, suspects_);
   for (const std::size_t i : special_) {
     if (mode_.forms.has(i)) suspects_.push_back(i);
   }
-  if (find_near()) {
+  if (is_known ? !sampled_.empty() : find_near()) {
     if (five_nodes_suffice_) sample(step, 0.0, 1.0, sampled_, {0, 2});
     for (const std::size_t i : sampled_) {
       if (!is_far(i)) suspects_.push_back(i);
@@ -327,16 +328,22 @@ SearchOutcome EventSearch::search(const ode::DenseStep& step, Location location,
   find_suspects(step);
   if (suspects_.empty()) return SearchOutcome::none;
   step.evaluate(0.0, x_.data());
+  // Those between the ones that find_suspects has sampled.
+  const Nodes rest = five_nodes_suffice_ ? Nodes{1, 2} : Nodes{0, 1};
   if (suspects_.size() == 1 && mode_.is_threshold(suspects_.front())) {  // the usual event
     set_noise(suspects_.front(), x_.data());
+  } else if (are_away_at_start()) {
+    sample(step, 0.0, 1.0, suspects_, rest);
+    if (std::all_of(suspects_.begin(), suspects_.end(), [&](auto i) { return clearly_keeps_sign(step, i); }))
+      return SearchOutcome::none;
+    step.evaluate(0.0, x_.data());
+    rescale(step.t, x_.data(), suspects_);
   } else {
     rescale(step.t, x_.data(), suspects_);
     sampled_.clear();
     for (const std::size_t i : suspects_) {
       if (!mode_.forms.has(i)) sampled_.push_back(i);
     }
-    // Those between the ones that find_suspects has sampled.
-    const Nodes rest = five_nodes_suffice_ ? Nodes{1, 2} : Nodes{0, 1};
     if (!sampled_.empty()) sample(step, 0.0, 1.0, sampled_, rest);
   }
   const SearchOutcome outcome = search_interval(step, 0.0, 1.0, 0, hit);

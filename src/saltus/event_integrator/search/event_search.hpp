@@ -160,6 +160,8 @@ class EventSearch {
   bool misses(const ode::DenseStep& step, double from, double to, std::size_t i,
               const ode::BernsteinCoefficients& coefficients, double accuracy);
   [[nodiscard]] bool is_far(std::size_t i) const;
+  [[nodiscard]] bool are_away_at_start() const;
+  [[nodiscard]] bool clearly_keeps_sign(const ode::DenseStep& step, std::size_t i);
   bool find_near();
   [[nodiscard]] bool stays_away(std::size_t i) const;
   void find_suspects(const ode::DenseStep& step);

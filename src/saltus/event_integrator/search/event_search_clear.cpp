@@ -1,6 +1,8 @@
 // Sign changes that may be errors of their step: which of them count. Those of [[events]] count where they are more.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "saltus/event_integrator/mode/field_rates.hpp"
@@ -98,6 +100,29 @@ EventSearch::Finding EventSearch::find_clear(const ode::DenseStep& step, double 
     hit.slope = ode::derivative(coefficients, local) / ((to - from) * step.h);
   });
   return finding;
+}
+
+/// Whether all suspects are curved functions of the kernel that are not at zero where the step starts.
+bool EventSearch::are_away_at_start() const {
+  return std::all_of(suspects_.begin(), suspects_.end(), [&](std::size_t i) {
+    const auto& function = mode_.functions[i];
+    return uses_phi(function) && !mode_.forms.has(i) && function.sign != 0 && function.zero_order == 0;
+  });
+}
+
+/// Whether the samples of the whole step show that a function keeps its sign, whatever its rounding is.
+bool EventSearch::clearly_keeps_sign(const ode::DenseStep& step, std::size_t i) {
+  std::array<double, ode::event_nodes> values;
+  for (std::size_t k = 0; k < values.size(); ++k) values[k] = samples_[k * mode_.functions.size() + i];
+  const auto coefficients = ode::to_bernstein(values);
+  double margin = std::numeric_limits<double>::max(), size = 0.0;
+  for (const double b : coefficients) {
+    if (!(mode_.functions[i].sign * b > 0.0)) return false;
+    margin = std::min(margin, std::abs(b));
+    size = std::max(size, std::abs(b));
+  }
+  const double wanted = std::max(0.125 * margin, 0.1 * errors_.of_run().rtol * size);
+  return chebyshev_tail(values) <= wanted && !misses(step, 0.0, 1.0, i, coefficients, wanted);
 }
 
 }  // namespace saltus::event_integrator

@@ -1,6 +1,7 @@
 // What the sources of the event search share.
 #pragma once
 
+#include <array>
 #include <cmath>
 
 #include "saltus/event_integrator/search/event_search.hpp"
@@ -18,6 +19,9 @@ int sign_behind_zero(const Values& values, double noise) {
   }
   return 0;
 }
+
+/// Returns the size of the last two Chebyshev coefficients of an interpolant: what the next ones may be expected to be.
+[[nodiscard]] double chebyshev_tail(const std::array<double, ode::event_nodes>& values);
 
 /// Returns whether the function is one of the kernel, not an exit of the mode.
 inline bool uses_phi(const EventFunction& function) {

@@ -61,7 +61,8 @@ struct StepRange {
   std::vector<double> low, high;
   std::vector<double> wide_low, wide_high;  ///< around it
   StepBounds bounds;
-  bool known = false;  ///< `bounds` are those of the dense output that is made next
+  bool near_is_known = false;  ///< which curved functions may vanish within them
+  bool known = false;          ///< `bounds` are those of the dense output that is made next
 
   void resize(std::size_t states);
   /// Reads the bounds of the last attempt; false where there are none.

@@ -199,9 +199,11 @@ class ContactMotion {
   void set_motion() {
     const auto m = static_cast<casadi_int>(contacts_.size());
     std::vector<SX> gaps, friction, restitution;
-    const bool in_plane = std::any_of(system_.contacts.begin(), system_.contacts.end(),
-                                      [](const auto& contact) { return contact.in_plane; });
-    SX tangents = SX::zeros((in_plane ? 2 : 1) * m, q_.numel());
+    casadi_int directions = 0;
+    for (const auto& contact : system_.contacts) {
+      if (contact.has_friction) directions = std::max<casadi_int>(directions, contact.tangents());
+    }
+    SX tangents = SX::zeros(directions * m, q_.numel());
     for (casadi_int i = 0; i < m; ++i) {
       const auto& stated = contacts_[static_cast<std::size_t>(i)];
       gaps.push_back(stated.gap);

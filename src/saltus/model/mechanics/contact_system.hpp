@@ -37,7 +37,7 @@ struct Contact {
 
 /// Holds the contacts of a mechanical system M dv/dt = h + N lambda_n + T lambda_t, dq/dt = v, with m contacts and n
 /// positions. N = grad gap, T the tangents as written (0 without friction). Rows are ordered by normals, first
-/// tangents, second tangents if there are any: r = 2 m or 3 m. All expressions are over the symbols of the system;
+/// tangents, second tangents if there are any: r = m, 2 m or 3 m. All expressions are over the symbols of the system;
 /// those of forces are for the modes that the discrete states say.
 struct ContactSystem {
   std::vector<Contact> contacts;

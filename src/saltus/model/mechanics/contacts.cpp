@@ -88,6 +88,7 @@ class ContactBuild {
       const auto& contact = system_.contacts[at_(row % m)];
       if (row < 2 * m ? contact.has_friction : contact.in_plane) order.push_back(row);
     }
+    const auto symmetry = order.empty() ? Symmetry::symmetric : Symmetry::none;
     for (casadi_int i = 0; i < m; ++i) order.push_back(i);
     const auto n = static_cast<casadi_int>(order.size());
     SX matrix = SX::zeros(n, n), right = SX::zeros(n, 1);
@@ -102,12 +103,14 @@ class ContactBuild {
       if (!tangential && !contact.has_gap) right(r) = 1.0;
       for (casadi_int c = 0; c < n; ++c) {
         SX entry = held * influence(order[at_(r)], order[at_(c)]);
+        // Without friction what is not held has no force: its column is 0, as its row is.
+        if (c != r && symmetry == Symmetry::symmetric) entry *= state(system_.contacts[at_(order[at_(c)])].active);
         if (c == r) entry += 1.0 - held;
         if (tangential && order[at_(c)] == i) entry += (1.0 - held) * system_.friction(i) * share(i, tangent);
         matrix(r, c) = entry;
       }
     }
-    const SX forces = eliminate(matrix, right);
+    const SX forces = eliminate(matrix, right, symmetry);
     system_.normal_force = SX::zeros(m, 1);
     system_.tangential_force = SX::zeros(system_.rows.size1() - m, 1);
     for (casadi_int r = 0; r < n; ++r) {

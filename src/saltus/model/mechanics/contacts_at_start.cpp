@@ -115,13 +115,14 @@ std::optional<Error> check_contacts_at_start(const System& system, double from) 
     if (SX::depends_on(contacts.gap(i), system.t)) {
       if (auto error = check_gap_at_start(contact.name, static_cast<double>(values[0](i)), when)) return error;
     }
+    if (!contact.has_gap || !contact.has_friction) continue;
     std::vector<Row> rows;
     bool moves = false;
     for (casadi_int row = i; row <= contact.tangents() * m + i; row += m) {
       moves = moves || SX::depends_on(contacts.rows(row, casadi::Slice()), system.t);
       rows.push_back(casadi::DM::densify(values[1](row, casadi::Slice())).nonzeros());
     }
-    if (!contact.has_gap || !contact.has_friction || !moves) continue;
+    if (!moves) continue;
     if (auto error = check_tangents_at_start(contact.name, rows, when)) return error;
   }
   return std::nullopt;

@@ -5,8 +5,9 @@ namespace saltus::model {
 using casadi::SX;
 using casadi::SXElem;
 
-SX eliminate(const SX& matrix, const SX& right) {
+SX eliminate(const SX& matrix, const SX& right, Symmetry symmetry) {
   const casadi_int n = matrix.size1();
+  const bool symmetric = symmetry == Symmetry::symmetric;
   const auto at = [n](casadi_int i, casadi_int j) { return static_cast<std::size_t>(i + j * n); };
   std::vector<SXElem> a = SX::densify(matrix).nonzeros();
   std::vector<SXElem> b = SX::densify(right).nonzeros();
@@ -15,9 +16,10 @@ SX eliminate(const SX& matrix, const SX& right) {
   };
   for (casadi_int k = 0; k < n; ++k) {
     for (casadi_int i = k + 1; i < n; ++i) {
-      if (a[at(i, k)].is_zero()) continue;
-      const SXElem factor = a[at(i, k)] / a[at(k, k)];
-      for (casadi_int j = k + 1; j < n; ++j) subtract(a[at(i, j)], factor, a[at(k, j)]);
+      const SXElem below = symmetric ? a[at(k, i)] : a[at(i, k)];
+      if (below.is_zero()) continue;
+      const SXElem factor = below / a[at(k, k)];
+      for (casadi_int j = symmetric ? i : k + 1; j < n; ++j) subtract(a[at(i, j)], factor, a[at(k, j)]);
       subtract(b[at(i, 0)], factor, b[at(k, 0)]);
     }
   }

@@ -28,8 +28,11 @@ class SymbolicLdl {
   casadi::SX zeros_;     ///< n: 0, and likewise
 };
 
+enum class Symmetry { none, symmetric };
+
 /// Solves A^-1 b by elimination in the order of the rows: for matrices whose leading minors are not 0.
-/// @param matrix  n x n  @param right  n x 1
-[[nodiscard]] casadi::SX eliminate(const casadi::SX& matrix, const casadi::SX& right);
+/// @param matrix  n x n; of a symmetric one the upper triangle is read, and half the operations do
+/// @param right   n x 1
+[[nodiscard]] casadi::SX eliminate(const casadi::SX& matrix, const casadi::SX& right, Symmetry symmetry);
 
 }  // namespace saltus::model

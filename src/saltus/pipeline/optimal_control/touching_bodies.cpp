@@ -68,7 +68,10 @@ std::vector<std::vector<double>> TouchingBodies::impulses(double t, const std::v
   std::vector<std::vector<double>> found;
   for (int i = 0; i < m; ++i) {
     found.push_back({all(i)});
-    for (int k = 0; k < contacts_.contacts[at(i)].tangents(); ++k) found.back().push_back(all(m * (1 + k) + i));
+    const auto& contact = contacts_.contacts[at(i)];
+    for (int k = 0; k < contact.tangents(); ++k) {
+      found.back().push_back(contact.has_friction ? all(m * (1 + k) + i) : 0.0);
+    }
   }
   return found;
 }
