@@ -155,12 +155,15 @@ class Descent {
     return false;
   }
 
-  /// The same point written with other sides, from which the objective may fall.
+  /// The same point written with other sides, from which the objective may fall, or one beside it.
   bool move() {
     visited_.insert(branch().sides);
     for (const auto& candidate : run_.problem.equal_branches(branch().sides, branch().w)) {
       if (run_.is_over()) return false;
-      if (take(candidate.sides, candidate.start, "the same point with other sides", move_iterations)) return true;
+      const auto& [sides, start, is_elsewhere] = candidate;
+      const bool is_better = is_elsewhere ? take(sides, start, "another point with other sides")
+                                          : take(sides, start, "the same point with other sides", move_iterations);
+      if (is_better) return true;
     }
     return false;
   }
