@@ -111,14 +111,25 @@ class Descent {
     if (is_decided && of.stationarity <= tolerance()) of.b_stationary = true;
   }
 
+  /// Whether it is where it began, and may need more iterations to leave.
+  [[nodiscard]] bool stays(const crossover::Branch& next) {
+    return next.is_feasible(tolerance()) && is_equal(branch().objective, next.objective);
+  }
+
+  /// Whether it promises an objective that is worth more iterations.
+  [[nodiscard]] bool is_nearly_better(const crossover::Branch& next) {
+    constexpr double nearly_feasible = 1e-4, worth = 1e-3;
+    const double best = branch().objective;
+    return next.is_feasible(nearly_feasible) && next.objective < best - worth * std::max(1.0, std::abs(best));
+  }
+
   /// Takes the branch with the group on its other side if that is better.
   bool take(const std::vector<ActiveSide>& sides, ConstVectorView from, const char* message,
             int iterations = branch_iterations) {
     if (!visited_.insert(sides).second) return false;
     crossover::Branch next = run_.solve_branch(sides, from, iterations, message, branch().objective);
-    // It is where it began, and may need more to leave.
-    if (next.report.termination == Termination::iteration_limit && next.is_feasible(tolerance()) &&
-        is_equal(branch().objective, next.objective)) {
+    const bool is_unfinished = next.report.termination == Termination::iteration_limit;
+    if (is_unfinished && (stays(next) || is_nearly_better(next))) {
       next = run_.solve_branch(sides, next.w, branch_iterations, message, branch().objective);
     }
     // From another start it may get there.
