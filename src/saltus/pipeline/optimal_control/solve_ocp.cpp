@@ -49,14 +49,15 @@ void go_on_with(solver::Solution next, solver::Solution& solution) {
 class MoreElements {
  public:
   MoreElements(const model::Ocp& ocp, solver::SolveOptions options, SolvedOcp& solved)
-      : ocp_(ocp), options_(std::move(options)), solved_(solved) {
+      : ocp_(ocp), options_(std::move(options)), most_iterations_(options_.iteration_limit), solved_(solved) {
     options_.first = solver::FirstProblem::branch;
   }
 
   /// @return whether there are intervals that are better with an element more; they have it
   [[nodiscard]] bool add() {
     auto& [stated, solution, has_more, seconds] = solved_;
-    if (solution.termination != Termination::completed || !has_time()) return false;
+    options_.iteration_limit = std::min(solution.iterations, most_iterations_ - solution.iterations);
+    if (solution.termination != Termination::completed || options_.iteration_limit < 1 || !has_time()) return false;
     const auto crowded = stated.problem->crowded_intervals(solution.w, solution.multipliers.upper, options_.tolerance);
     if (crowded.empty()) return false;
     auto elements = stated.elements;
@@ -64,7 +65,6 @@ class MoreElements {
     auto problem = discretization::OcpProblem::make(stated.kernel, ocp_, *stated.dcs, elements);
     if (!problem) return false;
     (*problem)->set_start(*stated.problem, solution.w);
-    options_.iteration_limit = std::max(solution.iterations, 1);
     auto next = solver::solve(**problem, ipopt_, highs_, options_);
     if (!next || next->termination != Termination::completed) return false;
     const double least = worth_an_element * std::max(1.0, std::abs(solution.objective));
@@ -85,6 +85,7 @@ class MoreElements {
 
   const model::Ocp& ocp_;
   solver::SolveOptions options_;
+  int most_iterations_;  ///< of all solutions together
   SolvedOcp& solved_;
   Stopwatch clock_;
   adapters::IpoptSolver ipopt_;
