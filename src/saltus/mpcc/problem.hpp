@@ -69,6 +69,7 @@ struct BranchMove {
   std::vector<ActiveSide> sides;
   Eigen::VectorXd start;
   std::vector<int> appearing{};  ///< variables that may not come back to 0 before the branch is known to be better
+  bool is_elsewhere = false;     ///< not the same point: it may be far from the solution of its branch
 };
 
 /// States min f(w)   subject to   lower_w <= w <= upper_w,   lower_g <= g(w) <= upper_g,   0 <= G(w) _|_ H(w) >= 0.

@@ -105,8 +105,17 @@ Finding path_finding(const result::Verification& verification) {
   if (std::isnan(verification.path_violation)) {
     return {Tone::neutral, "Whether bounds and path constraints hold between the nodes is not known."};
   }
-  return {Tone::neutral, fmt::format("Along the simulation bounds and path constraints are violated by at most {}.",
-                                     error_text(verification.path_violation))};
+  if (verification.path_violations.empty()) {
+    return {Tone::neutral, fmt::format("Along the simulation bounds and path constraints are violated by at most {}.",
+                                       error_text(verification.path_violation))};
+  }
+  const auto& [name, time, value, share] = verification.path_violations.front();
+  const auto others = verification.path_violations.size() - 1;
+  return {share > verification.tolerance ? Tone::bad : Tone::neutral,
+          fmt::format(
+              "Along the simulation `{}` is violated by at most {}, {} of its range, at t = {:.6g}{}.", name,
+              error_text(value), error_text(share), time,
+              others == 0 ? "" : fmt::format("; {} more {} by a smaller share", others, others == 1 ? "is" : "are"))};
 }
 
 /// What a person would see in a picture of bodies of length 1.

@@ -75,6 +75,14 @@ struct Penetration {
   double simulation = 0.0;  ///< of the event engine, interval by interval
 };
 
+/// Says where a simulation leaves a path constraint, or the bounds of a state, furthest.
+struct PathViolation {
+  std::string name;  ///< as written; of bounds the state
+  double time = 0.0;
+  double value = 0.0;
+  double share = 0.0;  ///< of the range that the constrained expression has in the simulation
+};
+
 /// Holds what the event engine says of an optimised trajectory.
 struct Verification {
   double tolerance = 0.0;
@@ -82,9 +90,10 @@ struct Verification {
   int interval = -1;             ///< where it is largest
   std::string state;
   double switch_time_error = 0.0;
-  int switches_missed = 0;  ///< of the simulation, not found in the solution
-  int switches_extra = 0;   ///< of the solution, not found in the simulation
-  double path_violation = 0.0;
+  int switches_missed = 0;                     ///< of the simulation, not found in the solution
+  int switches_extra = 0;                      ///< of the solution, not found in the simulation
+  double path_violation = 0.0;                 ///< the largest one
+  std::vector<PathViolation> path_violations;  ///< with the largest share first
   OpenLoop open_loop;
   std::optional<OpenLoop> closed_loop;  ///< with u_k + K_k (x(t_k) - x_k), if asked for
   /// Parameters and initial values of the closed loop's system that are not those of the model.

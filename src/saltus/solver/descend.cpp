@@ -111,14 +111,26 @@ class Descent {
     if (is_decided && of.stationarity <= tolerance()) of.b_stationary = true;
   }
 
+  /// Whether it is where it began, and may need more iterations to leave.
+  [[nodiscard]] bool stays(const crossover::Branch& next) {
+    return next.is_feasible(tolerance()) && is_equal(branch().objective, next.objective);
+  }
+
+  /// Whether it promises an objective that is worth more iterations.
+  [[nodiscard]] bool is_nearly_better(const crossover::Branch& next) {
+    constexpr double nearly_feasible = 1e-4, worth = 1e-3;
+    const double best = branch().objective;
+    return next.is_feasible(nearly_feasible) && next.objective < best - worth * std::max(1.0, std::abs(best));
+  }
+
   /// Takes the branch with the group on its other side if that is better.
   bool take(const mpcc::BranchMove& move, const char* message, int iterations = branch_iterations) {
-    const auto& [sides, from, appearing] = move;
+    const auto& sides = move.sides;
+    const auto& appearing = move.appearing;
     if (!visited_.insert(sides).second) return false;
-    crossover::Branch next = run_.solve_branch(sides, from, iterations, message, branch().objective, appearing);
-    // It is where it began, and may need more to leave.
-    if (next.report.termination == Termination::iteration_limit && next.is_feasible(tolerance()) &&
-        is_equal(branch().objective, next.objective)) {
+    crossover::Branch next = run_.solve_branch(sides, move.start, iterations, message, branch().objective, appearing);
+    const bool is_unfinished = next.report.termination == Termination::iteration_limit;
+    if (is_unfinished && (stays(next) || is_nearly_better(next))) {
       next = run_.solve_branch(sides, next.w, branch_iterations, message, branch().objective, appearing);
     }
     // Where an element has length 0 its equations depend on each other, and what is stationary there may not be
@@ -160,12 +172,15 @@ class Descent {
     return false;
   }
 
-  /// The same point written with other sides, from which the objective may fall.
+  /// The same point written with other sides, from which the objective may fall, or one beside it.
   bool move() {
     visited_.insert(branch().sides);
     for (const auto& candidate : run_.problem.equal_branches(branch().sides, branch().w)) {
       if (run_.is_over()) return false;
-      if (take(candidate, "the same point with other sides", move_iterations)) return true;
+      const bool is_better = candidate.is_elsewhere
+                                 ? take(candidate, "another point with other sides")
+                                 : take(candidate, "the same point with other sides", move_iterations);
+      if (is_better) return true;
     }
     return false;
   }

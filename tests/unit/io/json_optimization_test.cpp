@@ -13,7 +13,8 @@ using nlohmann::ordered_json;
 
 // Texts are compared, since NaN is unequal to itself: equal values give equal texts.
 TEST(JsonOptimization, ReadsBackEqual) {
-  const auto original = report_samples::turbo_car();
+  auto original = report_samples::turbo_car();
+  original.optimization->verification->path_violations = {{"v <= 25", 3.5, 0.25, 0.01}};
   const auto text = to_json(original);
   const auto read = parse_result(text, "r.json");
   ASSERT_TRUE(read) << to_text(read.error());
@@ -35,6 +36,7 @@ TEST(JsonOptimization, ReadsBackEqual) {
   EXPECT_EQ(optimization.homotopy[4].message, "no better point within 300 iterations");
   EXPECT_EQ(optimization.homotopy[11].phase, result::HomotopyPhase::lpcc);
   EXPECT_EQ(optimization.verification->interval, 3);
+  EXPECT_EQ(optimization.verification->path_violations.at(0).time, 3.5);
   EXPECT_EQ(optimization.verification->open_loop.x, original.optimization->verification->open_loop.x);
   EXPECT_EQ(optimization.multipliers[1].value, 1.0 / 15.0);
 }

@@ -172,10 +172,18 @@ TEST(VerifyTest, ViolationsBetweenNodes) {
   EXPECT_NEAR(verified(ocp, path).path_violation, 0.0, exact);
   ocp.path = {constraint(0, -infinity, 0.2)};
   EXPECT_NEAR(verified(ocp, path).path_violation, 0.05, exact);
+  const auto named = verified(ocp, path).path_violations;
+  ASSERT_EQ(named.size(), 1U);
+  EXPECT_EQ(named[0].name, ocp.path[0].name);
+  EXPECT_NEAR(named[0].time, 0.5, exact);
+  EXPECT_NEAR(named[0].value, 0.05, exact);
+  EXPECT_NEAR(named[0].share, 0.2, exact);       // of 1/4
   ocp.path[0].norm = model::ConstraintNorm::l1;  // soft
   EXPECT_NEAR(verified(ocp, path).path_violation, 0.0, exact);
+  EXPECT_TRUE(verified(ocp, path).path_violations.empty());
   ocp.system.state_upper[0] = 0.125;
   EXPECT_NEAR(verified(ocp, path).path_violation, 0.125, exact);
+  EXPECT_EQ(verified(ocp, path).path_violations.at(0).name, "q");
 }
 
 TEST(VerifyTest, ParametersOfTheSolution) {

@@ -193,6 +193,7 @@ TEST(Table, OfAnOptimisationThatFailedNamesEveryFailure) {
   verification.switches_missed = 1;
   verification.switches_extra = 2;
   verification.path_violation = 0.2;
+  verification.path_violations = {{"x^2 <= 1", 0.25, 0.2, 0.1}, {"v", 1.0, 1e-4, 1e-5}};
   verification.open_loop.termination = result::Termination::step_size_too_small;
   auto text = to_table(r);
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -203,7 +204,8 @@ TEST(Table, OfAnOptimisationThatFailedNamesEveryFailure) {
         "(allowed 1e-08)", "NOT B-stationary (C)", "4 pairs have both sides at zero",
         "off by at most 0.02 of the range of `v`", "MORE than the allowed 0.001",
         "1 switch of the simulation not in the solution, 2 switches of the solution not in the simulation",
-        "violated by at most 0.2", "ended early (step_size_too_small)"}) {
+        "`x^2 <= 1` is violated by at most 0.2, 0.1 of its range, at t = 0.25; 1 more is by a smaller share",
+        "ended early (step_size_too_small)"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
   verification.interval_defect = verification.path_violation = nan;

@@ -286,6 +286,7 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
   add_void_sides(made, modes, w, functions, moves);
   implementation_->crowded.clear();
   add_touched_sides(made, modes, w, implementation_->crowded, moves);
+  add_grazed_sides(made, modes, w, implementation_->crowded, moves);
   add_reached_regions(made, modes, w, moves);
   for (auto& move : moves) note_appearing(made, modes, move);
   return moves;

@@ -80,6 +80,9 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] std::vector<double> start_fractions() const;
   void set_start(const OcpGuessValues& guess);
   void set_start(Eigen::VectorXd w);
+  /// Takes a point of a problem of the same kernel with other intervals or elements: stretches of equal modes are cut
+  /// where intervals end, and divided into as many elements as there are.
+  void set_start(const OcpProblem& earlier, mpcc::ConstVectorView w);
   [[nodiscard]] OcpSolution read(mpcc::ConstVectorView w) const;
   /// Returns parts of the user's objective at w.
   [[nodiscard]] result::ObjectiveTerms objective_terms(mpcc::ConstVectorView w);

@@ -58,6 +58,15 @@ void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::C
 void add_touched_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
                        std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves);
 
+/// Adds those of them that begin where an element does.
+void add_touched_sides_at(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
+                          std::size_t element, std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves);
+
+/// Adds moves to impacts where bodies only graze: behind one of velocity 0 nothing differs, so that they begin at a
+/// point with other controls, where it has some.
+void add_grazed_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
+                      std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves);
+
 /// Adds moves of regions by indicators that a state comes to at the end of the horizon, or is held at until then: it
 /// goes on through them, to the line between them and another one.
 void add_reached_regions(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,

@@ -34,15 +34,6 @@ class TouchedSides {
     for (std::size_t e = 0; e < made_.element.size(); ++e) add_crossed(e, moves);
   }
 
- private:
-  /// Where elements end and begin.
-  struct Node {
-    std::size_t element = 0;           ///< the one that follows, or one behind the last
-    std::size_t interval = 0;          ///< in which elements are inserted
-    Items::difference_type place = 0;  ///< of what follows, in the interval
-    Modes before, after;               ///< empty at the ends of the horizon
-  };
-
   void add_continued(std::size_t e, std::vector<mpcc::BranchMove>& moves) const {
     const bool is_first = e == 0, is_last = e == made_.element.size();
     Node node{
@@ -57,6 +48,15 @@ class TouchedSides {
     if (!is_first) begin_in(at(made_.element[e - 1].interval));
     if (!is_last && made_.element[e].number == 0) begin_in(at(made_.element[e].interval));
   }
+
+ private:
+  /// Where elements end and begin.
+  struct Node {
+    std::size_t element = 0;           ///< the one that follows, or one behind the last
+    std::size_t interval = 0;          ///< in which elements are inserted
+    Items::difference_type place = 0;  ///< of what follows, in the interval
+    Modes before, after;               ///< empty at the ends of the horizon
+  };
 
   /// Whether a surface is reached that is not slid on all the time, or slid on with a selection at its bound.
   [[nodiscard]] bool is_touched(const Node& node, const std::vector<double>& lambda) const {
@@ -93,7 +93,8 @@ class TouchedSides {
               std::vector<mpcc::BranchMove>& moves) const {
     if (chain.size() == largest_chain) return;
     std::vector<std::vector<double>> impacts;
-    for (const auto& modes : candidates(trial_.lambda(left), before, node.after)) {
+    // What follows anyway is another motion behind an impact.
+    for (const auto& modes : candidates(trial_.lambda(left), before, chain.empty() ? node.after : Modes{})) {
       double length = inserted_share;
       auto own = trial_.solve(left, node.interval, modes, length);
       const bool stands = own && trial_.stands_still(left, *own);
@@ -146,25 +147,36 @@ class TouchedSides {
     return list;
   }
 
-  /// While time stands still: until one of the multipliers has come to 0.
+  /// While time stands still: until one of the multipliers has come to 0. From rest they fall with the square of time.
   [[nodiscard]] std::optional<Eigen::VectorXd> solve_to_end(const std::vector<double>& left, std::size_t interval,
                                                             const Modes& modes, double& length) const {
-    constexpr int largest_steps = 10;
-    constexpr double enough = 1e-9;
-    const auto begin = trial_.lambda(left);
-    auto own = trial_.solve(left, interval, modes, length);
-    for (int step = 0; own && step < largest_steps; ++step) {
-      const auto end = trial_.lambda(trial_.right_of(*own));
-      double least = std::numeric_limits<double>::infinity();
-      for (std::size_t k = 0; k < begin.size(); ++k) {
-        if (begin[k] > on_surface && end[k] < begin[k]) least = std::min(least, begin[k] / (begin[k] - end[k]));
+    constexpr int largest_steps = 60;
+    constexpr double enough = 1e-9, largest_growth = 10.0;
+    double low = 0.0, at_low = 1.0, high = std::numeric_limits<double>::infinity(), at_high = 0.0;
+    for (int step = 0; step < largest_steps; ++step) {
+      auto own = trial_.solve(left, interval, modes, length);
+      if (!own) return std::nullopt;
+      const double rest = least_left(trial_.lambda(left), trial_.lambda(trial_.right_of(*own)));
+      if (std::abs(rest) <= enough) return own;
+      std::tie(rest > 0.0 ? low : high, rest > 0.0 ? at_low : at_high) = std::pair(length, rest);
+      if (std::isinf(high)) {
+        if (!(rest < 1.0)) return std::nullopt;
+        length *= std::min(1.0 / (1.0 - rest), largest_growth);
+      } else {
+        const bool halve = step % 3 == 0;
+        length = halve ? 0.5 * (low + high) : low + (high - low) * at_low / (at_low - at_high);
       }
-      if (!std::isfinite(least)) return std::nullopt;
-      length *= least;
-      own = trial_.solve(left, interval, modes, length);
-      if (std::abs(least - 1.0) <= enough) return own;
     }
     return std::nullopt;
+  }
+
+  /// What is left, relative to the beginning, of the multiplier that comes to 0 first.
+  [[nodiscard]] static double least_left(const std::vector<double>& begin, const std::vector<double>& end) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < begin.size(); ++k) {
+      if (begin[k] > on_surface) least = std::min(least, end[k] / begin[k]);
+    }
+    return least;
   }
 
   void insert(const Node& node, const Items& chain, std::vector<mpcc::BranchMove>& moves) const {
@@ -229,7 +241,7 @@ class TouchedSides {
     insert_beside(e, states_.with(modes, surface, -state), moves);
   }
 
-  /// A short element behind e, in its interval or in the next one.
+  /// A short element behind e, in its interval, in the next one, or in both.
   void insert_beside(std::size_t e, const Modes& modes, std::vector<mpcc::BranchMove>& moves) const {
     const auto k = at(made_.element[e].interval);
     Items items = items_.of_interval(k);
@@ -241,6 +253,7 @@ class TouchedSides {
     Items next = items_.of_interval(k + 1);
     next.insert(next.begin(), {e, inserted_share, modes});
     items_.add({{k + 1, next}}, moves);
+    items_.add({{k, items}, {k + 1, next}}, moves);
   }
 
   const OcpStructure& made_;
@@ -257,6 +270,11 @@ class TouchedSides {
 void add_touched_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
                        std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves) {
   TouchedSides(made, modes, w, crowded).add_to(moves);
+}
+
+void add_touched_sides_at(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
+                          std::size_t element, std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves) {
+  TouchedSides(made, modes, w, crowded).add_continued(element, moves);
 }
 
 }  // namespace saltus::discretization

@@ -278,6 +278,13 @@ struct RecordMembers<result::Penetration> {
 };
 
 template <>
+struct RecordMembers<result::PathViolation> {
+  using R = result::PathViolation;
+  static constexpr auto list = std::make_tuple(field("name", &R::name), field("time", &R::time),
+                                               field("value", &R::value), field("share", &R::share));
+};
+
+template <>
 struct RecordMembers<result::Verification> {
   using R = result::Verification;
   static constexpr auto list = std::make_tuple(
@@ -287,7 +294,8 @@ struct RecordMembers<result::Verification> {
       field("switches_extra", &R::switches_extra), field("path_violation", &R::path_violation),
       field("message", &R::message), field("open_loop", &R::open_loop),
       field("closed_loop", &R::closed_loop, Presence::if_any), field("plant", &R::plant, Presence::if_any),
-      field("penetration", &R::penetration, Presence::if_any));
+      field("penetration", &R::penetration, Presence::if_any),
+      field("path_violations", &R::path_violations, Presence::if_any));
 };
 
 template <>

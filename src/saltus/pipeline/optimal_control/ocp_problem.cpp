@@ -155,6 +155,31 @@ Expected<void> take_result(const model::Ocp& ocp, const result::Result& from, in
   return {};
 }
 
+/// The problem whose point a stored result is; null where it is none of this kernel.
+std::unique_ptr<discretization::OcpProblem> stored_problem(const model::Ocp& ocp, const reformulation::Dcs& dcs,
+                                                           const std::shared_ptr<discretization::OcpKernel>& kernel,
+                                                           const result::Optimization& stored) {
+  std::vector<int> elements;
+  for (const auto& lengths : stored.h) elements.push_back(static_cast<int>(lengths.size()));
+  const bool has_samples = std::any_of(ocp.least_squares.begin(), ocp.least_squares.end(),
+                                       [&](const auto& term) { return term.samples.size() > 0; });
+  if (elements.empty() || has_samples) return nullptr;
+  auto problem = discretization::OcpProblem::make(kernel, ocp, dcs, elements);
+  const bool fits = problem && std::ssize(stored.primal) == (*problem)->variables();
+  return fits ? std::move(*problem) : nullptr;
+}
+
+/// What time froze is in the elements of a stored result, not in its rows.
+void take_elements(const model::Ocp& ocp, const reformulation::Dcs& dcs,
+                   const std::shared_ptr<discretization::OcpKernel>& kernel, const result::Result& from,
+                   discretization::OcpProblem& problem) {
+  if (!from.optimization) return;
+  const auto& primal = from.optimization->primal;
+  const auto stored = stored_problem(ocp, dcs, kernel, *from.optimization);
+  if (!stored) return;
+  problem.set_start(*stored, Eigen::Map<const Eigen::VectorXd>(primal.data(), std::ssize(primal)));
+}
+
 }  // namespace
 
 Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptions& options) {
@@ -163,8 +188,9 @@ Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptio
   if (auto error = check_freedom(ocp, *elements, options)) return tl::unexpected(std::move(*error));
   auto tableau = discretization::butcher_tableau(options.element.scheme, static_cast<int>(options.element.stages));
   if (!tableau) return tl::unexpected(tableau.error());
-  const auto dcs = reformulation::reformulate(ocp.system, reformulation_options(options.element));
-  if (!dcs) return tl::unexpected(dcs.error());
+  auto reformulated = reformulation::reformulate(ocp.system, reformulation_options(options.element));
+  if (!reformulated) return tl::unexpected(reformulated.error());
+  const auto dcs = std::make_shared<const reformulation::Dcs>(std::move(*reformulated));
   auto kernel = discretization::OcpKernel::compile(ocp, *dcs, *tableau, discretization_options(options),
                                                    native_code(options.native));
   if (!kernel) return tl::unexpected(kernel.error());
@@ -186,13 +212,19 @@ Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptio
     if (!taken) return tl::unexpected(taken.error());
   }
   (*problem)->set_start(guess);
+  if (options.start_from) take_elements(ocp, *dcs, *kernel, *options.start_from, **problem);
   if (const auto name = (*problem)->not_finite((*problem)->start()); !name.empty()) {
     auto error = refusal(fmt::format("{} is not finite at the initial guess", name),
                          "give an initial_guess at which costs and constraints are defined");
     error.code = ErrorCode::invalid_model;
     return tl::unexpected(std::move(error));
   }
-  return StatedProblem{std::move(*problem), std::move(*tableau), std::move(begin->warnings)};
+  return StatedProblem{dcs,
+                       std::move(*kernel),
+                       std::move(*elements),
+                       std::move(*problem),
+                       std::move(*tableau),
+                       std::move(begin->warnings)};
 }
 
 }  // namespace saltus::pipeline

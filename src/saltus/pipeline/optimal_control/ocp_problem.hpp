@@ -11,9 +11,16 @@
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/options/optimize_options.hpp"
 
+namespace saltus::reformulation {
+struct Dcs;
+}
+
 namespace saltus::pipeline {
 
 struct StatedProblem {
+  std::shared_ptr<const reformulation::Dcs> dcs;
+  std::shared_ptr<discretization::OcpKernel> kernel;
+  std::vector<int> elements;                            ///< per interval
   std::unique_ptr<discretization::OcpProblem> problem;  ///< with its start
   discretization::ButcherTableau tableau;
   std::vector<std::string> warnings;  ///< guesses that were moved onto their bounds

@@ -8,8 +8,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "saltus/adapters/highs/highs_lpcc.hpp"
-#include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/base/at.hpp"
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/base/symbolic_lock.hpp"
@@ -18,24 +16,20 @@
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/element_choices_internal.hpp"
-#include "saltus/pipeline/optimal_control/ocp_problem.hpp"
+#include "saltus/pipeline/optimal_control/advice_internal.hpp"
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
+#include "saltus/pipeline/optimal_control/solve_ocp_internal.hpp"
 #include "saltus/pipeline/optimal_control/verify.hpp"
 #include "saltus/pipeline/options/number_list_internal.hpp"
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
-#include "saltus/result/impacts_at_nodes.hpp"
 #include "saltus/solver/feedback.hpp"
 
 namespace saltus::pipeline {
 namespace {
 
 using result::Termination;
-
-Eigen::VectorXd vector_of(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
 
 /// What does not depend on how the solution went.
 result::Result result_frame(const model::Ocp& ocp, const OptimizeOptions& options) {
@@ -123,66 +117,6 @@ void take_point(discretization::OcpProblem& problem, const solver::Solution& sol
   statistics.linear_algebra_seconds = solution.solver_seconds;
 }
 
-/// What to write for a solution that is nearer to the simulation.
-std::string finer_grid(const OptimizeOptions& options, bool has_missed) {
-  const long elements = *std::max_element(options.elements.begin(), options.elements.end());
-  const auto finer = fmt::format("elements = {} or control_intervals = {}", elements + (elements + 1) / 2,
-                                 2 * options.control_intervals);
-  const long stages = options.element.stages;
-  if (!has_missed) return fmt::format("try stages = {}, or {}", stages + 1, finer);
-  return fmt::format("a switch was missed there: try {}{}", finer,
-                     stages > 1 ? "" : fmt::format(", or stages = {}", stages + 1));
-}
-
-/// What an unsolved problem with bounces lacks; empty where it has it.
-std::string advice_on_bounces(const model::Ocp& ocp, const OptimizeOptions& options, result::Termination termination) {
-  using result::Termination;
-  const bool is_unsolved = termination == Termination::infeasible || termination == Termination::not_converged ||
-                           termination == Termination::iteration_limit;
-  const auto& freezing = ocp.system.freezing;
-  const bool bounces = freezing && std::any_of(freezing->contacts.begin(), freezing->contacts.end(),
-                                               [](const auto& contact) { return contact.is_elastic; });
-  const bool has_all = options.start == StartValues::simulated &&
-                       *std::min_element(options.elements.begin(), options.elements.end()) >= 4;
-  if (!is_unsolved || !bounces || has_all) return "";
-  return "; a contact with restitution needs elements = 4 or more, and start = \"simulated\" with time_freezing.a_n "
-         "near its speed divided by the length of an interval";
-}
-
-/// completed only if the other engine agrees.
-void judge(const result::Verification& verification, const OptimizeOptions& options, result::Status& status) {
-  const double tolerance = options.verification_tolerance;
-  if (status.termination != Termination::completed) return;
-  if (verification.interval_defect <= tolerance && verification.message.empty()) return;
-  status.termination = Termination::verification_failed;
-  if (!verification.message.empty() && !(verification.interval_defect <= tolerance)) {
-    status.message = fmt::format("an interval could not be simulated: {}", verification.message);
-    if (!std::isfinite(verification.interval_defect)) return;
-  }
-  if (verification.interval_defect <= tolerance) {
-    status.termination = Termination::completed;
-    return;
-  }
-  status.message = fmt::format(
-      "the event-driven simulation of interval {} differs by {:.3g} of the range of '{}' (verification_tolerance = "
-      "{:.3g}); {}",
-      verification.interval, verification.interval_defect, verification.state, tolerance,
-      finer_grid(options, verification.switches_missed > 0));
-}
-
-std::optional<solver::Start> same_structure(const discretization::OcpProblem& problem, const OptimizeOptions& options) {
-  if (!options.start_from || !options.start_from->optimization) return std::nullopt;
-  const auto& from = *options.start_from->optimization;
-  if (static_cast<int>(from.primal.size()) != problem.variables()) return std::nullopt;
-  solver::Start start;
-  start.w = vector_of(from.primal);
-  if (static_cast<int>(from.dual_rows.size()) != problem.constraints()) return start;
-  start.multipliers.rows = vector_of(from.dual_rows);
-  start.multipliers.lower = vector_of(from.dual_lower);
-  start.multipliers.upper = vector_of(from.dual_upper);
-  return start;
-}
-
 /// States by the range that they have in the plan, controls by the width of their bounds; what does not move, or has
 /// none, may be off by anything.
 std::optional<solver::TrackingScales> tracking_scales(const model::Ocp& ocp, const OptimizeOptions& options,
@@ -224,27 +158,6 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
   return verify(physical_ocp(ocp), physical_path(ocp, *bodies, path, run), wanted, observers.is_interrupted);
 }
 
-void warn_of_impacts_at_nodes(const result::Result& run, const OptimizeObservers& observers) {
-  const auto times = result::impacts_at_nodes(run);
-  if (times.empty()) return;
-  observers.on_warning(fmt::format(
-      "impacts at t = {:.6g} lie at ends of control intervals: beside them nothing that has room was better; "
-      "compare with an element or an interval more",
-      fmt::join(times, ", ")));
-}
-
-/// The certificate is one of the discretised problem, in which an interval has so many elements.
-void warn_of_crowded_intervals(const discretization::OcpProblem& problem, const solver::Solution& solution,
-                               const OptimizeOptions& options, const OptimizeObservers& observers) {
-  const auto crowded = problem.crowded_intervals(solution.w, solution.multipliers.upper, options.mpcc.tolerance);
-  if (crowded.empty()) return;
-  observers.on_warning(fmt::format(
-      "interval{} {} (from 0 on): another motion from there needs an element more than there is; the certificate is "
-      "that of these elements: compare with elements = {}",
-      crowded.size() == 1 ? "" : "s", fmt::join(crowded, ", "),
-      *std::max_element(options.elements.begin(), options.elements.end()) + 1));
-}
-
 void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
   const int stabilisation = ocp.system.freezing ? ocp.system.freezing->stabilisation : -1;
   for (std::size_t i = 0; i < read.parameters.size(); ++i) {
@@ -266,40 +179,41 @@ void take_run(const model::Ocp& ocp, OptimizedRun& run, result::Result& result) 
   if (ocp.system.freezing) result.switching_functions = std::move(run.switching_functions);
 }
 
+/// A result is started from with the elements that it has.
+void keep_added_elements(const std::vector<int>& elements, const OptimizeObservers& observers,
+                         OptimizeOptions& options) {
+  options.elements.assign(elements.begin(), elements.end());
+  observers.on_warning(fmt::format(
+      "intervals have more elements than asked for, as another motion needs them and is better: elements = [{}]",
+      fmt::join(elements, ", ")));
+}
+
 }  // namespace
 
-Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& options,
+Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& asked,
                                   const OptimizeObservers& observers) {
   const SymbolicLock lock;  // problems are made, and dropped, while it runs
   const Stopwatch whole;
   if (auto error = model::find_stale(ocp.system)) return tl::unexpected(*error);
-  auto stated = state_problem(ocp, options);
-  if (!stated) return tl::unexpected(stated.error());
-  for (const auto& warning : stated->warnings) observers.on_warning(warning);
-  auto& problem = *stated->problem;
+  auto solved = solve_ocp(ocp, asked, observers);
+  if (!solved) return tl::unexpected(solved.error());
+  auto& problem = *solved->stated.problem;
+  const auto& solution = solved->solution;
+  OptimizeOptions options = asked;
+  if (solved->has_more_elements) keep_added_elements(solved->stated.elements, observers, options);
   result::Result result = result_frame(ocp, options);
   auto& found = result.optimization.emplace();
   take_bounds(ocp, found);
-  found.statistics.build_seconds = whole.seconds();
+  take_point(problem, solution, found);
+  found.statistics.build_seconds = solved->build_seconds;
+  result.status.termination = solution.termination;
+  result.status.message = solution.message + advice_on_bounces(ocp, options, solution.termination);
 
-  solver::SolveOptions wanted = options.mpcc;
-  wanted.is_interrupted = observers.is_interrupted;
-  wanted.on_step = observers.on_step;
-  adapters::IpoptSolver ipopt;
-  adapters::HighsLpcc highs;
-  const double build_seconds = found.statistics.build_seconds;
-  auto solution = solver::solve(problem, ipopt, highs, wanted, same_structure(problem, options));
-  if (!solution) return tl::unexpected(solution.error());
-  take_point(problem, *solution, found);
-  found.statistics.build_seconds = build_seconds;
-  result.status.termination = solution->termination;
-  result.status.message = solution->message + advice_on_bounces(ocp, options, solution->termination);
-
-  const auto read = problem.read(solution->w);
+  const auto read = problem.read(solution.w);
   take_solution(ocp, read, found);
   take_parameters(ocp, read, result);
   result.status.time_reached = found.grid.back();
-  auto run = optimized_run(ocp, read, reformulation_options(options.element), stated->tableau);
+  auto run = optimized_run(ocp, read, reformulation_options(options.element), solved->stated.tableau);
   if (!run) return tl::unexpected(run.error());
   take_run(ocp, *run, result);
   result.drawing = drawing_of(ocp.system, read.parameters, result.trajectory);
@@ -311,16 +225,17 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     add_impulses(*bodies, result);
   }
   warn_of_impacts_at_nodes(result, observers);
-  warn_of_crowded_intervals(problem, *solution, options, observers);
-  if (result.status.termination != Termination::stopped_by_user && solution->w.allFinite()) {
+  warn_of_crowded_intervals(problem, solution, options, observers);
+  if (result.status.termination != Termination::stopped_by_user && solution.w.allFinite()) {
     std::vector<Eigen::MatrixXd> gains;
     if (options.closed_loop.value_or(ocp.plant || !result.contacts.empty())) {
-      gains = solver::feedback_gains(problem, *solution, static_cast<int>(ocp.system.control_names.size()),
+      gains = solver::feedback_gains(problem, solution, static_cast<int>(ocp.system.control_names.size()),
                                      static_cast<int>(result.states.size()), tracking_scales(ocp, options, run->path));
     }
     auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), bodies.get(), observers);
     if (!verification) return tl::unexpected(verification.error());
     judge(*verification, options, result.status);
+    warn_of_path_violations(ocp, *verification, options, observers);
     if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);
     found.verification = std::move(*verification);
   }

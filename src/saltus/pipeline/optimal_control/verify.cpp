@@ -11,6 +11,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
+#include "saltus/pipeline/optimal_control/path_violations_internal.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
 #include "saltus/pipeline/optimal_control/switch_comparison_internal.hpp"
 
@@ -30,36 +31,17 @@ constexpr double end_tolerance = 1e-3;
 /// Rows of the open loop that are kept.
 constexpr std::size_t most_kept_rows = 2000;
 
-/// The larger one; what is not a number stays.
-double worse(double a, double b) { return std::isnan(a) || std::isnan(b) ? not_known : std::max(a, b); }
-
 /// Behind them are modes of contacts.
 std::size_t shown_states(const Ocp& ocp) {
   const auto& system = ocp.system;
   return system.contacts.empty() ? system.state_names.size() : at(system.contacts.first_hidden);
 }
 
-double violation(double value, double lower, double upper) { return worse(worse(lower - value, value - upper), 0.0); }
-
 double violation_of(const std::vector<OcpConstraint>& constraints, const std::vector<double>& outputs) {
   double worst = 0.0;
   for (const auto& constraint : constraints) {
     if (constraint.norm != model::ConstraintNorm::hard) continue;
     worst = worse(worst, violation(outputs[at(constraint.output)], constraint.lower, constraint.upper));
-  }
-  return worst;
-}
-
-/// Of path constraints and bounds of states, in all rows up to the end of the interval, with its controls.
-double path_violation(const Ocp& ocp, const Integration& run, double until) {
-  const auto& rows = run.trajectory;
-  double worst = 0.0;
-  for (std::size_t r = 0; r < rows.t.size(); ++r) {
-    worst = worse(worst, violation_of(ocp.path, rows.outputs[r]));
-    for (std::size_t i = 0; i < shown_states(ocp); ++i) {
-      worst = worse(worst, violation(rows.x[r][i], ocp.system.state_lower[i], ocp.system.state_upper[i]));
-    }
-    if (rows.t[r] >= until) break;  // a second row at the end is behind the jump of the controls
   }
   return worst;
 }
@@ -86,12 +68,9 @@ class Scales {
   }
 
   [[nodiscard]] double of(std::size_t state) const {
-    double scale = std::max(range(state), 1e-6);
+    double scale = scale_of(range(state), system_.state_lower[state], system_.state_upper[state]);
     if (const auto* kind = kind_[state]) {
       for (const int other : *kind) scale = std::max(scale, 1e-4 * range(at(other)));
-    }
-    for (const double bound : {system_.state_lower[state], system_.state_upper[state]}) {
-      if (std::isfinite(bound)) scale = std::max(scale, 1e-3 * std::abs(bound));
     }
     return scale;
   }
@@ -114,7 +93,11 @@ class Scales {
 class IntervalChecks {
  public:
   IntervalChecks(const Ocp& ocp, const OptimizedPath& path, Verification& verification)
-      : ocp_(ocp), path_(path), verification_(verification), scales_(ocp.system, path) {
+      : ocp_(ocp),
+        path_(path),
+        verification_(verification),
+        scales_(ocp.system, path),
+        violations_(ocp, shown_states(ocp)) {
     if (!ocp.system.contacts.empty()) {
       gaps_.emplace(ocp.system, path.parameters);
       verification.penetration.emplace();
@@ -141,14 +124,15 @@ class IntervalChecks {
         double& deepest = verification_.penetration->simulation;
         deepest = std::max(deepest, gaps_->depth(interval.run.trajectory));
       }
-      const double worst = path_violation(ocp_, interval.run, path_.times[k + 1]);
-      verification_.path_violation = worse(verification_.path_violation, worst);
+      violations_.include(interval.run, path_.times[k + 1]);
     }
     return true;
   }
 
   void compare() {
     find_defect();
+    verification_.path_violation = failures_ > 0 ? not_known : violations_.largest();
+    verification_.path_violations = violations_.list();
     const auto switches =
         compare_switches(path_.times, switches_, switches_of(path_.events, is_listed_), end_tolerance);
     verification_.switch_time_error = switches.time_error;
@@ -168,7 +152,6 @@ class IntervalChecks {
   void add(const std::string& text) { verification_.message += (verification_.message.empty() ? "" : "; ") + text; }
 
   void note_failure(std::size_t k, const result::Status& status) {
-    verification_.path_violation = not_known;
     if (++failures_ > 1) return;
     verification_.interval = static_cast<int>(k);
     add(fmt::format("interval {} cannot be simulated: {}{}{}", k, result::name(status.termination),
@@ -206,6 +189,7 @@ class IntervalChecks {
   const OptimizedPath& path_;
   Verification& verification_;
   Scales scales_;
+  PathViolations violations_;
   std::vector<std::vector<double>> ends_;
   std::vector<std::vector<Switch>> switches_;
   std::vector<bool> is_listed_;

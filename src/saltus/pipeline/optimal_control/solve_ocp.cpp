@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "saltus/adapters/highs/highs_lpcc.hpp"
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/base/at.hpp"
+#include "saltus/base/stopwatch.hpp"
+#include "saltus/pipeline/optimal_control/solve_ocp_internal.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+using result::Termination;
+
+/// Times that intervals may get an element more.
+constexpr int most_rounds = 3;
+/// Of the objective: by less an element more is not worth it.
+constexpr double worth_an_element = 1e-4;
+
+Eigen::VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+std::optional<solver::Start> same_structure(const discretization::OcpProblem& problem, const OptimizeOptions& options) {
+  if (!options.start_from || !options.start_from->optimization) return std::nullopt;
+  const auto& from = *options.start_from->optimization;
+  if (static_cast<int>(from.primal.size()) != problem.variables()) return std::nullopt;
+  solver::Start start;
+  start.w = vector_of(from.primal);
+  if (static_cast<int>(from.dual_rows.size()) != problem.constraints()) return start;
+  start.multipliers.rows = vector_of(from.dual_rows);
+  start.multipliers.lower = vector_of(from.dual_lower);
+  start.multipliers.upper = vector_of(from.dual_upper);
+  return start;
+}
+
+/// The path of both, and the point of the second one.
+void go_on_with(solver::Solution next, solver::Solution& solution) {
+  next.homotopy.insert(next.homotopy.begin(), solution.homotopy.begin(), solution.homotopy.end());
+  next.iterations += solution.iterations;
+  next.evaluation_seconds += solution.evaluation_seconds;
+  next.solver_seconds += solution.solver_seconds;
+  solution = std::move(next);
+}
+
+/// The certificate of a solution is one of so many elements. Another one may take as long as the first.
+class MoreElements {
+ public:
+  MoreElements(const model::Ocp& ocp, solver::SolveOptions options, SolvedOcp& solved)
+      : ocp_(ocp), options_(std::move(options)), most_iterations_(options_.iteration_limit), solved_(solved) {
+    options_.first = solver::FirstProblem::branch;
+  }
+
+  /// @return whether there are intervals that are better with an element more; they have it
+  [[nodiscard]] bool add() {
+    auto& [stated, solution, has_more, seconds] = solved_;
+    options_.iteration_limit = std::min(solution.iterations, most_iterations_ - solution.iterations);
+    if (solution.termination != Termination::completed || options_.iteration_limit < 1 || !has_time()) return false;
+    const auto crowded = stated.problem->crowded_intervals(solution.w, solution.multipliers.upper, options_.tolerance);
+    if (crowded.empty()) return false;
+    auto elements = stated.elements;
+    for (const int k : crowded) ++elements[at(k)];
+    auto problem = discretization::OcpProblem::make(stated.kernel, ocp_, *stated.dcs, elements);
+    if (!problem) return false;
+    (*problem)->set_start(*stated.problem, solution.w);
+    auto next = solver::solve(**problem, ipopt_, highs_, options_);
+    if (!next || next->termination != Termination::completed) return false;
+    const double least = worth_an_element * std::max(1.0, std::abs(solution.objective));
+    if (!(next->objective < solution.objective - least)) return false;
+    stated.elements = std::move(elements);
+    stated.problem = std::move(*problem);
+    go_on_with(std::move(*next), solution);
+    return has_more = true;
+  }
+
+ private:
+  [[nodiscard]] bool has_time() {
+    if (!options_.time_limit) return true;
+    *options_.time_limit -= clock_.seconds();
+    clock_ = Stopwatch();
+    return *options_.time_limit > 0.0;
+  }
+
+  const model::Ocp& ocp_;
+  solver::SolveOptions options_;
+  int most_iterations_;  ///< of all solutions together
+  SolvedOcp& solved_;
+  Stopwatch clock_;
+  adapters::IpoptSolver ipopt_;
+  adapters::HighsLpcc highs_;
+};
+
+}  // namespace
+
+Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& options,
+                              const OptimizeObservers& observers) {
+  const Stopwatch building;
+  auto stated = state_problem(ocp, options);
+  if (!stated) return tl::unexpected(stated.error());
+  for (const auto& warning : stated->warnings) observers.on_warning(warning);
+  SolvedOcp solved{.stated = std::move(*stated), .solution = {}, .build_seconds = building.seconds()};
+  solver::SolveOptions wanted = options.mpcc;
+  wanted.is_interrupted = observers.is_interrupted;
+  wanted.on_step = observers.on_step;
+  adapters::IpoptSolver ipopt;
+  adapters::HighsLpcc highs;
+  auto& problem = *solved.stated.problem;
+  const Stopwatch solving;
+  auto solution = solver::solve(problem, ipopt, highs, wanted, same_structure(problem, options));
+  if (!solution) return tl::unexpected(solution.error());
+  solved.solution = std::move(*solution);
+  if (wanted.time_limit) *wanted.time_limit -= solving.seconds();
+  MoreElements more(ocp, wanted, solved);
+  for (int round = 0; round < most_rounds && more.add();) ++round;
+  return solved;
+}
+
+}  // namespace saltus::pipeline
