@@ -175,7 +175,7 @@ void Rests::find(const Place& place, const std::vector<int>& members) {
   }
   for (const auto& [j, r] : pairs) {
     const auto idle = idle_sides(place, j, r), own = idle_sides(place, r, j);
-    if (idle.size() != 1 || (!own.empty() && own != idle)) continue;
+    if (idle.empty() || (!own.empty() && own != idle)) continue;
     governors_[at(j)] = r;
     sides_[at(j)] = own.empty() ? 0 : -idle.front();
     const bool simplex = parts_[at(functions_[at(j)].part)].simplex;
