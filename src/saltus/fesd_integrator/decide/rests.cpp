@@ -220,10 +220,8 @@ void Rests::put_into_simplex(int p, ActiveSet& set, std::vector<Surface>& restin
   const Part& part = parts_[at(p)];
   const auto modes = surface_modes(part, [&](int region) { return set.modes()[at(region)] == 0; });
   std::vector<std::pair<int, int>> held;  // a surface, and the one that its regions keep instead
-  std::vector<bool> at_zero(modes.size());
+  std::vector<int> at_rest;               // surfaces whose side is nothing of a region's own
   const int reference = set.reference(part.first);
-  bool any = false;
-  for (std::size_t k = 0; k < modes.size(); ++k) at_zero[k] = modes[k] == 0;
   for (int k = 0; k < part.surfaces; ++k) {
     const int j = function(p, k);
     if (governor(j) < 0) continue;
@@ -232,12 +230,13 @@ void Rests::put_into_simplex(int p, ActiveSet& set, std::vector<Surface>& restin
                  : modes[at(k)] != sides_[at(j)] || modes[at(other)] != 0) {
       continue;
     }
-    any = true;
-    at_zero[at(k)] = at_zero[at(other)] = true;
+    at_rest.push_back(k);
     resting.push_back({region_on(part, reference, k, 1), region_on(part, reference, k, -1)});
-    if (holds(j)) held.emplace_back(k, other);
+    if (!holds(j)) continue;
+    at_rest.push_back(other);
+    held.emplace_back(k, other);
   }
-  if (!any) return;
+  if (at_rest.empty()) return;
   const auto kept = [&](int region) {
     for (const auto& [k, other] : held) region = region_on(part, region, other, part.side(region, k));
     for (const auto& [k, other] : held) region = region_on(part, region, k, 1);
@@ -249,11 +248,9 @@ void Rests::put_into_simplex(int p, ActiveSet& set, std::vector<Surface>& restin
     set.hold(entry.selection, {kept(entry.selection), kept(entry.reference)});
   }
   for (int region = part.first; region < part.first + part.count; ++region) {
-    bool zero = true;
-    for (int k = 0; k < part.surfaces; ++k) {
-      zero = zero && (at_zero[at(k)] || part.side(region, k) == part.side(reference, k));
-    }
-    if (zero) unasked.push_back(region);
+    const bool beside = std::any_of(at_rest.begin(), at_rest.end(),
+                                    [&](int k) { return part.side(region, k) != part.side(reference, k); });
+    if (beside) unasked.push_back(region);
   }
 }
 
