@@ -173,6 +173,13 @@ until = 0.3
                         for expected, found in zip(event["final"]["x"], frozen["final"]["x"], strict=True):
                             self.assertAlmostEqual(expected, found, delta=1e-8)
 
+    def test_a_step_ends_where_a_ball_turns(self):
+        # 2/100 after the impact at 0.5, in numerical time: steps of 0.02.
+        box = (tool.SOURCE / "models/ball-in-box.toml").read_text(encoding="utf-8")
+        for restitution in (0.5, 1):
+            with self.subTest(restitution=restitution):
+                self.assert_agree(box.replace("restitution = 1", f"restitution = {restitution}"), 1e-10, *FINE)
+
     def test_what_bounces_is_held_with_a_speed_that_is_zero_but_for_roundings(self):
         spring = PLANE.format(
             x=0, z=0, vx=-1.775875111177648, vz=0.6744108353881114, until=1.5,

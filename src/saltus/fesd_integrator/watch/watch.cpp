@@ -131,8 +131,11 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   // Gradients at the left end give the rounding level; between the ends of an element it is the same.
   kernel_.evaluate(element.t, element.x.data(), selections.data(), held, left_);
   indicator_noise(left_, element.t + element.h, element.size, noise_);
-  share_noise(set, noise_);
   find_left_rates();
+  // The time of an end is rounded, too: where steps end at a switch, psi is off by that.
+  const double time_noise = 16.0 * std::numeric_limits<double>::epsilon() * (std::abs(element.t) + element.h);
+  for (std::size_t j = 0; j < n; ++j) noise_[j] += time_noise * std::abs(left_rates_[j]);
+  share_noise(set, noise_);
   find_errors(element, set, held, selections);
   may_miss_ = false;
   const double rounding = ProjectedField::rounding_of_rates(element.size, element.h);
