@@ -138,6 +138,48 @@ until = 0.8
                 for expected, found in zip(event["final"]["x"], frozen["final"]["x"]):
                     self.assertAlmostEqual(expected, found, delta=1e-7)
 
+    def test_an_impact_presses_what_is_at_rest(self):
+        # A body falls onto one that lies on the ground or is pressed to a wall, or both are coupled and begin at rest.
+        for mass, gap, start, speed in (("[[0.788, 0], [0, 1.517]]", "b - a", 0.161, -1.577),
+                                        ("[[2.5, -0.3], [-0.3, 1.1]]", "b", 0.2, -0.9),
+                                        ("[[2.5, 0.4], [0.4, 1.1]]", "b", 0, 0)):
+            for first, second in ((0.5, 0.7), (0.7, 0.3), (0.5, 0), (1, 0.5), (1, 0)):
+                model = time_freezing_test.HEAD + f"""[states]
+a = 0
+b = {start}
+va = 0
+vb = {speed}
+[mechanics]
+positions = ["a", "b"]
+velocities = ["va", "vb"]
+mass = {mass}
+force = {{ va = "-12 - 3*(a - b)", vb = "-7 + 3*(a - b)" }}
+[[contacts]]
+name = "first"
+gap = "a"
+restitution = {first}
+[[contacts]]
+name = "second"
+gap = "{gap}"
+restitution = {second}
+[simulate]
+until = 0.3
+"""
+                for form in ("step", "stewart"):
+                    with self.subTest(gap=gap, start=start, restitution=(first, second), form=form):
+                        event, frozen = (self.simulated(model, method, *more) for method, more in (
+                            ("event", ()), ("fesd", ("--set", "simulate.fesd.stages=3", "--set",
+                                                     f"simulate.fesd.reformulation={form}"))))
+                        for expected, found in zip(event["final"]["x"], frozen["final"]["x"], strict=True):
+                            self.assertAlmostEqual(expected, found, delta=1e-8)
+
+    def test_a_step_ends_where_a_ball_turns(self):
+        # 2/100 after the impact at 0.5, in numerical time: steps of 0.02.
+        box = (tool.SOURCE / "models/ball-in-box.toml").read_text(encoding="utf-8")
+        for restitution in (0.5, 1):
+            with self.subTest(restitution=restitution):
+                self.assert_agree(box.replace("restitution = 1", f"restitution = {restitution}"), 1e-10, *FINE)
+
     def test_what_bounces_is_held_with_a_speed_that_is_zero_but_for_roundings(self):
         spring = PLANE.format(
             x=0, z=0, vx=-1.775875111177648, vz=0.6744108353881114, until=1.5,

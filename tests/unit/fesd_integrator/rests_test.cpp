@@ -14,10 +14,11 @@ namespace {
 
 using casadi::SX;
 using Modes = std::vector<int>;
+using Surfaces = std::vector<Surface>;
 
 /// A point on the unit circle in frozen time: pressed against it from outside by gravity towards the centre, speed 1.
 /// Functions: the gap, its rate.
-Compiled on_the_circle() {
+Compiled on_the_circle(reformulation::Form form = reformulation::Form::step) {
   model::Builder builder("circle");
   const SX x = builder.state("x", {1.0}), y = builder.state("y", {0.0});
   const SX vx = builder.state("vx", {0.0}), vy = builder.state("vy", {1.0});
@@ -28,14 +29,26 @@ Compiled on_the_circle() {
   builder.dynamics("y", vy * moves);
   builder.dynamics("vx", -3.0 * x * moves + 20.0 * x * acts);
   builder.dynamics("vy", -3.0 * y * moves + 20.0 * y * acts);
-  return Compiled(builder);
+  return Compiled(builder, form);
+}
+
+/// A ball in frozen time: y is how deep it is in the ground that stops it, and then drives it back with less force.
+/// Functions: the gap, its rate.
+Compiled ball(reformulation::Form form) {
+  model::Builder builder("ball");
+  const SX z = builder.state("z", {0.0}), v = builder.state("v", {0.0}), y = builder.state("y", {0.0});
+  const SX open = builder.step(builder.switching("gap", z + y)), opens = builder.step(builder.switching("rate", v));
+  builder.dynamics("z", v * open);
+  builder.dynamics("v", -10.0 * open + 100.0 * (1.0 - open) * (1.0 - 0.75 * opens));
+  builder.dynamics("y", v * (1.0 - open));
+  return Compiled(builder, form);
 }
 
 TEST(Rests, AGapRestsOnItsRate) {
   const Compiled model = on_the_circle();
-  Rests rests(model.kernel);
+  Rests rests(model.kernel, model.facts.parts);
   const std::vector<double> x{1.0, 0.0, 0.0, 1.0};
-  rests.find({0.0, x, nullptr, 1.0}, model.facts.parts, {0, 1});
+  rests.find({0.0, x, nullptr, 1.0}, {0, 1});
   EXPECT_EQ(rests.governor(0), 1);
   EXPECT_EQ(rests.governor(1), -1);
   const auto resting = [&](const Modes& modes) {
@@ -43,7 +56,7 @@ TEST(Rests, AGapRestsOnItsRate) {
     rests.put_into(set);
     return set.resting();
   };
-  EXPECT_EQ(resting({-1, 0}), Modes{0});
+  EXPECT_EQ(resting({-1, 0}), Surfaces{{0}});
   EXPECT_TRUE(resting({-1, 1}).empty());
   for (const Modes& modes : {Modes{1, 1}, Modes{-1, -1}, Modes{-1, 0}}) EXPECT_TRUE(rests.allow({0, 1}, modes));
   for (const Modes& modes : {Modes{1, -1}, Modes{-1, 1}, Modes{1, 0}, Modes{0, 0}, Modes{0, 1}}) {
@@ -52,17 +65,10 @@ TEST(Rests, AGapRestsOnItsRate) {
 }
 
 TEST(Rests, WhatActsOnBothSidesOfARateHoldsIt) {
-  // A ball in frozen time: y is how deep it is in the ground that stops it, and then drives it back with less force.
-  model::Builder builder("ball");
-  const SX z = builder.state("z", {0.0}), v = builder.state("v", {0.0}), y = builder.state("y", {0.0});
-  const SX open = builder.step(builder.switching("gap", z + y)), opens = builder.step(builder.switching("rate", v));
-  builder.dynamics("z", v * open);
-  builder.dynamics("v", -10.0 * open + 100.0 * (1.0 - open) * (1.0 - 0.75 * opens));
-  builder.dynamics("y", v * (1.0 - open));
-  const Compiled model(builder);
-  Rests rests(model.kernel);
+  const Compiled model = ball(reformulation::Form::step);
+  Rests rests(model.kernel, model.facts.parts);
   const std::vector<double> at_rest{0.0, 0.0, 0.0};
-  rests.find({0.0, at_rest, nullptr, 1.0}, model.facts.parts, {0, 1});
+  rests.find({0.0, at_rest, nullptr, 1.0}, {0, 1});
   EXPECT_EQ(rests.governor(0), 1);
   for (const Modes& modes : {Modes{1, 1}, Modes{-1, -1}, Modes{0, 0}}) EXPECT_TRUE(rests.allow({0, 1}, modes));
   for (const Modes& modes : {Modes{1, -1}, Modes{-1, 0}, Modes{1, 0}, Modes{0, 1}}) {
@@ -70,10 +76,10 @@ TEST(Rests, WhatActsOnBothSidesOfARateHoldsIt) {
   }
   ActiveSet set = model.set({0, 0});
   rests.put_into(set);
-  EXPECT_EQ(set.resting(), Modes{0});
+  EXPECT_EQ(set.resting(), Surfaces{{0}});
   ASSERT_EQ(set.sliding().size(), 1U);
   EXPECT_EQ(set.sliding()[0].selection, 0);
-  EXPECT_EQ(set.sliding()[0].surface, 1);
+  EXPECT_EQ(set.sliding()[0].surface, Surface{1});
   EXPECT_EQ(set.conditions().size(), 2U);
   ElementSolver solver(model.kernel, tableau(discretization::TableauFamily::radau_iia, 2));
   const auto found = Transition(model.kernel, model.facts.parts, solver)
@@ -85,6 +91,39 @@ TEST(Rests, WhatActsOnBothSidesOfARateHoldsIt) {
   EXPECT_NEAR(found.front().selections[0], 6.25 / 7.25, 1e-12);
 }
 
+TEST(Rests, RegionsOnOneSideOfARateHoldIt) {
+  const Compiled model = ball(reformulation::Form::stewart);
+  const std::vector<double> at_rest{0.0, 0.0, 0.0};
+  ElementSolver solver(model.kernel, tableau(discretization::TableauFamily::radau_iia, 2));
+  const auto found = Transition(model.kernel, model.facts.parts, solver)
+                         .continuations({.x = at_rest, .size = 1.0, .trial_length = 1e-3});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_TRUE(found.front().determined);
+  // Regions: above, first with a rate above 0. What closes has the larger force.
+  const ActiveSet& set = found.front().set;
+  EXPECT_EQ(set.modes(), (Modes{-1, 0, -1, 0}));
+  EXPECT_EQ(set.resting(), (Surfaces{{1, 3}}));
+  ASSERT_EQ(set.sliding().size(), 1U);
+  const std::vector<double> g{-3.0, 1.0, -1.0, 3.0};  // at gap 1, rate 2
+  EXPECT_EQ(set.surface(0, g.data()), -4.0);
+  EXPECT_EQ(set.resting()[0].value(g.data()), 2.0);
+  // 10 a = 100 (1 - a)
+  EXPECT_NEAR(found.front().selections[1], 100.0 / 110.0, 1e-12);
+  EXPECT_EQ(set.conditions().size(), 2U);  // those of the weights: the other regions have no side of their own
+}
+
+TEST(Rests, RegionsOfAGapThatRestsHaveNoSide) {
+  const Compiled model = on_the_circle(reformulation::Form::stewart);
+  const std::vector<double> x{1.0, 0.0, 0.0, 1.0};
+  ElementSolver solver(model.kernel, tableau(discretization::TableauFamily::radau_iia, 2));
+  const auto found =
+      Transition(model.kernel, model.facts.parts, solver).continuations({.x = x, .size = 1.0, .trial_length = 1e-3});
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().set.modes(), (Modes{-1, -1, 0, 0}));
+  EXPECT_EQ(found.front().set.resting(), (Surfaces{{0, 2}}));
+  EXPECT_EQ(found.front().set.conditions().size(), 2U);
+}
+
 TEST(Rests, WhatActsOnItsOwnDoesNotRest) {
   // x'' = -sign x - sign v / 2: the rate of x is v, but x acts whatever the side of v is.
   model::Builder builder("friction");
@@ -92,9 +131,9 @@ TEST(Rests, WhatActsOnItsOwnDoesNotRest) {
   builder.dynamics("x", v);
   builder.dynamics("v", -builder.sign(x) - 0.5 * builder.sign(v));
   const Compiled model(builder);
-  Rests rests(model.kernel);
+  Rests rests(model.kernel, model.facts.parts);
   const std::vector<double> at_rest{0.0, 0.0};
-  rests.find({0.0, at_rest, nullptr, 1.0}, model.facts.parts, {0, 1});
+  rests.find({0.0, at_rest, nullptr, 1.0}, {0, 1});
   EXPECT_FALSE(rests.any());
 }
 
@@ -110,7 +149,7 @@ TEST(Rests, ElementsEndWithWhatRestsAtZero) {
   };
   ActiveSet set = model.set({-1, 0});
   EXPECT_GT(std::abs(gap_behind(set)), 1e-8);
-  set.set_resting({0});
+  set.set_resting({{0}}, {0});
   EXPECT_EQ(set.conditions().size(), 2U);  // those of the selection of the rate
   EXPECT_NEAR(gap_behind(set), 0.0, 1e-15);
 }

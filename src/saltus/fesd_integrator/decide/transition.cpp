@@ -67,7 +67,12 @@ bool Transition::stays_beside(const Option& option, const Option& other, const G
 }
 
 Transition::Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver)
-    : kernel_(kernel), parts_(parts), solver_(solver), projected_(kernel), watch_(kernel, solver), rests_(kernel) {
+    : kernel_(kernel),
+      parts_(parts),
+      solver_(solver),
+      projected_(kernel),
+      watch_(kernel, solver),
+      rests_(kernel, parts) {
   kernel.size(values_);
   part_of_.resize(kernel.selections());
   for (std::size_t p = 0; p < parts.size(); ++p) {

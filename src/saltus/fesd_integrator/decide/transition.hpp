@@ -106,11 +106,18 @@ class Transition {
     enum class Kind { function, region, surface } kind = Kind::function;
     std::size_t member = 0;
     int surface = 0;
+    int function = -1;     ///< as Rests counts them; -1: a region
     bool is_asked = true;  ///< if it slid before and did not end, it may be taken to slide on
   };
   [[nodiscard]] std::vector<Choice> choices_of(const Decision& decision, const Group& group) const;
   [[nodiscard]] static std::vector<int> modes_before(const Decision& decision, const Part& part);
   void leave_side(const Group& group, const Choice& choice, int mode, std::vector<int>& pattern) const;
+  /// A pattern, with the modes of the functions of the choices that are made.
+  struct Combination {
+    std::vector<int> pattern, modes;
+  };
+  [[nodiscard]] bool leave_idle_sides(const Group& group, const std::vector<Choice>& choices,
+                                      Combination& combination) const;
   [[nodiscard]] std::pair<int, int> rank(const Decision& decision, const Group& group,
                                          const std::vector<int>& pattern) const;
   [[nodiscard]] std::vector<std::vector<int>> combinations(const Group& group, const Decision& decision, Asked asked,
@@ -150,8 +157,9 @@ class Transition {
                                                  const ActiveSet& set, const std::vector<int>& active);
   [[nodiscard]] std::optional<Weights> find_weights(const Decision& decision, double t, const std::vector<double>& x,
                                                     const ActiveSet& set);
-  [[nodiscard]] std::optional<std::vector<int>> fewer_regions(const Group& group, const std::vector<int>& pattern,
-                                                              const Weights& weights, const ActiveSet& face) const;
+  [[nodiscard]] std::optional<std::vector<int>> fewer_regions(const Decision& decision, const Group& group,
+                                                              const std::vector<int>& pattern, const Weights& weights,
+                                                              const ActiveSet& face);
   [[nodiscard]] std::vector<int> without_negative(const Decision& decision, const Group& group,
                                                   const std::vector<int>& pattern, std::vector<int> modes);
   [[nodiscard]] static bool is_left_out(const Support& support,

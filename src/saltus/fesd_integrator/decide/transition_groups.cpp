@@ -160,7 +160,7 @@ bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<in
   depends_ = false;
   const auto members = find_zeros(decision, modes);
   if (!members || members->empty()) return members.has_value();
-  rests_.find({decision.t, decision.x, decision.held, decision.size}, parts_, *members);
+  rests_.find({decision.t, decision.x, decision.held, decision.size}, *members);
   auto groups = find_influences(decision, modes, *members);
   const bool by_parts = kernel_.pattern().is_sparse && decision.before != nullptr && decision.ended >= 0;
   if (by_parts) keep_sliding(decision, groups, modes);
@@ -185,8 +185,8 @@ std::vector<Transition::Choice> Transition::choices_of(const Decision& decision,
     const Part& part = parts_[at(part_of_[at(j)])];
     const bool was_fixed = decision.before != nullptr && decision.before->modes()[at(j)] != 0;
     if (part.surfaces == 0) {
-      choices.push_back(
-          {part.simplex ? Choice::Kind::region : Choice::Kind::function, k, 0, j == decision.ended || was_fixed});
+      const auto kind = part.simplex ? Choice::Kind::region : Choice::Kind::function;
+      choices.push_back({kind, k, 0, part.simplex ? -1 : j, j == decision.ended || was_fixed});
       continue;
     }
     if (k > 0 && part_of_[at(group.members[k - 1])] == part_of_[at(j)]) continue;
@@ -195,7 +195,9 @@ std::vector<Transition::Choice> Transition::choices_of(const Decision& decision,
     const bool ended = decision.ended >= part.first && decision.ended < part.first + part.count;
     for (int surface = 0; surface < part.surfaces; ++surface) {
       if (modes[at(surface)] != 0) continue;
-      choices.push_back({Choice::Kind::surface, k, surface, ended || before.empty() || before[at(surface)] != 0});
+      const int function = rests_.function(part_of_[at(j)], surface);
+      const bool is_asked = ended || before.empty() || before[at(surface)] != 0;
+      choices.push_back({Choice::Kind::surface, k, surface, function, is_asked});
     }
   }
   return choices;
@@ -215,29 +217,54 @@ void Transition::leave_side(const Group& group, const Choice& choice, int mode, 
   }
 }
 
+/// Where a surface holds another one, regions are active on one side of that other one alone.
+/// @return whether it is another combination than the one on that side
+bool Transition::leave_idle_sides(const Group& group, const std::vector<Choice>& choices,
+                                  Combination& combination) const {
+  const auto& modes = combination.modes;
+  for (std::size_t j = 0; j < choices.size(); ++j) {
+    const int function = choices[j].function;
+    if (choices[j].kind != Choice::Kind::surface || modes[j] != 0 || !rests_.holds(function)) continue;
+    for (std::size_t r = 0; r < choices.size(); ++r) {
+      if (choices[r].function != rests_.governor(function)) continue;
+      if (modes[r] == rests_.held_side(function)) return false;
+      if (modes[r] == 0) leave_side(group, choices[r], rests_.held_side(function), combination.pattern);
+    }
+  }
+  return true;
+}
+
 /// Every combination of what members may be; empty where that is too many.
 std::vector<std::vector<int>> Transition::combinations(const Group& group, const Decision& decision, Asked asked,
                                                        Rule rule) const {
   const auto every = decision.before == nullptr ? std::array{1, -1, 0} : std::array{0, 1, -1};
-  std::vector<std::vector<int>> patterns{std::vector<int>(group.members.size(), 0)};
-  for (const Choice& choice : choices_of(decision, group)) {
-    std::vector<std::vector<int>> more;
-    for (const auto& pattern : patterns) {
+  const auto choices = choices_of(decision, group);
+  std::vector<int> functions;
+  for (const Choice& choice : choices) functions.push_back(choice.function);
+  std::vector<Combination> combinations{{std::vector<int>(group.members.size(), 0), {}}};
+  for (const Choice& choice : choices) {
+    std::vector<Combination> more;
+    for (const auto& [pattern, modes] : combinations) {
       for (const int mode : every) {
         const bool is_asked = asked == Asked::all || choice.is_asked;
         if (mode != 0 && (!is_asked || (choice.kind == Choice::Kind::region && mode == 1))) continue;
-        more.push_back(pattern);
+        Combination next{pattern, modes};
+        next.modes.push_back(mode);
+        if (rule == Rule::dependent && !rests_.allow(functions, next.modes)) continue;
         if (choice.kind == Choice::Kind::surface) {
-          leave_side(group, choice, mode, more.back());
+          leave_side(group, choice, mode, next.pattern);
         } else {
-          more.back()[choice.member] = mode;
-          const auto decided = std::span(std::as_const(more.back())).first(choice.member + 1);
-          if (rule == Rule::dependent && !rests_.allow(group.members, decided)) more.pop_back();
+          next.pattern[choice.member] = mode;
         }
+        more.push_back(std::move(next));
       }
       if (more.size() > most_patterns) return {};
     }
-    patterns = std::move(more);
+    combinations = std::move(more);
+  }
+  std::vector<std::vector<int>> patterns;
+  for (Combination& combination : combinations) {
+    if (leave_idle_sides(group, choices, combination)) patterns.push_back(std::move(combination.pattern));
   }
   return patterns;
 }

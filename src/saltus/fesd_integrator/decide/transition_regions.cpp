@@ -105,7 +105,7 @@ Transition::WeightEquations Transition::weight_equations(const Decision& decisio
 std::vector<int> Transition::without_negative(const Decision& decision, const Group& group,
                                               const std::vector<int>& pattern, std::vector<int> modes) {
   put(group, pattern, modes);
-  const ActiveSet face(parts_, std::move(modes));
+  const ActiveSet face = make_set(decision, std::move(modes));
   const auto active = active_regions(parts_, face);
   const std::vector<double> x(decision.x.begin(), decision.x.end());
   const auto [matrix, right, negligible] = weight_equations(decision, decision.t, x, face, active);
@@ -141,8 +141,9 @@ std::optional<Transition::Weights> Transition::find_weights(const Decision& deci
 }
 
 /// The regions of a pattern that have these weights, if they are as many as keep all its surfaces at zero.
-std::optional<std::vector<int>> Transition::fewer_regions(const Group& group, const std::vector<int>& pattern,
-                                                          const Weights& weights, const ActiveSet& face) const {
+std::optional<std::vector<int>> Transition::fewer_regions(const Decision& decision, const Group& group,
+                                                          const std::vector<int>& pattern, const Weights& weights,
+                                                          const ActiveSet& face) {
   auto fewer = pattern;
   auto modes = face.modes();
   for (std::size_t k = 0; k < fewer.size(); ++k) {
@@ -150,7 +151,7 @@ std::optional<std::vector<int>> Transition::fewer_regions(const Group& group, co
     if (parts_[at(part_of_[at(j)])].surfaces > 0 && weights.selections[at(j)] <= undecided) fewer[k] = -1;
   }
   put(group, fewer, modes);
-  const ActiveSet set(parts_, modes);
+  const ActiveSet set = make_set(decision, modes);
   DenseMatrices memory;
   const FieldView view = field_view(values_, memory);
   const Index kept = independent_surfaces(face, view);
@@ -163,7 +164,7 @@ std::optional<std::vector<int>> Transition::fewer_regions(const Group& group, co
 std::vector<Transition::Support> Transition::supports_of(const Decision& decision, const Group& group,
                                                          const std::vector<int>& pattern,
                                                          const std::vector<int>& modes) {
-  const ActiveSet face(parts_, modes);
+  const ActiveSet face = make_set(decision, modes);
   const bool alone = std::none_of(face.sliding().begin(), face.sliding().end(), [&](const Sliding& entry) {
     return parts_[at(part_of_[at(entry.selection)])].surfaces > 0;
   });
@@ -177,7 +178,7 @@ std::vector<Transition::Support> Transition::supports_of(const Decision& decisio
     if (!weights && factor == 0.0) return {};
     if (!weights) break;
     motion = weights->motion;
-    auto fewer = fewer_regions(group, pattern, *weights, face);
+    auto fewer = fewer_regions(decision, group, pattern, *weights, face);
     const auto is_known = [&](const Support& other) { return other.pattern == *fewer; };
     if (fewer && std::none_of(found.begin(), found.end(), is_known)) found.push_back({std::move(*fewer), true});
     if (fewer && factor == 0.0) break;

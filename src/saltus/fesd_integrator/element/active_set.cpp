@@ -17,7 +17,7 @@ ActiveSet::ActiveSet(std::span<const Part> parts, std::vector<int> modes)
         reference = j;
         fixed_[at(j)] = 1.0;
       } else if (slides) {
-        sliding_.push_back({j, reference, j});
+        sliding_.push_back({j, reference, {j, reference}});
       }
       if (!part.simplex && !slides) fixed_[at(j)] = modes_[at(j)] > 0 ? 1.0 : 0.0;
     }
@@ -67,20 +67,22 @@ void ActiveSet::set_balances(std::vector<switching::Balance> balances) {
   }
 }
 
-void ActiveSet::set_resting(std::vector<int> functions) {
-  resting_ = std::move(functions);
+void ActiveSet::set_resting(std::vector<Surface> surfaces, const std::vector<int>& unasked) {
+  resting_ = std::move(surfaces);
   std::erase_if(conditions_, [&](const Condition& condition) {
-    return condition.kind == Condition::Kind::side && contains(resting_, condition.selection);
+    return condition.kind == Condition::Kind::side && contains(unasked, condition.selection);
   });
 }
 
-void ActiveSet::hold(int selection, int surface) {
+void ActiveSet::hold(int selection, Surface surface) {
   for (Sliding& entry : sliding_) {
     if (entry.selection == selection) entry.surface = surface;
   }
-  std::erase_if(sliding_, [&](const Sliding& entry) { return entry.selection == surface; });
-  std::erase_if(conditions_, [&](const Condition& condition) { return condition.selection == surface; });
-  fixed_[at(surface)] = 0.5;
+  if (surface.reference >= 0) return;
+  const int other = surface.indicator;
+  std::erase_if(sliding_, [&](const Sliding& entry) { return entry.selection == other; });
+  std::erase_if(conditions_, [&](const Condition& condition) { return condition.selection == other; });
+  fixed_[at(other)] = 0.5;
 }
 
 double ActiveSet::side(int selection, const double* indicator) const {

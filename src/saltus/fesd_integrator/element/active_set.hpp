@@ -25,11 +25,24 @@ struct Part {
   }
 };
 
+/// Names what is zero on a surface: an indicator, or what the one of a reference region is above it.
+struct Surface {
+  int indicator = 0;
+  int reference = -1;  ///< -1: none
+
+  /// Returns the value of that, also of rows of derivatives (`stride` apart).
+  [[nodiscard]] double value(const double* indicators, std::size_t stride = 1) const {
+    const double own = indicators[static_cast<std::size_t>(indicator) * stride];
+    return reference < 0 ? own : indicators[static_cast<std::size_t>(reference) * stride] - own;
+  }
+  [[nodiscard]] bool operator==(const Surface&) const = default;
+};
+
 /// Holds a selection that the state keeps between its bounds: an unknown of the element.
 struct Sliding {
   int selection = 0;
   int reference = -1;  ///< of a simplex: the active region whose weight is 1 less the others; -1 for a step selection
-  int surface = 0;     ///< whose indicator it keeps: its own, but for ActiveSet::hold
+  Surface surface{};   ///< what it keeps: its own, but for ActiveSet::hold
 };
 
 /// Holds a sign that holds as long as the active set does: value >= 0.
@@ -61,13 +74,14 @@ class ActiveSet {
   [[nodiscard]] const std::vector<switching::Balance>& balances() const { return balances_; }
   void set_balances(std::vector<switching::Balance> balances);
   [[nodiscard]] bool is_determined(int selection) const { return balances_.empty() || !undetermined_[at(selection)]; }
-  /// Returns functions on a side whose value stays zero while these surfaces slide (a gap whose rate is held at zero):
-  /// nothing asks for their side. They belong to a place, too.
-  [[nodiscard]] const std::vector<int>& resting() const { return resting_; }
-  void set_resting(std::vector<int> functions);
-  /// Lets a step selection that slides keep the surface of another one, whose own selection stays in the middle: both
-  /// would be two selections for one equation.
-  void hold(int selection, int surface);
+  /// Returns what stays zero while these surfaces slide, without a selection that keeps it there (a gap whose rate is
+  /// held at zero). It belongs to a place, too.
+  [[nodiscard]] const std::vector<Surface>& resting() const { return resting_; }
+  /// Sets it; nothing asks for the sides of these selections, which it keeps at zero.
+  void set_resting(std::vector<Surface> surfaces, const std::vector<int>& unasked);
+  /// Lets a selection that slides keep another surface. A step selection of its own stays in the middle: both would be
+  /// two selections for one equation.
+  void hold(int selection, Surface surface);
   [[nodiscard]] bool operator==(const ActiveSet& other) const { return modes_ == other.modes_; }
 
   /// Finds all selections from the unknown ones (one per entry of sliding()).
@@ -79,9 +93,7 @@ class ActiveSet {
   /// Returns what is zero while entry k of sliding() slides: psi_j, or g_r - g_i; also for rows of derivatives
   /// (`stride` apart).
   [[nodiscard]] double surface(std::size_t k, const double* indicator, std::size_t stride = 1) const {
-    const Sliding& entry = sliding_[k];
-    const double own = indicator[static_cast<std::size_t>(entry.surface) * stride];
-    return entry.reference < 0 ? own : indicator[static_cast<std::size_t>(entry.reference) * stride] - own;
+    return sliding_[k].surface.value(indicator, stride);
   }
   /// Returns the value of a condition of kind `side`: positive on the side of this set; also for rates of the
   /// indicators.
@@ -109,7 +121,7 @@ class ActiveSet {
   std::vector<Sliding> sliding_;
   std::vector<Condition> conditions_;
   std::vector<switching::Balance> balances_;
-  std::vector<int> resting_;
+  std::vector<Surface> resting_;
   std::vector<bool> undetermined_;  ///< per selection; empty without balances
 };
 

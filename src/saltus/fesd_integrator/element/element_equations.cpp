@@ -76,9 +76,9 @@ void ElementEquations::find_directions(Index stage, const discretization::StageV
 /// Gradient of surface k of `active`.
 void ElementEquations::surface_row(const ActiveSet& active, std::size_t k, const discretization::StageValues& at) {
   const ConstMatrix psi_x(at.indicator_x.data(), n_psi_, n_x_);
-  const Sliding& entry = active.sliding()[k];
-  row_ = psi_x.row(entry.surface).transpose();
-  if (entry.reference >= 0) row_ = psi_x.row(entry.reference).transpose() - row_;
+  const Surface& surface = active.sliding()[k].surface;
+  row_ = psi_x.row(surface.indicator).transpose();
+  if (surface.reference >= 0) row_ = psi_x.row(surface.reference).transpose() - row_;
 }
 
 /// What the states are rounded at: the largest one or, near zero, the terms of h f that cancel in sliding. The rounding

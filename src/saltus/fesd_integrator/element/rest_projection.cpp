@@ -13,7 +13,7 @@ namespace saltus::fesd_integrator {
 
 RestProjection::RestProjection(const discretization::StageKernel& kernel) : kernel_(kernel) { kernel.size(values_); }
 
-/// Of the surfaces that slide, then of the functions that rest, by n_x.
+/// Of the surfaces that slide, then of those that rest, by n_x.
 Eigen::MatrixXd RestProjection::gradients_of(const ActiveSet& set, std::size_t n_x) const {
   DenseMatrices memory;
   const double* const indicator_x = field_view(values_, memory).indicator_x;
@@ -23,7 +23,7 @@ Eigen::MatrixXd RestProjection::gradients_of(const ActiveSet& set, std::size_t n
     const double* const column = indicator_x + i * kernel_.selections();
     for (std::size_t k = 0; k < slide; ++k) gradients(index(k), index(i)) = set.surface(k, column);
     for (std::size_t k = 0; k < set.resting().size(); ++k) {
-      gradients(index(slide + k), index(i)) = column[at(set.resting()[k])];
+      gradients(index(slide + k), index(i)) = set.resting()[k].value(column);
     }
   }
   return gradients;
@@ -38,7 +38,7 @@ std::optional<double> RestProjection::step(const ActiveSet& set, double size, st
   system.matrix() = gradients * gradients.transpose();
   for (std::size_t k = 0; k < count; ++k) {
     system.right()(index(k)) =
-        k < slide ? -set.surface(k, values_.indicator.data()) : -values_.indicator[at(set.resting()[k - slide])];
+        -(k < slide ? set.sliding()[k].surface : set.resting()[k - slide]).value(values_.indicator.data());
   }
   if (!system.solve(1e-13 * size)) return std::nullopt;
   double change = 0.0;

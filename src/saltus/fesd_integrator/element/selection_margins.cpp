@@ -41,7 +41,7 @@ bool find_balances(const FieldView& at, ActiveSet& set) {
   MatrixXd gradients(index(sliding.size()), index(at.n_x)), jumps(index(at.n_x), index(sliding.size()));
   for (std::size_t k = 0; k < sliding.size(); ++k) {
     if (sliding[k].reference >= 0) return false;
-    gradients.row(index(k)) = indicator_x.row(sliding[k].surface);
+    gradients.row(index(k)) = indicator_x.row(sliding[k].surface.indicator);
     jumps.col(index(k)) = f_selection.col(sliding[k].selection);
   }
   const auto independent = switching::independent_rows(gradients);
@@ -78,7 +78,7 @@ void SelectionMargins::evaluate(const ActiveSet& set, const FieldView& at, doubl
     const auto selection = [&](std::size_t i) { return set.sliding()[balance.rows[i]].selection; };
     for (std::size_t i = 0; i < q; ++i) lambda[index(i)] = selections[selection(i)];
     for (std::size_t k = 0; k < r; ++k) {
-      const int function = set.sliding()[balance.functions[k]].surface;
+      const int function = set.sliding()[balance.functions[k]].surface.indicator;
       for (std::size_t i = 0; i < q; ++i) {
         effects(index(k), index(i)) = indicator_x.row(function) * f_selection.col(selection(i));
       }

@@ -62,8 +62,9 @@ SparseRows sliding_surfaces(const ActiveSet& set, const discretization::StageVal
                               [&](std::size_t i, double value) { entries.emplace_back(i, factor * value); });
   };
   for (std::size_t k = 0; k < sliding.size(); ++k) {
-    collect(sliding[k].surface, sliding[k].reference < 0 ? 1.0 : -1.0);
-    collect(sliding[k].reference, 1.0);
+    const Surface& surface = sliding[k].surface;
+    collect(surface.indicator, surface.reference < 0 ? 1.0 : -1.0);
+    collect(surface.reference, 1.0);
     append(k, entries, surfaces);
   }
   surfaces.finalize();

@@ -19,10 +19,15 @@ Point& Position::left_end() {
 }
 
 std::vector<int> Position::on_surfaces() const {
-  std::vector<int> list = set_.resting();
+  std::vector<int> list;
+  const auto add = [&](const Surface& surface) {
+    list.push_back(surface.indicator);
+    if (surface.reference >= 0) list.push_back(surface.reference);
+  };
+  for (const Surface& surface : set_.resting()) add(surface);
   for (const Sliding& entry : set_.sliding()) {
-    list.push_back(entry.surface);
-    if (entry.reference >= 0) list.push_back(entry.reference);
+    add(entry.surface);
+    if (entry.reference >= 0) add({entry.selection, entry.reference});
   }
   return list;
 }

@@ -35,6 +35,8 @@ void share_noise(const ActiveSet& set, std::vector<double>& noise) {
 /// Roundings of a selection: those of a few operations, amplified by the solution of a small linear system.
 constexpr double selection_noise = 1e-12;
 
+constexpr double time_rounding = 16.0 * std::numeric_limits<double>::epsilon();
+
 }  // namespace
 
 void indicator_noise(const discretization::StageValues& values, double t, double size, std::vector<double>& noise) {
@@ -131,8 +133,8 @@ Watch::Answer Watch::look(const Element& element, const ActiveSet& set, const do
   // Gradients at the left end give the rounding level; between the ends of an element it is the same.
   kernel_.evaluate(element.t, element.x.data(), selections.data(), held, left_);
   indicator_noise(left_, element.t + element.h, element.size, noise_);
-  share_noise(set, noise_);
   find_left_rates();
+  share_noise(set, noise_);
   find_errors(element, set, held, selections);
   may_miss_ = false;
   const double rounding = ProjectedField::rounding_of_rates(element.size, element.h);
@@ -278,13 +280,15 @@ void Watch::first_change(const ActiveSet& set, const Element& element, const Con
   nodes.back() = values_.back();
   const auto polynomial = ode::to_bernstein(nodes);
   int zero_order = 0;
-  if (std::abs(values_.front()) <= level) {
+  const bool side = condition.kind == Condition::Kind::side;
+  const double rate = side ? std::abs(set.side(condition.selection, left_rates_.data())) : 0.0;
+  // Where a step ends at a switch, its time is rounded, too.
+  if (std::abs(values_.front()) <= level + time_rounding * std::abs(element.t) * rate) {
     // Behind the end of sliding psi begins with a double zero: the rate there tells, not the interpolant, whose error
     // in the slope would be a dip near by.
     constexpr double tangent = 1e-3;
     const double largest = std::max(std::abs(*low), std::abs(*high));
-    const bool side = condition.kind == Condition::Kind::side;
-    const bool flat = side && std::abs(set.side(condition.selection, left_rates_.data())) * h <= tangent * largest;
+    const bool flat = side && rate * h <= tangent * largest;
     zero_order = flat ? 2 : 1;
   }
   if (!may_miss_ && error > level && std::isfinite(error)) {

@@ -161,15 +161,18 @@ class ContactFreezing {
     const auto open = selection(system_.gap(i) + depth, made.name + ".gap", made.gap);
     if (!open) return open.error();
     const double e = plan_.restitution[k];
-    SX part = 1.0;
-    if (e != 1.0) {
-      const auto opens = selection(system_.velocity(i), made.name + ".rate", made.normal);
+    SX rate = system_.velocity(i), part = 1.0;
+    if (e != 1.0 || plan_.purpose == FrozenFor::simulation) {
+      const auto opens = selection(rate, made.name + ".rate", made.normal);
       if (!opens) return opens.error();
       part = 1.0 - (1.0 - e * e) * *opens;
+      // NOTE: the rate itself, in a form that names its selection: with e = 1 nothing else does. At rest the gap holds
+      // its rate whatever e is.
+      rate = 0.5 * rate * *opens + 0.5 * rate * (2.0 - *opens);
     }
     const SX normal = plan_.numbers.a_n * part * (1.0 - *open);
     plan_.moves *= *open;
-    plan_.added.push_back({plan_.depth[k], plan_.waits * (1.0 - *open) * system_.velocity(i)});
+    plan_.added.push_back({plan_.depth[k], plan_.waits * (1.0 - *open) * rate});
     add_to(system_.velocities, response(i) * normal);
     add_outputs(k, normal, SX(0, 1));
     return std::nullopt;

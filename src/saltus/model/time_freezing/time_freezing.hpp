@@ -37,7 +37,7 @@ struct FrozenContact {
   std::string name;
   bool is_elastic = false;
   FrozenSelection gap{};      ///< of the gap, elastic: of gap + depth
-  FrozenSelection normal{};   ///< of the gap's rate; none with restitution 1
+  FrozenSelection normal{};   ///< of the gap's rate; of an optimum none with restitution 1
   FrozenSelection tangent{};  ///< of the tangential velocity, with two tangents of its size; none without friction
   int tangents = 0;           ///< with friction
   int impulse = -1;     ///< state: sum of normal impulses, and behind it of tangential ones; -1 in an optimisation

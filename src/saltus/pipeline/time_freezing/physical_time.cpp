@@ -184,23 +184,24 @@ class PhysicalTime {
     return values;
   }
 
-  [[nodiscard]] int mode_of(const FrozenSelection& selection, const Mode& mode) const {
+  /// `otherwise` is that of a selection without a column.
+  [[nodiscard]] int mode_of(const FrozenSelection& selection, const Mode& mode, int otherwise) const {
     for (std::size_t c = 0; c < system_.columns.size(); ++c) {
       const auto& column = system_.columns[c];
       if (column.function == selection.function) {
         return selection.orientation * column.orientation * mode[c];
       }
     }
-    return 1;
+    return otherwise;
   }
 
   [[nodiscard]] std::vector<ContactMode> contact_modes(const Mode& mode) const {
     std::vector<ContactMode> modes;
     for (const auto& contact : freezing_.contacts) {
       // A gap that stays 0 keeps its rate at 0, whatever side the rate's own selection takes.
-      const bool opens = contact.normal.function >= 0 && mode_of(contact.normal, mode) > 0;
-      const bool closed = !opens && mode_of(contact.gap, mode) <= 0;
-      const bool sticks = contact.tangent.function >= 0 && mode_of(contact.tangent, mode) == 0;
+      const bool opens = mode_of(contact.normal, mode, -1) > 0;
+      const bool closed = !opens && mode_of(contact.gap, mode, 1) <= 0;
+      const bool sticks = mode_of(contact.tangent, mode, 1) == 0;
       modes.push_back(!closed                        ? ContactMode::open
                       : contact.tangent.function < 0 ? ContactMode::closed
                       : sticks                       ? ContactMode::stick
@@ -301,7 +302,7 @@ class PhysicalTime {
   /// Whether a slip goes on in the other direction.
   [[nodiscard]] bool turns(const FrozenContact& contact, ContactMode mode, const Event& event) const {
     return mode == ContactMode::slip && contact.tangents == 1 &&
-           mode_of(contact.tangent, *event.mode_before) * mode_of(contact.tangent, *event.mode_after) < 0;
+           mode_of(contact.tangent, *event.mode_before, 1) * mode_of(contact.tangent, *event.mode_after, 1) < 0;
   }
 
   /// Without an impulse: what opens, touches, sticks or slips.
