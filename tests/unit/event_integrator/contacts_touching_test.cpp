@@ -259,7 +259,7 @@ TEST(ContactBounces, ABallSlidesOnBehindTheLastOne) {
 
 /// A ram that moves away is reached in bounces that accumulate; behind them the block slides on over a rough floor.
 TEST(ContactBounces, BesideARamThatMovesABlockSlidesOn) {
-  constexpr double weight = 9.81, friction = 0.2, ram = -0.4;
+  constexpr double load = 9.81, friction = 0.2, ram = -0.4;
   for (const auto method : every_method) {
     SCOPED_TRACE(static_cast<int>(method));
     model::Builder model("block");
@@ -267,9 +267,9 @@ TEST(ContactBounces, BesideARamThatMovesABlockSlidesOn) {
     static_cast<void>(model.state("vx", {0.0}));
     static_cast<void>(model.state("vz", {0.0}));
     model.mechanics(
-        {.positions = {"x", "z"}, .velocities = {"vx", "vz"}, .force = {{"vx", -3.0 + 0.5 * t}, {"vz", -weight}}});
+        {.positions = {"x", "z"}, .velocities = {"vx", "vz"}, .force = {{"vx", -3.0 + 0.5 * t}, {"vz", -load}}});
     model.contact("ram", x - ram * t, {.restitution = 0.4});
-    model.contact("floor", z, {.tangent = {{"x", 1.0}}, .friction = friction});
+    model.contact("ground", z, {.tangent = {{"x", 1.0}}, .friction = friction});
     IntegrationOptions options;
     options.method = method;
     options.until = 3.0;
@@ -277,7 +277,7 @@ TEST(ContactBounces, BesideARamThatMovesABlockSlidesOn) {
     ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
     EXPECT_EQ(accumulation_of(run).contact_modes_after, (std::vector{ContactMode::closed, ContactMode::slip}));
     EXPECT_EQ(run.events.back().kind, EventKind::lift_off);
-    EXPECT_NEAR(run.events.back().t, (3.0 - friction * weight) / 0.5, 1e-9);
+    EXPECT_NEAR(run.events.back().t, (3.0 - friction * load) / 0.5, 1e-9);
     // Then v' = (t - lift_off) / 2.
     const double since = 3.0 - run.events.back().t;
     EXPECT_NEAR(run.final.x[2], ram + 0.25 * since * since, 1e-8);

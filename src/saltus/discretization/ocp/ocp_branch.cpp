@@ -100,7 +100,7 @@ void add_longer_stretches(const OcpStructure& made, const Sides& sides, ConstVec
   for (auto& move : single) moves.push_back(std::move(move));
 }
 
-/// A switch at the end of an interval, before element e, happens in the next interval or in the one before, over
+/// Moves a switch at the end of an interval, before element e, into the next interval or the one before, over
 /// elements of length zero beside it.
 void add_moved_across(const OcpStructure& made, const ElementSides& modes, ConstVectorView w, std::size_t e,
                       std::vector<mpcc::BranchMove>& moves) {

@@ -72,17 +72,12 @@ bool RadauSystems<pairs>::factorize(const Shifts& shifts) {
 /// Discrete states do not move, not by roundings either: pivots would give them some of those of other rows.
 template <std::size_t pairs>
 void RadauSystems<pairs>::find_still_rows() {
-  std::vector<bool> moves(static_cast<std::size_t>(n_), false);
-  if (pattern_ != nullptr) {
-    for (std::size_t k = 0; k < entries_.size(); ++k) {
-      if (entries_[k] != 0.0) moves[pattern_->row[k]] = true;
-    }
+  still_.assign(static_cast<std::size_t>(n_), true);
+  for (std::size_t k = 0; pattern_ != nullptr && k < entries_.size(); ++k) {
+    if (entries_[k] != 0.0) still_[pattern_->row[k]] = false;
   }
-  still_.clear();
-  for (Eigen::Index i = 0; i < n_; ++i) {
-    const bool is_zero = pattern_ != nullptr ? !moves[static_cast<std::size_t>(i)] : jacobian_.row(i).isZero(0.0);
-    if (is_zero) still_.push_back(i);
-  }
+  for (Eigen::Index i = 0; pattern_ == nullptr && i < n_; ++i)
+    still_[static_cast<std::size_t>(i)] = jacobian_.row(i).isZero(0.0);
 }
 
 template <std::size_t pairs>
@@ -139,8 +134,8 @@ void RadauSystems<pairs>::solve_all(const Matrix& right, Matrix& solution) {
     solution.col(index(2 * k + 1)) = complex_solution_.real();
     solution.col(index(2 * k + 2)) = complex_solution_.imag();
   }
-  for (const Eigen::Index i : still_) {
-    if (right.row(i).isZero(0.0)) solution.row(i).setZero();
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    if (still_[static_cast<std::size_t>(i)] && right.row(i).isZero(0.0)) solution.row(i).setZero();
   }
 }
 

@@ -64,8 +64,8 @@ class RadauSystems {
   std::vector<double> entries_;
   Elimination elimination_;
   DiagonalFactors<Joint> joint_;
-  bool along_diagonal_ = false;      ///< joint_ holds all of them; otherwise each has factors of its own
-  std::vector<Eigen::Index> still_;  ///< rows of J that are 0, where pivots are searched for
+  bool along_diagonal_ = false;  ///< joint_ holds all of them; otherwise each has factors of its own
+  std::vector<bool> still_;      ///< by row: it is 0 in J, where pivots are searched for
   ShiftedFactors<double> sparse_real_;
   struct Pair {
     Eigen::PartialPivLU<Eigen::MatrixXcd> dense;
