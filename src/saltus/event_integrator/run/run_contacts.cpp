@@ -148,17 +148,22 @@ bool Run::contact_modes_hold() {
 /// Behind the limit of a sequence of bounces the gaps are closed.
 void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before) {
   jump_accumulation_.clear();
+  const Contacts::Bounces bounces{limit.events, limit.t - here_.t, contacts_.without_slip(contact_moment(), x_last)};
   pass_to(limit.t, limit.x);
   contacts_.copy_modes(x_last, here_.x);
   contacts_.forget_impulses(here_.x);
   cascade_.begin();
   const auto slid_on = slid_on_between_bounces(kernel_, event_.before.sliding, here_, x_last);
   for (const int j : slid_on) here_.state.alpha[at(j)] = event_.before.alpha[at(j)];  // what holds it opens a contact
-  auto problem = contacts_.settle(contact_moment(), limit.events, here_.x);
+  auto problem = contacts_.settle(contact_moment(), bounces, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   limit_beside_rest();
+  // On the gaps, which may have moved since the last impact.
+  auto x_before = here_.x;
+  contacts_.copy_modes(x_last, x_before);
+  contacts_.forget_impulses(x_before);
   const auto accumulated = [&] {
-    recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},
+    recorder_.accumulated(here_.t, limit.events, {x_before, here_.x, before, here_.state},
                           "the intervals of these impacts shrink geometrically: the gaps close in their limit");
     row(here_.t, here_.x);
     event_.last_time = here_.t;
