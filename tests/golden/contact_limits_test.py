@@ -47,6 +47,36 @@ restitution = 0.5
 until = 1
 """
 
+# A body on a foot, with a spring that is driven: it lands, comes to rest, and leaves the ground.
+HOPPER = """[model]
+name = "hopper"
+[parameters]
+m = 3.8995
+m2 = 0.3398
+k = 1906.917
+d = 4.5723
+[states]
+y = 0.8
+z = 0.3
+vy = 0.0
+vz = 0.0
+[mechanics]
+positions = ["y", "z"]
+velocities = ["vy", "vz"]
+mass = [["m", "0"], ["0", "m2"]]
+potential = "9.81*(m*y + m2*z)"
+force = { vy = "-(k*(y - z - 0.5 - 0.0312*sin(11.2435*t)) + d*(vy - vz))", vz = "k*(y - z - 0.5 - 0.0312*sin(11.2435*t)) + d*(vy - vz)" }
+[[contacts]]
+name = "foot"
+gap = "z"
+restitution = 0.5578
+[simulate]
+until = 2
+rtol = 1e-10
+atol = 1e-12
+max_events = 300
+"""
+
 
 def rod(**values):
     text = ROD
@@ -79,6 +109,19 @@ class ContactLimits(tool.ResultTest):
         self.assertEqual(len(at_limit), 2)
         for value in at_limit:
             self.assertAlmostEqual(value, 0, delta=1e-14)
+
+    def test_a_foot_leaves_the_ground_once(self):
+        """Its force ends, and grows on as an acceleration: the gap opens like t^3, less than steps leave of its rate."""
+        expected = None
+        for integrator in ("dopri5", "radau5"):
+            with self.subTest(integrator):
+                result = self.result(HOPPER, "--integrator", integrator)
+                expected = expected or result
+                count = [event["kind"] for event in result["events"]].count
+                self.assertEqual(count("lift_off"), [event["kind"] for event in expected["events"]].count("lift_off"))
+                self.assertEqual(count("contact"), 0)
+                for value, other in zip(result["final"]["x"], expected["final"]["x"], strict=True):
+                    self.assertAlmostEqual(value, other, delta=1e-6)
 
 
 if __name__ == "__main__":

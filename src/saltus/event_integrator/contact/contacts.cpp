@@ -216,9 +216,8 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const B
   for (const int i : touching) stop(i);
   // Where impacts end in sticking it is what the extrapolation leaves of the slips between them.
   const double between = std::max(none, bounces.left * point.terms);
-  stop_slips([&](int i) {
-    return point.along(point.velocity, i).norm() <= (contains(bounces.sticking, i) ? between : none);
-  });
+  stop_slips(
+      [&](int i) { return point.along(point.velocity, i).norm() <= (contains(bounces.sticking, i) ? between : none); });
   // What follows from velocities that are 0 is 0, too: a slip there would have the direction of a rounding. Along gaps
   // that move with time it is not.
   const double small = small_velocity * fastest(moment, point, x);
