@@ -89,9 +89,9 @@ template <std::size_t nodes = event_nodes>
 /// with the same expected sign, finds that one.
 ///
 /// @param coefficients  Bernstein coefficients on [0, 1], finite
-/// @param zero_order    0: the value at 0 has the expected sign or is within the noise; 1, 2: the polynomial has a zero
-///                      of this order at 0, which is removed exactly (the corresponding leading coefficients are taken
-///                      as 0) and not found again
+/// @param zero_order    0: the value at 0 has the expected sign or is within the noise; 1 to 3: the polynomial has a
+///                      zero of this order at 0, which is removed exactly (the corresponding leading coefficients are
+///                      taken as 0) and not found again
 /// @param noise         absolute rounding level of the values, >= 0; anything within it counts as having the expected
 ///                      sign (a dip that exceeds it by less than a sixteenth may count as within it)
 /// @return the bracket (width <= 2^-40, or the resolution that the noise permits), nullopt if there is none. It

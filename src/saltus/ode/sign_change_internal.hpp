@@ -268,7 +268,7 @@ struct FromCoefficients {
 template <std::size_t nodes, class Values>
 std::optional<SignChange> search_sign_change(const Coefficients<nodes>& coefficients, int sign, int zero_order,
                                              double noise, const Values& values) {
-  SALTUS_ASSERT((sign == 1 || sign == -1) && zero_order >= 0 && zero_order <= 2 && noise >= 0.0);
+  SALTUS_ASSERT((sign == 1 || sign == -1) && zero_order >= 0 && zero_order <= 3 && noise >= 0.0);
   Coefficients<nodes> p = coefficients;
   for (double& value : p) value *= sign;
   if (zero_order == 0 && falls_once(p, noise)) {  // what the parts below come to, without them

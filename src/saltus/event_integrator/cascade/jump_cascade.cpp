@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "saltus/event_integrator/decide/sets/find_resting_surfaces.hpp"
@@ -10,6 +11,18 @@
 #include "saltus/event_integrator/mode/resolution.hpp"
 
 namespace saltus::event_integrator {
+namespace {
+
+/// How far the gap of a contact may be from 0 that was closed before one of these jumps, and is open at x; 0 for other
+/// functions.
+double left_by_opening(const Contacts& contacts, int function, std::span<const ExecutedJump> executed,
+                       const std::vector<double>& x) {
+  const bool was_closed = std::any_of(executed.begin(), executed.end(),
+                                      [&](const auto& one) { return contacts.tolerated(function, one.x) == 0.0; });
+  return was_closed ? contacts.tolerated(function, x) : 0.0;
+}
+
+}  // namespace
 
 /// All functions of the kernel here.
 void JumpCascade::find_values() {
@@ -110,7 +123,8 @@ void JumpCascade::read_user_signs() {
     const double value = values_.value[at(function)];
     const bool located = contains(zeros_, function);
     const bool unchanged = is_unchanged(function);
-    const double rounding = unchanged ? rounding_of(values_.magnitude[at(function)]) : resolution(function);
+    const double rounding = std::max(unchanged ? rounding_of(values_.magnitude[at(function)]) : resolution(function),
+                                     left_by_opening(contacts_, function, executed_.items(), here_.x));
     vanish[user] = located || holding_.holds(function) || std::abs(value) <= rounding;
     if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
     const bool turns = signs[user] * value < 0.0;
@@ -186,8 +200,10 @@ void JumpCascade::give_directions() {
     const Motion motion = motion_of(function);
     signs[user] = static_cast<int>(motion.side.drift);
     if (contacts_.guards(function)) {
-      // Its mode holds from here on, whatever the roundings of its derivatives say.
-      orders[user] = signs[user] < 0 ? std::clamp(motion.order, 1, 2) : 2;
+      // Its mode holds from here on, whatever the roundings of its derivatives say. A gap opens as its force comes to
+      // 0, with an acceleration of 0: it goes like t^3, and its first derivatives are what the steps leave of them.
+      const bool opens = left_by_opening(contacts_, function, executed_.items(), here_.x) > 0.0;
+      orders[user] = opens ? 3 : signs[user] < 0 ? std::clamp(motion.order, 1, 2) : 2;
       signs[user] = -1;
       add_zero(function);
       zero_values_[at(function)] = values[at(function)];

@@ -211,13 +211,23 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   return problem;
 }
 
-std::optional<std::string> Contacts::settle(const ContactMoment& moment, const std::vector<int>& jumps,
+std::vector<int> Contacts::without_slip(const ContactMoment& moment, const std::vector<double>& x) {
+  ContactPoint point = point_at(moment.t, moment.alpha, x);
+  clean(moment, point, x, {});
+  std::vector<int> found;
+  for (int i = 0; i < point.contacts(); ++i) {
+    if (point.along(point.velocity, i).isZero(0.0)) found.push_back(i);
+  }
+  return found;
+}
+
+std::optional<std::string> Contacts::settle(const ContactMoment& moment, const Bounces& bounces,
                                             std::vector<double>& x) {
   why_open_.clear();
   std::vector<int> touching;
   const ContactPoint limit = point_at(moment.t, moment.alpha, x);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const bool closed = x[at(contacts_[i].closed)] != 0.0, rests = closed || contains(jumps, contacts_[i].jump);
+    const bool closed = x[at(contacts_[i].closed)] != 0.0, rests = closed || contains(bounces.jumps, contacts_[i].jump);
     if (!rests && !comes_to_rest(moment, static_cast<int>(i), limit, x)) continue;
     touching.push_back(static_cast<int>(i));
     if (!closed) x[at(contacts_[i].active)] = 1.0;
@@ -239,7 +249,10 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const s
     }
   };
   for (const int i : touching) stop(i);
-  stop_slips([&](int i) { return point.along(point.velocity, i).norm() <= none; });
+  // Where impacts end in sticking it is what the extrapolation leaves of the slips between them.
+  const double between = std::max(none, bounces.left * point.terms);
+  stop_slips(
+      [&](int i) { return point.along(point.velocity, i).norm() <= (contains(bounces.sticking, i) ? between : none); });
   // What follows from velocities that are 0 is 0, too: a slip there would have the direction of a rounding. Along gaps
   // that move with time it is not.
   const double small = small_velocity * fastest(moment, point, x);

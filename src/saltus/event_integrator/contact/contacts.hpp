@@ -83,8 +83,15 @@ class Contacts {
   [[nodiscard]] const std::string& why_open() const { return why_open_; }
   /// Returns, by their jumps, the contacts whose bounces the last impact has ended: the next one would be nothing.
   [[nodiscard]] const std::vector<int>& last_bounces() const { return last_bounces_; }
-  /// Ends the bounces of these contacts (by their jumps): their gaps close without an impact.
-  [[nodiscard]] std::optional<std::string> settle(const ContactMoment& moment, const std::vector<int>& jumps,
+  /// Returns the contacts that do not slip, to the rounding of their velocities.
+  [[nodiscard]] std::vector<int> without_slip(const ContactMoment& moment, const std::vector<double>& x);
+  struct Bounces {
+    const std::vector<int>& jumps;  ///< of the contacts
+    double left;                    ///< the time from the last impact to the limit
+    std::vector<int> sticking;      ///< contacts without a slip behind the last impact
+  };
+  /// Ends bounces in their limit: the gaps close without an impact.
+  [[nodiscard]] std::optional<std::string> settle(const ContactMoment& moment, const Bounces& bounces,
                                                   std::vector<double>& x);
   /// Says what is wrong where steps become ever smaller as a contact slips under a force that grows without bound.
   [[nodiscard]] std::optional<std::string> jam(const ContactMoment& moment, const std::vector<double>& x);

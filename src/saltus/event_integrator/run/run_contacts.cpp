@@ -145,20 +145,39 @@ bool Run::contact_modes_hold() {
   return false;
 }
 
+/// Rows up to the limit of a sequence of bounces, on lines: gaps may move, and x_last is not on them any more.
+void Run::rows_to_limit(double t_last, const std::vector<double>& x_last, const std::vector<double>& x_limit,
+                        const ModeState& before) {
+  rows_.each_before(t_last, here_.t, [&](double t) {
+    auto x = x_limit;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += (here_.t - t) / (here_.t - t_last) * (x_last[i] - x[i]);
+    contacts_.forget_impulses(x);
+    recorder_.row(t, x, before, before.alpha);
+  });
+  rows_.skip_here();
+  if (here_.t > t_last) recorder_.row(here_.t, x_limit, before, before.alpha);
+}
+
 /// Behind the limit of a sequence of bounces the gaps are closed.
 void Run::settle_contacts(const SeriesLimit& limit, const std::vector<double>& x_last, const ModeState& before) {
   jump_accumulation_.clear();
-  pass_to(limit.t, limit.x);
+  const double t_last = here_.t;
+  const Contacts::Bounces bounces{limit.events, limit.t - t_last, contacts_.without_slip(contact_moment(), x_last)};
+  here_.move_to(limit.t, limit.x.data());
   contacts_.copy_modes(x_last, here_.x);
   contacts_.forget_impulses(here_.x);
   cascade_.begin();
   const auto slid_on = slid_on_between_bounces(kernel_, event_.before.sliding, here_, x_last);
   for (const int j : slid_on) here_.state.alpha[at(j)] = event_.before.alpha[at(j)];  // what holds it opens a contact
-  auto problem = contacts_.settle(contact_moment(), limit.events, here_.x);
+  auto problem = contacts_.settle(contact_moment(), bounces, here_.x);
   if (problem) fail(Termination::outside_class, std::move(*problem));
   limit_beside_rest();
+  auto x_before = here_.x;
+  contacts_.copy_modes(x_last, x_before);
+  contacts_.forget_impulses(x_before);
+  rows_to_limit(t_last, x_last, x_before, before);
   const auto accumulated = [&] {
-    recorder_.accumulated(here_.t, limit.events, {x_last, here_.x, before, here_.state},
+    recorder_.accumulated(here_.t, limit.events, {x_before, here_.x, before, here_.state},
                           "the intervals of these impacts shrink geometrically: the gaps close in their limit");
     row(here_.t, here_.x);
     event_.last_time = here_.t;

@@ -158,6 +158,8 @@ class Run {
   bool follow_dense_cycles();
   bool follow_spiral(const SeriesLimit& limit, Behind wanted);
   void pass_to(double t, const std::vector<double>& x);
+  void rows_to_limit(double t_last, const std::vector<double>& x_last, const std::vector<double>& x_limit,
+                     const ModeState& before);
   void go_on_from_limit();
   std::vector<std::size_t> fire_user_events(const std::vector<double>& x_before, const ModeState& before,
                                             const std::vector<std::size_t>& before_jumps = {});
