@@ -123,6 +123,7 @@ reformulation = "stewart"
     EXPECT_EQ(result->status.termination, Termination::completed) << result->status.message;
     EXPECT_NEAR(result->optimization->objective, is_fine ? 0.2277304 : 0.2329771, 1e-6);
     EXPECT_EQ(warnings.find("elements = 4") != std::string::npos, !is_fine) << warnings;
+    EXPECT_EQ(result->status.message, warnings);
   }
 }
 

@@ -245,6 +245,16 @@ void warn_of_crowded_intervals(const discretization::OcpProblem& problem, const 
       *std::max_element(options.elements.begin(), options.elements.end()) + 1));
 }
 
+/// Observers whose warnings the status of an optimum has, too: it says what the certificate leaves open.
+OptimizeObservers noting(const OptimizeObservers& observers, result::Status& status) {
+  auto noted = observers;
+  noted.on_warning = [&observers, &status](const std::string& warning) {
+    if (is_done(status.termination)) status.message += (status.message.empty() ? "" : "; ") + warning;
+    observers.on_warning(warning);
+  };
+  return noted;
+}
+
 void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
   const int stabilisation = ocp.system.freezing ? ocp.system.freezing->stabilisation : -1;
   for (std::size_t i = 0; i < read.parameters.size(); ++i) {
@@ -287,11 +297,9 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   wanted.on_step = observers.on_step;
   adapters::IpoptSolver ipopt;
   adapters::HighsLpcc highs;
-  const double build_seconds = found.statistics.build_seconds;
   auto solution = solver::solve(problem, ipopt, highs, wanted, same_structure(problem, options));
   if (!solution) return tl::unexpected(solution.error());
   take_point(problem, *solution, found);
-  found.statistics.build_seconds = build_seconds;
   result.status.termination = solution->termination;
   result.status.message = solution->message + advice_on_bounces(ocp, options, solution->termination);
 
@@ -310,8 +318,9 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     bodies = std::move(*made);
     add_impulses(*bodies, result);
   }
-  warn_of_impacts_at_nodes(result, observers);
-  warn_of_crowded_intervals(problem, *solution, options, observers);
+  const auto noted = noting(observers, result.status);
+  warn_of_impacts_at_nodes(result, noted);
+  warn_of_crowded_intervals(problem, *solution, options, noted);
   if (result.status.termination != Termination::stopped_by_user && solution->w.allFinite()) {
     std::vector<Eigen::MatrixXd> gains;
     if (options.closed_loop.value_or(ocp.plant || !result.contacts.empty())) {
