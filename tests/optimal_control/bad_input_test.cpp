@@ -1,8 +1,10 @@
 // What is no optimal control problem of this method, each with the message a person gets; and kinks of controls that
 // are.
+#include <set>
 #include <string>
 #include <vector>
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
@@ -83,6 +85,29 @@ TEST(OcpBadInput, SwitchesOfControls) {
                  {"'abs(u - v) <= 1' is soft and has a kink that mixes states and controls"});
   expect_refused({.cost = "-abs(u - v)"}, {"'abs(u-v)'", "convexly"});
   expect_refused({.cost = "u^2", .problem = "path_constraints = ['abs(u) >= 1']"}, {"'abs(u)'", "convexly"});
+}
+
+TEST(OcpBadInput, PairsAreNamedByWhatSwitchesAndWhen) {
+  const auto names_of = [](const std::string& horizon) {
+    const auto problem = stated(model_of({.horizon = horizon}));
+    const auto made = pipeline::state_problem(problem.ocp, problem.options);
+    EXPECT_TRUE(made);
+    const auto& all = *made->problem;
+    std::set<std::string> names;
+    for (int pair = 0; pair < all.pairs(); ++pair) {
+      names.insert(all.row_name(all.constraints() + pair));
+      EXPECT_EQ(all.row_name(all.constraints() + pair), all.row_name(all.constraints() + all.pairs() + pair));
+    }
+    return fmt::format("{}", fmt::join(names, "\n"));
+  };
+  const auto fixed = names_of("3");
+  EXPECT_NE(fixed.find("the switching function 'v' in interval 1 (t = 1.5 to 3), element 2"), std::string::npos)
+      << fixed;
+  EXPECT_EQ(fixed.find("pair"), std::string::npos) << fixed;
+  const auto free = names_of("{ free = true, initial = 2, lower = 1, upper = 3 }");
+  EXPECT_NE(free.find("the switching function 'v' in interval 1 (0.5 to 1 of the horizon), element 0"),
+            std::string::npos)
+      << free;
 }
 
 TEST(OcpBadInput, JumpsAndDiscreteStates) {
