@@ -33,7 +33,7 @@ def card(r: Result) -> str:
     return (
         "<div style='font:13px/1.45 system-ui,sans-serif;max-width:580px'>"
         f"<b>{html.escape(r.model)}</b> &nbsp; {html.escape(r.method)} &nbsp; "
-        f"<span style='color:{colour}'>{html.escape(str(r.status))}</span> at t = {r.status.time_reached:.6g} &nbsp; "
+        f"<span style='color:{colour}'>{html.escape(str(r.status))}</span>{r._reached(6)} &nbsp; "
         f"{r._counts}{message}{_picture(r)}{_events(r)}</div>"
     )
 

@@ -284,7 +284,7 @@ class Result(Facts):
         """
         if self.status.done:
             return self
-        place = "" if "t = " in self.status.message else f" at t = {self.status.time_reached:.17g}"
+        place = "" if "t = " in self.status.message else self._reached(17)
         reason = f": {self.status.message}" if self.status.message else ""
         raise Stopped(f"stopped early: {self.status}{place}{reason}", self)
 
@@ -399,7 +399,12 @@ class Result(Facts):
             return f"<saltus.Result {self.model!r}: values at {len(self.t)} times>"
         if self._several:
             return f"<saltus.Result {self.model!r}: {self._several}; print(…) shows them>"
-        return f"<saltus.Result {self.model!r}: {self.status} at t = {self.status.time_reached:.6g}, {self._counts}>"
+        return f"<saltus.Result {self.model!r}: {self.status}{self._reached(6)}, {self._counts}>"
+
+    def _reached(self, digits: int) -> str:
+        """When it ended; an optimum that was not found ended at no time of its trajectory."""
+        unsolved = self._run.command == "optimize" and not self.status.done
+        return "" if unsolved else f" at t = {self.status.time_reached:.{digits}g}"
 
     @property
     def _several(self) -> str:

@@ -135,6 +135,15 @@ terminal_constraints = ["q == 10", "v == 0"]
 """
 
 
+def test_the_end_may_be_rounded():
+    r = saltus.Model.from_text('[model]\nname = "a"\n[states]\nx = 1\n[dynamics]\nx = "-x"\n').simulate(until=5.83)
+    end = max(5.83 * n / n for n in range(2, 60))
+    assert end > 5.83
+    assert r(end).tolist() == [r.final["x"]]
+    with pytest.raises(ValueError, match="lies outside"):
+        r(5.83 + 1e-9)
+
+
 def test_optima_are_their_collocation_polynomials(tmp_path):
     r = saltus.Model.from_text(BLOCK).optimize().require()
     grid, u = r.optimization["grid"], np.ravel(r.optimization["u"])

@@ -158,6 +158,10 @@ def test_optimal_control(source):
     assert again.optimization["objective"] == pytest.approx(r.optimization["objective"], rel=1e-5)
     simulated = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start="simulated", control_intervals=6)
     assert simulated.options["optimize.start"] == "simulated"
+    unsolved = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(control_intervals=6, time_limit=1e-9)
+    assert "time_limit, " in repr(unsolved) and " at t = " not in unsolved._repr_html_().partition("<svg")[0]
+    with pytest.raises(saltus.Stopped, match="^stopped early: time_limit: stopped before it was solved"):
+        unsolved.require()
     with pytest.raises(saltus.ModelError, match="control_interval"):
         saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(control_interval=6)
     with pytest.raises(saltus.ModelError, match="optimize"):

@@ -221,6 +221,18 @@ TEST(ContinuousSolution, IsKnownWithinTheSpanOnly) {
   }
 }
 
+TEST(ContinuousSolution, EndsWhereRoundingsOfItsEndAre) {
+  const Simulator model = Simulator::from_catalogue("stick-slip");
+  auto options = model.options();
+  options.continuous = true;
+  options.until = 2.0;
+  const auto run = model.run(options);
+  const auto values = run.continuous->at({2.0, std::nextafter(2.0, 3.0)});
+  ASSERT_TRUE(values);
+  EXPECT_EQ(values->t, (std::vector<double>{2.0, 2.0}));
+  EXPECT_EQ(values->x[1], values->x[0]);
+}
+
 // Along a way into a zero of a nested function, and over a limit, the solution is no polynomial of a step.
 TEST(ContinuousSolution, IsSimulatedAgainWhereStepsHaveNoPolynomials) {
   const Simulator model = Simulator::from_text(

@@ -29,6 +29,8 @@ class OptimizeBadInput(tool.ToolTest):
     def test_a_model_without_optimize(self):
         out, err = self.run_tool("optimize", "crossing", code=2)
         self.assertIn("no table [optimize]", err)
+        with_option = self.run_tool("optimize", "crossing", "--time-limit", "20", code=2)[1]
+        self.assertEqual(with_option, err)
         self.assertIn("saltus simulate", err)
         self.assertEqual(out, "")
 

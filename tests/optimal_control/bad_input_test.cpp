@@ -1,8 +1,10 @@
 // What is no optimal control problem of this method, each with the message a person gets; and kinks of controls that
 // are.
+#include <set>
 #include <string>
 #include <vector>
 
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
@@ -73,7 +75,8 @@ TEST(OcpBadInput, TheModelItselfIsAccepted) { EXPECT_EQ(refusal_of({}), ""); }
 
 TEST(OcpBadInput, SwitchesOfControls) {
   expect_refused({.acceleration = "u - 0.5*sign(v - u)"},
-                 {"switching function 'v-u' depends on the control 'u'", "make 'u' a state", "[optimize]"});
+                 {"bad.toml:13:14", "switching function 'v-u' depends on the control 'u'", "make 'u' a state"});
+  expect_refused({.u = "[-2, 2]"}, {"bad.toml:10:5", "u = { lower = -2, upper = 2 }"});
   expect_refused({.cost = "sign(u)"}, {"'sign(u)'", "running_cost", "convex"});
   expect_refused({.cost = "u^2 + min(u, 0)"}, {"the kink 'min(u,0)' of controls does not enter running_cost convexly"});
   expect_refused({.cost = "-abs(u)"}, {"'abs(u)'", "convexly"});
@@ -85,6 +88,34 @@ TEST(OcpBadInput, SwitchesOfControls) {
   expect_refused({.cost = "u^2", .problem = "path_constraints = ['abs(u) >= 1']"}, {"'abs(u)'", "convexly"});
 }
 
+TEST(OcpBadInput, PairsAreNamedByWhatSwitchesAndWhen) {
+  const auto names_of = [](const std::string& horizon) {
+    const auto problem = stated(model_of({.horizon = horizon}));
+    const auto made = pipeline::state_problem(problem.ocp, problem.options);
+    EXPECT_TRUE(made);
+    const auto& all = *made->problem;
+    std::set<std::string> names;
+    for (int pair = 0; pair < all.pairs(); ++pair) {
+      names.insert(all.row_name(all.constraints() + pair));
+      EXPECT_EQ(all.row_name(all.constraints() + pair), all.row_name(all.constraints() + all.pairs() + pair));
+    }
+    return fmt::format("{}", fmt::join(names, "\n"));
+  };
+  const auto fixed = names_of("3");
+  EXPECT_NE(fixed.find("the switching function 'v' in interval 1 (t = 1.5 to 3), element 2"), std::string::npos)
+      << fixed;
+  EXPECT_EQ(fixed.find("pair"), std::string::npos) << fixed;
+  const auto free = names_of("{ free = true, initial = 2, lower = 1, upper = 3 }");
+  EXPECT_NE(free.find("the switching function 'v' in interval 1 (0.5 to 1 of the horizon), element 0"),
+            std::string::npos)
+      << free;
+}
+
+TEST(OcpBadInput, KeysOfSimulationsAreAnswered) {
+  expect_refused({.problem = "until = 2"}, {"unknown option optimize.until", "the length of time is `horizon`"});
+  expect_refused({.problem = "rtol = 1e-6"}, {"control_intervals, elements and stages", "[simulate]"});
+}
+
 TEST(OcpBadInput, JumpsAndDiscreteStates) {
   expect_refused({.tables = "[[jumps]]\nname = \"bounce\"\nwhen = \"q < -1\"\nset = { v = \"-v\" }"},
                  {"does not cover [[jumps]]", "[time_freezing]"});
@@ -94,7 +125,8 @@ TEST(OcpBadInput, JumpsAndDiscreteStates) {
 
 TEST(OcpBadInput, BreaksOfTime) {
   expect_refused({.acceleration = "u + floor(t)", .intervals = "3"},
-                 {"breaks at t = 1, inside control interval 1", "control_intervals = 4"});
+                 {"bad.toml:13:10", "breaks at t = 1, inside control interval 1", "control_intervals = 4"});
+  expect_refused({.acceleration = "u - 0.5*sign(v) + step(t - 0.33)"}, {"bad.toml:13:24", "'t-0.33' breaks"});
   EXPECT_EQ(refusal_of({.acceleration = "u + floor(t)", .intervals = "4"}), "");
   expect_refused({.acceleration = "u + floor(t)", .horizon = "{ free = true, initial = 2, lower = 1, upper = 3 }"},
                  {"breaks in time, and the horizon is free", "fix the horizon"});

@@ -36,7 +36,7 @@ struct OptimizeArguments {
 };
 
 /// The model with what was typed beside --set.
-Expected<ModelInput> stated_input(const OptimizeArguments& arguments, const ModelText& text) {
+Expected<ModelInput> set_input(const OptimizeArguments& arguments, const ModelText& text) {
   auto input = read_input(text, arguments.run.settings);
   if (!input) return input;
   if (auto done = apply_shortcuts(arguments.run, *input); !done) return tl::unexpected(done.error());
@@ -50,6 +50,15 @@ Expected<ModelInput> stated_input(const OptimizeArguments& arguments, const Mode
     input->call += command_line({"--start", arguments.start}).substr(std::size("saltus") - 1);
   if (auto done = io::read_start_result(input->file); !done) return tl::unexpected(done.error());
   return input;
+}
+
+/// Of a model without [optimize] nothing can be set: that is said, whatever was typed.
+Expected<ModelInput> stated_input(const OptimizeArguments& arguments, const ModelText& text) {
+  auto input = set_input(arguments, text);
+  if (input) return input;
+  const auto file = io::parse_model(text.text, text.name, text.files);
+  if (!file || file->optimize) return input;
+  return io::check_optimize_options(*file).and_then([&] { return input; });
 }
 
 pipeline::OptimizeObservers observers_of(const RunArguments& arguments) {

@@ -1,6 +1,7 @@
 // An optimal control problem as a value: a system, and over its symbols what is minimised and constrained.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -61,8 +62,8 @@ struct OcpClock {
 ///   subject to xdot = f(t, x, u, p, alpha), bounds, path and terminal constraints and complementarities.
 /// Every expression is an output of `system`: L, E, constraints.
 struct Ocp {
-  System
-      system;  ///< controls: the user's, then one per kink of controls; outputs: the user's, those of the problem, others
+  /// Controls: the user's, then one per kink of controls; outputs: the user's, those of the problem, others.
+  System system;
   int user_controls = 0, user_outputs = 0, problem_outputs = 0;
   /// Controls that are slacks of kinks of states and controls in the running cost: a value per stage.
   std::vector<int> stage_slacks;
@@ -85,6 +86,7 @@ struct Ocp {
   /// What the closed loop simulates instead: `physical`, or `system` without, with other parameters and initial values.
   std::shared_ptr<const System> plant;
   std::vector<std::string> warnings;
+  std::map<std::string, SourceLocation> places;  ///< of switching functions and cells whose expression is known
 };
 
 /// Builds the problem a description states, with the overrides applied.

@@ -9,14 +9,16 @@
 
 namespace saltus::pipeline {
 Expected<result::Trajectory> values_at(const model::System& system, const SimulateOptions& options,
-                                       const std::vector<double>& times, SideOfEvent side, const Observers& observers) {
+                                       const std::vector<double>& asked, SideOfEvent side, const Observers& observers) {
   SimulateOptions again = options;
   again.event_rows = true;
   again.kept = {};
   again.event.trajectories = 1;
   again.continuous = false;
+  auto times = asked;
   if (again.until) {
-    for (const double t : times) {
+    for (double& t : times) {
+      t = result::moved_to_end(t, again.from, *again.until);
       if (!(again.from <= t && t <= *again.until)) return tl::unexpected(result::outside(t, again.from, *again.until));
     }
   }

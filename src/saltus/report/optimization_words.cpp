@@ -2,11 +2,9 @@
 #include <cstddef>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/optimization_words_internal.hpp"
-#include "saltus/result/impacts_at_nodes.hpp"
 
 namespace saltus::report {
 namespace {
@@ -157,14 +155,7 @@ std::vector<Finding> certificate_findings(const result::Certificate& certificate
 }
 
 std::vector<Finding> certificate_findings(const result::Result& result) {
-  auto findings = certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
-  if (const auto times = result::impacts_at_nodes(result); !times.empty()) {
-    findings.push_back(
-        {Tone::bad, fmt::format("Impacts at t = {:.6g} lie at ends of control intervals: beside them nothing that has "
-                                "room was better, but with more elements there may be a better optimum.",
-                                fmt::join(times, ", "))});
-  }
-  return findings;
+  return certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
 }
 
 std::vector<Finding> verification_findings(const result::Optimization& optimization) {

@@ -1,7 +1,9 @@
 #include "saltus/result/continuous.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <mutex>
 #include <utility>
 
@@ -37,9 +39,18 @@ Continuous::Continuous(Trajectory rows, std::unique_ptr<Interior> interior)
     : implementation_(std::make_unique<Implementation>(std::move(rows), std::move(interior))) {}
 Continuous::~Continuous() = default;
 
-Expected<Trajectory> Continuous::at(const std::vector<double>& times, Side side, const StepObserver& observer) {
+double moved_to_end(double t, double from, double until) {
+  constexpr double roundings = 4.0 * std::numeric_limits<double>::epsilon();
+  const double allowed = roundings * std::max(std::abs(from), std::abs(until));
+  if (t < from && from - t <= allowed) return from;
+  return t > until && t - until <= allowed ? until : t;
+}
+
+Expected<Trajectory> Continuous::at(const std::vector<double>& asked, Side side, const StepObserver& observer) {
   auto& [rows, interior, mutex] = *implementation_;
   const double from = rows.t.front(), until = rows.t.back();
+  auto times = asked;
+  for (double& t : times) t = moved_to_end(t, from, until);
   std::vector<double> inside;
   for (const double t : times) {
     if (!(from <= t && t <= until)) return tl::unexpected(outside(t, from, until));

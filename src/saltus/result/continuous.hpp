@@ -33,7 +33,8 @@ class Continuous {
   Continuous(Trajectory rows, std::unique_ptr<Interior> interior);
   ~Continuous();
 
-  /// Returns one row per time, in their order; an Error for a time that is NaN or outside the span.
+  /// Returns one row per time, in their order; an Error for a time that is NaN or outside the span by more than
+  /// roundings.
   /// @param observer  of a run that is simulated once more, where steps have no polynomials; may be empty
   [[nodiscard]] Expected<Trajectory> at(const std::vector<double>& times, Side side = Side::behind,
                                         const StepObserver& observer = {});
@@ -45,6 +46,9 @@ class Continuous {
 
 /// Returns the Error for a time outside a span.
 [[nodiscard]] Error outside(double t, double from, double until);
+
+/// Returns the end of a span that a time is beyond by a few roundings, as T (i + 1)/N may be; else the time.
+[[nodiscard]] double moved_to_end(double t, double from, double until);
 
 /// Appends the row of a time, the first or the last one of several, to `values`; false if there is none.
 bool append_row_at(double t, Side side, const Trajectory& rows, Trajectory& values);

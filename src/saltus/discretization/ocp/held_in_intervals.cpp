@@ -62,6 +62,11 @@ Eigen::Index first_difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b
   return -1;
 }
 
+Error located(Error error, const model::Ocp& ocp, const std::string& name) {
+  if (const auto place = ocp.places.find(name); place != ocp.places.end()) error.location = place->second;
+  return error;
+}
+
 Error breaks(const std::string& name, double t, int interval, const model::Ocp& ocp, int intervals) {
   const double share = (t - ocp.from) / ocp.horizon.value;
   int proposed = 0;
@@ -71,13 +76,17 @@ Error breaks(const std::string& name, double t, int interval, const model::Ocp& 
   const std::string remedy =
       proposed > 0 ? fmt::format("control_intervals = {} has an end there", proposed)
                    : "choose horizon and control_intervals so that an interval ends there, or smooth the function";
-  return ocp_refusal(ErrorCode::invalid_model,
-                     fmt::format("'{}' breaks at t = {:.10g}, inside control interval {}", name, t, interval), remedy);
+  return located(
+      ocp_refusal(ErrorCode::invalid_model,
+                  fmt::format("'{}' breaks at t = {:.10g}, inside control interval {}", name, t, interval), remedy),
+      ocp, name);
 }
 
-Error breaks_with_free_horizon(const std::string& name) {
-  return ocp_refusal(ErrorCode::not_available, fmt::format("'{}' breaks in time, and the horizon is free", name),
-                     "fix the horizon, or smooth the function");
+Error breaks_with_free_horizon(const std::string& name, const model::Ocp& ocp) {
+  return located(
+      ocp_refusal(ErrorCode::not_available, fmt::format("'{}' breaks in time, and the horizon is free", name),
+                  "fix the horizon, or smooth the function"),
+      ocp, name);
 }
 
 }  // namespace
@@ -103,7 +112,7 @@ Expected<Eigen::MatrixXd> held_in_intervals(const model::Ocp& ocp, const Dcs& dc
         continue;
       }
       if (ocp.horizon.free) {
-        return tl::unexpected(breaks_with_free_horizon(look.name(different)));
+        return tl::unexpected(breaks_with_free_horizon(look.name(different), ocp));
       }
       while (behind - before > 1e-12 * longest) {
         const double middle = 0.5 * (before + behind);
@@ -114,7 +123,8 @@ Expected<Eigen::MatrixXd> held_in_intervals(const model::Ocp& ocp, const Dcs& dc
     }
     held.row(k) = first.transpose();
     if (ocp.horizon.free && k > 0 && first_difference(first, held.row(0).transpose()) >= 0) {
-      return tl::unexpected(breaks_with_free_horizon(look.name(first_difference(first, held.row(0).transpose()))));
+      const auto different = first_difference(first, held.row(0).transpose());
+      return tl::unexpected(breaks_with_free_horizon(look.name(different), ocp));
     }
   }
   return held;

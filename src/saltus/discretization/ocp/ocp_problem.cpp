@@ -15,8 +15,12 @@ namespace saltus::discretization {
 using mpcc::ConstVectorView;
 using mpcc::VectorView;
 
-OcpProblem::Implementation::Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp)
-    : structure(std::move(made)), time_weight(ocp.time_weight), state_names(ocp.system.state_names) {
+OcpProblem::Implementation::Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp,
+                                           const reformulation::Dcs& dcs)
+    : structure(std::move(made)),
+      time_weight(ocp.time_weight),
+      state_names(ocp.system.state_names),
+      selection_names(names_of_selections(ocp.system, dcs)) {
   for (const auto& constraint : ocp.path) path_names.push_back(constraint.name);
   if (ocp.system.freezing) {
     for (const auto& contact : ocp.system.freezing->contacts)
@@ -90,7 +94,7 @@ Expected<std::unique_ptr<OcpProblem>> OcpProblem::make(std::shared_ptr<OcpKernel
                                                        const std::vector<int>& elements) {
   auto structure = ocp_structure(std::move(kernel), ocp, dcs, elements);
   if (!structure) return tl::unexpected(structure.error());
-  return std::unique_ptr<OcpProblem>(new OcpProblem(std::make_unique<Implementation>(std::move(*structure), ocp)));
+  return std::unique_ptr<OcpProblem>(new OcpProblem(std::make_unique<Implementation>(std::move(*structure), ocp, dcs)));
 }
 
 int OcpProblem::variables() const { return implementation_->structure->n_w; }

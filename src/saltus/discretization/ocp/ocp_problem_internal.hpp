@@ -17,6 +17,9 @@ struct FollowedParameter {
   double initial = 0.0, last = 0.0;
 };
 
+/// Returns what each selection is one of: "the switching function 'slip'".
+[[nodiscard]] std::vector<std::string> names_of_selections(const model::System& system, const reformulation::Dcs& dcs);
+
 struct OcpProblem::Implementation {
   std::unique_ptr<OcpStructure> structure;
   mpcc::Pattern jacobian_pattern, hessian_pattern;
@@ -28,8 +31,9 @@ struct OcpProblem::Implementation {
   std::optional<FollowedParameter> stabilisation;
   std::set<int> crowded;  ///< OcpProblem::crowded_intervals
   std::vector<std::string> path_names, terminal_names, state_names;
+  std::vector<std::string> selection_names;  ///< of what switches, one per selection
 
-  Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp);
+  Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp, const reformulation::Dcs& dcs);
   void find_patterns();
   void functions(mpcc::ConstVectorView w, mpcc::VectorView c) const;
   /// Returns factor of a function's objective: 1, or that of the method.
@@ -40,6 +44,9 @@ struct OcpProblem::Implementation {
   [[nodiscard]] double value(int place, mpcc::ConstVectorView w) const {
     return value_at(place, w, structure->constants);
   }
+  [[nodiscard]] std::string pair_name(int pair) const;
+  /// Returns "interval 3 (t = 0.6 to 0.8)", or, where the horizon is free, with shares of it.
+  [[nodiscard]] std::string interval_name(int interval) const;
 };
 
 }  // namespace saltus::discretization

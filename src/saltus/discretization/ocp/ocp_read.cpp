@@ -164,11 +164,7 @@ std::string OcpProblem::name(int variable) const {
 std::string OcpProblem::row_name(int row) const {
   const auto& own = *implementation_;
   const auto& made = *own.structure;
-  if (row >= made.n_g) {
-    const int side = row - made.n_g;
-    return side < made.n_pairs ? fmt::format("selections of pair {}", side)
-                               : fmt::format("multipliers of pair {}", side - made.n_pairs);
-  }
+  if (row >= made.n_g) return own.pair_name((row - made.n_g) % made.n_pairs);
   if (row >= made.first_linear_row) return made.linear[at(row - made.first_linear_row)].name;
   for (const auto& placed : made.functions) {
     if (placed.copies.empty() || placed.function->equations() == 0) continue;

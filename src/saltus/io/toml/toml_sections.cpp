@@ -273,6 +273,13 @@ void read_controls(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
   const auto* table = reader.table(entry.value, "the table [controls]");
   if (table == nullptr) return;
   for (const auto& field : *table) {
+    if (std::holds_alternative<TomlArray>(field.value.value)) {
+      reader.fail({ErrorCode::parse_failure,
+                   fmt::format("expected a value of '{}' or its bounds, found a list", field.key),
+                   fmt::format("bounds are {} = {{ lower = -2, upper = 2 }}", field.key),
+                   field.value.location,
+                   {}});
+    }
     auto quantity = read_quantity(reader, field, control_keys);
     model.description.controls.push_back(
         {field.key, std::move(quantity.initial), std::move(quantity.lower), std::move(quantity.upper), field.location});

@@ -62,6 +62,7 @@ class OcpBuild {
     }
     if (auto error = take_physical()) return tl::unexpected(*error);
     ocp_.warnings = ocp_.system.warnings;
+    ocp_.places = switching_places(description());
     if (auto error = check(ocp_, slacks_.description())) return tl::unexpected(*error);
     return std::move(ocp_);
   }

@@ -25,13 +25,15 @@ std::string control_in(const SX& expression, const System& system) {
   return {};
 }
 
-std::optional<Error> check_functions(const Ocp& ocp, const SourceLocation& location) {
+std::optional<Error> check_functions(const Ocp& ocp, const SourceLocation& table) {
   const System& system = ocp.system;
   for (std::size_t j = 0; j < system.switching.size(); ++j) {
     const auto& function = system.switching[j];
     const auto control = control_in(function.psi, system);
     if (control.empty()) continue;
     const SX alpha = system.alpha(static_cast<casadi_int>(j));
+    const auto stated = ocp.places.find(function.name);
+    const auto& location = stated == ocp.places.end() ? table : stated->second;
     if (SX::depends_on(system.f, alpha)) {
       return mistake(fmt::format("the switching function '{}' depends on the control '{}'", function.name, control),
                      fmt::format("make '{0}' a state with a rate that is the control: {0} = \"rate\"", control),

@@ -1,6 +1,7 @@
 // What a problem must not be: each mistake with its message.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,8 @@ namespace saltus::model {
 /// Checks that a guess speaks of t and parameters only.
 [[nodiscard]] std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& stated, const Ocp& ocp);
 [[nodiscard]] std::optional<Error> check_initial_states(const Ocp& ocp, const Description& description);
+/// Returns the places of expressions by the names of the switching functions and cells that they make.
+[[nodiscard]] std::map<std::string, SourceLocation> switching_places(const Description& description);
 /// Refuses what the method does not cover: jumps, discrete states, switching functions of a control, t beside a clock,
 /// selections of controls in costs.
 [[nodiscard]] std::optional<Error> check(Ocp& ocp, const Description& description);

@@ -158,6 +158,16 @@ Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const Opt
   return verify(physical_ocp(ocp), physical_path(ocp, *bodies, path, run), wanted, observers.is_interrupted);
 }
 
+/// Observers whose warnings the status of an optimum has, too: it says what the certificate leaves open.
+OptimizeObservers noting(const OptimizeObservers& observers, result::Status& status) {
+  auto noted = observers;
+  noted.on_warning = [&observers, &status](const std::string& warning) {
+    if (is_done(status.termination)) status.message += (status.message.empty() ? "" : "; ") + warning;
+    observers.on_warning(warning);
+  };
+  return noted;
+}
+
 void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
   const int stabilisation = ocp.system.freezing ? ocp.system.freezing->stabilisation : -1;
   for (std::size_t i = 0; i < read.parameters.size(); ++i) {
@@ -224,8 +234,9 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     bodies = std::move(*made);
     add_impulses(*bodies, result);
   }
-  warn_of_impacts_at_nodes(result, observers);
-  warn_of_crowded_intervals(problem, solution, options, observers);
+  const auto noted = noting(observers, result.status);
+  warn_of_impacts_at_nodes(result, noted);
+  warn_of_crowded_intervals(problem, solution, options, noted);
   if (result.status.termination != Termination::stopped_by_user && solution.w.allFinite()) {
     std::vector<Eigen::MatrixXd> gains;
     if (options.closed_loop.value_or(ocp.plant || !result.contacts.empty())) {

@@ -179,10 +179,29 @@ constexpr std::array keys_of_problem{
     ProblemKey{"least_squares", "[[optimize.least_squares]]", "Tables with of, reference, weight and at."},
 };
 
+/// Words of simulations, and what is meant by them here.
+struct OtherWord {
+  std::string_view words;  ///< between spaces
+  std::string_view remedy;
+};
+constexpr std::array other_words{
+    OtherWord{
+        " until T tf t_end duration ",
+        "the length of time is `horizon`: write horizon = 2, or { free = true, initial = 2, lower = 1, upper = 5 }"},
+    OtherWord{" rtol atol ",
+              "how fine the grid is say control_intervals, elements and stages; mpcc.tolerance is that of the optimum, "
+              "verification_tolerance that of its simulation (rtol is one of [simulate])"},
+};
+
 Error unknown_optimize_key(std::string_view key) {
   auto known = optimize_keys();
   for (const auto& problem_key : keys_of_problem) known.emplace_back(problem_key.key);
   Error error{ErrorCode::unknown_name, fmt::format("unknown option optimize.{}", key), "", {}, {}};
+  for (const auto& [words, remedy] : other_words) {
+    if (words.find(fmt::format(" {} ", key)) == std::string_view::npos) continue;
+    error.remedy = remedy;
+    return error;
+  }
   auto nearest = nearest_names(std::string(key), known);
   const auto last = key.substr(key.rfind('.') + 1);
   for (const auto& candidate : known) {  // the right name in the wrong table: optimize.sigma_final

@@ -132,8 +132,8 @@ std::string worst_rows(mpcc::Problem& problem, ConstVectorView w, double toleran
   for (int pair = 0; pair < pairs; ++pair) {
     const double residual = std::min(std::abs(c[n_g + pair]), std::abs(c[n_g + pairs + pair]));
     if (!(residual > tolerance)) continue;
-    const std::string G = problem.row_name(n_g + pair);
-    violations.push_back({residual, fmt::format("{} _|_ {}", G, problem.row_name(n_g + pairs + pair))});
+    const std::string G = problem.row_name(n_g + pair), H = problem.row_name(n_g + pairs + pair);
+    violations.push_back({residual, G == H ? "complementarity of " + G : fmt::format("{} _|_ {}", G, H)});
   }
   std::stable_sort(violations.begin(), violations.end(),
                    [](const auto& a, const auto& b) { return a.amount > b.amount; });
