@@ -100,8 +100,8 @@ void add_longer_stretches(const OcpStructure& made, const Sides& sides, ConstVec
   for (auto& move : single) moves.push_back(std::move(move));
 }
 
-/// Moves a switch at the end of an interval, before element e, into the next interval or the one before, over
-/// elements of length zero beside it.
+/// Moves a switch at the end of an interval, before element e, over elements of length zero into the next interval
+/// or the one before.
 void add_moved_across(const OcpStructure& made, const ElementSides& modes, ConstVectorView w, std::size_t e,
                       std::vector<mpcc::BranchMove>& moves) {
   const auto is_empty = [&](std::size_t number) {
