@@ -239,9 +239,10 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const B
   // The limit is extrapolated, to the tolerances. Along the ground it goes on: impulses that vanish have no friction.
   const double none = rests_below * slowest(moment, point, x);
   RowBasis at_rest(values_.rows);
+  std::vector<int> still;
   const auto stop = [&](int row) {
     point.velocity(row) = 0.0;
-    at_rest.takes(row);
+    if (at_rest.takes(row)) still.push_back(row);
   };
   const auto stop_slips = [&](auto condition) {
     for (const int i : touching) {
@@ -256,8 +257,10 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const B
   // What follows from velocities that are 0 is 0, too: a slip there would have the direction of a rounding. Along gaps
   // that move with time it is not.
   const double small = small_velocity * fastest(moment, point, x);
+  change_velocities(still, -values_.velocity(still), x);
+  kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
   stop_slips([&](int i) {
-    bool follows = point.along(point.velocity, i).norm() <= small;
+    bool follows = point.along(values_.velocity, i).norm() <= small;
     for (int k = 0; k < point.tangents[at(i)]; ++k) follows = follows && at_rest.holds(point.tangent_row(i, k));
     return follows;
   });
