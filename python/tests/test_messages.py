@@ -138,6 +138,7 @@ def test_optimisations(block, slip):
     assert '{"result": "r.json"}' in said_by(lambda: block.simulate(until=1, inputs={"u": solved}))
     assert "u=[… " in said_by(lambda: block.simulate(until=1, set={"u": solved.u}))
     assert "or run m.simulate()" in said_by(lambda: slip.optimize())
+    assert "options change what is stated" in said_by(lambda: slip.optimize(control_intervals=5))
     assert "start=3: expected a result" in said_by(lambda: block.optimize(start=3))
     m = saltus.Builder("m")
     m.rate(m.state("x", 0), 1)

@@ -81,11 +81,12 @@ Expected<void> set_problem_expression(ModelFile& model, const ExpressionKey& fou
 Expected<void> set_optimize_option(ModelFile& model, std::string_view key, std::string_view value,
                                    const SourceLocation& location) {
   if (!model.optimize) {
-    return tl::unexpected(Error{ErrorCode::invalid_option,
-                                "the model has no table [optimize]",
-                                "add it to the file: --set changes what the file states",
-                                location,
-                                {}});
+    return tl::unexpected(
+        Error{ErrorCode::invalid_option,
+              "the model has no table [optimize]",
+              "state the problem in the file: horizon, control_intervals, a cost; options change what is stated",
+              location,
+              {}});
   }
   const auto path = key.substr(std::min(optimize_root.size(), key.size()));
   auto options = pipeline::with_value(*model.optimize, path, option_value(value));
