@@ -264,7 +264,7 @@ TEST(ContactBounces, BesideARamThatMovesABlockSlidesOn) {
     SCOPED_TRACE(static_cast<int>(method));
     model::Builder model("block");
     const SX x = model.state("x", {0.001}), z = model.state("z", {0.0}), t = model.time();
-    static_cast<void>(model.state("vx", {0.0}));
+    static_cast<void>(model.state("vx", {ram}));
     static_cast<void>(model.state("vz", {0.0}));
     model.mechanics(
         {.positions = {"x", "z"}, .velocities = {"vx", "vz"}, .force = {{"vx", -3.0 + 0.5 * t}, {"vz", -load}}});
