@@ -1,6 +1,8 @@
 // Optima beside points at which a contact stops, sticks or collides exactly where an interval ends, and a coarse grid.
+#include <cmath>
 #include <string>
 
+#include <Eigen/Dense>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -188,6 +190,73 @@ stages = 1
   for (const auto* key : {"stages = 2", "elements = 5", "control_intervals = 10"}) {
     EXPECT_NE(result.status.message.find(key), std::string::npos) << result.status.message;
   }
+}
+
+/// A body that turns in free flight, far from its wall: the surface v = 0 of frozen time is crossed, and tells nothing.
+/// The optimum is that of the linear system, the least norm of controls that lead to the target.
+TEST(OcpIntervalEnds, ABodyThatTurnsInTheAirMayTurnInTheNextInterval) {
+  const auto result = optimized(stated(R"toml(
+[model]
+name = "turn"
+[states]
+q = 0.0
+v = -1.62
+[controls]
+u = { lower = -10.0, upper = 10.0 }
+[mechanics]
+positions = ["q"]
+velocities = ["v"]
+potential = "0.245*q^2"
+force = { v = "u" }
+[[contacts]]
+name = "wall"
+gap = "q + 1.0"
+[optimize]
+horizon = 2.7
+control_intervals = 9
+stages = 3
+running_cost = "u^2"
+terminal_constraints = ["q == 1.06", "v == 0"]
+)toml"));
+  constexpr double length = 0.3;
+  constexpr int intervals = 9;
+  const double omega = std::sqrt(0.49), turned = omega * length, cosine = std::cos(turned), sine = std::sin(turned);
+  Eigen::Matrix2d step;
+  step << cosine, sine / omega, -omega * sine, cosine;
+  const Eigen::Vector2d push((1.0 - cosine) / (omega * omega), sine / omega);
+  Eigen::Matrix2Xd reach(2, intervals);
+  Eigen::Vector2d free(0.0, -1.62), column = push;
+  for (int k = intervals - 1; k >= 0; --k, column = step * column) reach.col(k) = column;
+  for (int k = 0; k < intervals; ++k) free = step * free;
+  const Eigen::Vector2d wanted = Eigen::Vector2d(1.06, 0.0) - free;
+  const double least = length * wanted.dot((reach * reach.transpose()).inverse() * wanted);
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.optimization->objective, least, 1e-6);
+}
+
+/// Dry friction stops a block a little before an interval ends: the element of its rest appears at length zero, where
+/// more than one multiplier serves. J is the least of those at which the linear system stops at 1.16 at a time ts.
+TEST(OcpIntervalEnds, ARestThatAppearsBeforeTheEndIsFound) {
+  const auto result = optimized(stated(R"toml(
+[model]
+name = "stop"
+[states]
+q = 0.0
+v = 0.33
+[controls]
+u = { lower = -5, upper = 5 }
+[dynamics]
+q = "v"
+v = "u - 0.73*q - 0.58*sign(v)"
+[optimize]
+horizon = 3.56
+control_intervals = 5
+stages = 3
+running_cost = "u^2"
+terminal_constraints = ["q == 1.16", "v == 0"]
+)toml"));
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.optimization->objective, 2.0580610, 2e-6);
 }
 
 }  // namespace
