@@ -1,5 +1,7 @@
 // Optima beside points at which a contact stops, sticks or collides exactly where an interval ends, and a coarse grid.
 #include <cmath>
+#include <fstream>
+#include <numbers>
 #include <string>
 
 #include <Eigen/Dense>
@@ -257,6 +259,47 @@ terminal_constraints = ["q == 1.16", "v == 0"]
 )toml"));
   EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_NEAR(result.optimization->objective, 2.0580610, 2e-6);
+}
+
+/// Places of an oscillator with dry friction from which friction and stiffness are found. The half periods depend on
+/// the stiffness, so that turning points which lie at ends of intervals can only move together.
+TEST(OcpIntervalEnds, TurningPointsMoveTogetherWithAParameter) {
+  constexpr double friction = 0.37, stiffness = 3.0, length = 0.3;
+  const double omega = std::sqrt(stiffness), centre = friction / stiffness;
+  const std::string file = ::testing::TempDir() + "places_of_an_oscillator.csv";
+  std::ofstream places(file);
+  for (int k = 1; k <= 20; ++k) {
+    const double halves = std::floor(k * length * omega / std::numbers::pi);
+    const double side = std::fmod(halves, 2.0) == 0.0 ? 1.0 : -1.0;
+    const double amplitude = 1.5 - (1.0 + 2.0 * halves) * centre;
+    places << fmt::format("{:.17g}\n", side * centre + amplitude * std::cos(omega * k * length));
+  }
+  places.close();
+  const auto result = optimized(stated(fmt::format(R"toml(
+[model]
+name = "oscillator"
+[parameters]
+mu = {{ initial = 0.2, lower = 0, upper = 3, free = true }}
+k = {{ initial = 1, lower = 0.1, upper = 9, free = true }}
+[states]
+q = 1.5
+v = 0
+[dynamics]
+q = "v"
+v = "-k*q - mu*sign(v)"
+[optimize]
+horizon = 6
+control_intervals = 20
+stages = 3
+[[optimize.least_squares]]
+of = ["q"]
+reference = {{ file = "{}" }}
+)toml",
+                                                   file)));
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_LT(result.optimization->objective, 1e-12);
+  EXPECT_NEAR(result.optimization->parameters.at(0).second, friction, 1e-6);
+  EXPECT_NEAR(result.optimization->parameters.at(1).second, stiffness, 1e-6);
 }
 
 }  // namespace

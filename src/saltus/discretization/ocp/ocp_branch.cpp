@@ -100,34 +100,61 @@ void add_longer_stretches(const OcpStructure& made, const Sides& sides, ConstVec
   for (auto& move : single) moves.push_back(std::move(move));
 }
 
-/// Moves a switch at the end of an interval, before element e, over elements of length zero into the next interval
-/// or the one before.
-void add_moved_across(const OcpStructure& made, const ElementSides& modes, ConstVectorView w, std::size_t e,
-                      std::vector<mpcc::BranchMove>& moves) {
-  const auto is_empty = [&](std::size_t number) {
-    const int h = made.element[number].length;
-    return h >= 0 && w[h] < vanished;
-  };
-  const auto may_vanish = [&](const OcpElement& element) {
-    return element.length >= 0 && made.w_bounds.lower[element.length] <= small_share;
-  };
-  const auto add = [&](std::size_t from, std::size_t first, std::size_t last, std::size_t grows) {
-    if (!may_vanish(made.element[grows])) return;
-    Sides changed = modes.all();
-    for (std::size_t number = first; number <= last; ++number) modes.copy(from, number, changed);
-    moves.push_back({std::move(changed), with_share(made, w, made.element[grows], small_share)});
-  };
-  const auto add_between = [&](std::size_t before, std::size_t after) {
-    if (modes.are_equal(before, after)) return;
-    add(before, before + 1, e, e);
-    add(after, e - 1, after - 1, e - 1);
-  };
-  std::size_t before = e - 1, after = e;
-  add_between(before, after);
-  while (made.element[before].number > 0 && is_empty(before)) --before;
-  while (after + 1 < made.element.size() && made.element[after + 1].number > 0 && is_empty(after)) ++after;
-  if (before + 1 < e || after > e) add_between(before, after);
-}
+/// Moves switches at ends of intervals, over elements of length zero, into the next interval or the one before: one by
+/// one and, as free parameters move all of them, together.
+class MovedAcross {
+ public:
+  MovedAcross(const OcpStructure& made, const ElementSides& modes, ConstVectorView w)
+      : made_(made), modes_(modes), later_{modes.all(), w}, earlier_{modes.all(), w}, w_(w) {}
+
+  /// Adds what moves the switch before element e, the first of its interval.
+  void add(std::size_t e, std::vector<mpcc::BranchMove>& moves) {
+    std::size_t before = e - 1, after = e;
+    add_between(before, after, e, moves);
+    while (made_.element[before].number > 0 && is_empty(before)) --before;
+    while (after + 1 < made_.element.size() && made_.element[after + 1].number > 0 && is_empty(after)) ++after;
+    if (before + 1 < e || after > e) add_between(before, after, e, moves);
+    if (modes_.are_equal(before, after)) return;
+    ++switches_;
+    move(before, before + 1, e, e, later_);
+    move(after, e - 1, after - 1, e - 1, earlier_);
+  }
+  void add_all(std::vector<mpcc::BranchMove>& moves) {
+    if (switches_ < 2) return;
+    moves.push_back(std::move(later_));
+    moves.push_back(std::move(earlier_));
+  }
+
+ private:
+  [[nodiscard]] bool is_empty(std::size_t e) const {
+    const int h = made_.element[e].length;
+    return h >= 0 && w_[h] < vanished;
+  }
+
+  void add_between(std::size_t before, std::size_t after, std::size_t e, std::vector<mpcc::BranchMove>& moves) const {
+    if (modes_.are_equal(before, after)) return;
+    for (const bool is_later : {true, false}) {
+      mpcc::BranchMove single{modes_.all(), w_};
+      const bool can = is_later ? move(before, before + 1, e, e, single) : move(after, e - 1, after - 1, e - 1, single);
+      if (can) moves.push_back(std::move(single));
+    }
+  }
+
+  /// Gives the modes of element `from` to others, of which the last named grows; false where it may not be short.
+  bool move(std::size_t from, std::size_t first, std::size_t last, std::size_t grows, mpcc::BranchMove& result) const {
+    const auto& element = made_.element[grows];
+    if (element.length < 0 || made_.w_bounds.lower[element.length] > small_share) return false;
+    for (std::size_t e = first; e <= last; ++e) modes_.copy(from, e, result.sides);
+    result.start = with_share(made_, result.start, element, small_share);
+    return true;
+  }
+
+  const OcpStructure& made_;
+  const ElementSides& modes_;
+  mpcc::BranchMove later_, earlier_;  ///< all of them
+  ConstVectorView w_;
+  int switches_ = 0;
+};
 
 /// Lengths of the elements that have other modes than before.
 void note_appearing(const OcpStructure& made, const ElementSides& modes, mpcc::BranchMove& move) {
@@ -266,17 +293,19 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
   if (!made.kernel.moves || made.kernel.pairs.empty()) return moves;
   const ElementSides modes(made, sides);
   add_longer_stretches(made, sides, w, moves);
+  MovedAcross across(made, modes, w);
   for (std::size_t e = 1; e < made.element.size(); ++e) {
     const auto& before = made.element[e - 1];
     const auto& after = made.element[e];
     if (after.number == 0) {
-      add_moved_across(made, modes, w, e, moves);
+      across.add(e, moves);
       continue;
     }
     if (modes.are_equal(e - 1, e)) continue;
     if (w[after.length] < vanished) moves.push_back({modes.copied(e - 1, e), w});
     if (w[before.length] < vanished) moves.push_back({modes.copied(e, e - 1), w});
   }
+  across.add_all(moves);
   add_moved_standstills(made, modes, w, moves);
   const auto functions = [&](const Eigen::VectorXd& point) {
     Eigen::VectorXd c(rows());
