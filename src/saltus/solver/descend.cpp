@@ -27,6 +27,8 @@ constexpr int largest_rounds = 200;
 constexpr int branch_iterations = 500;
 /// Of one that begins at a point which is equal to the last: where it is better, that shows soon.
 constexpr int move_iterations = 40;
+/// Of the objective: a fall that is worth more iterations, or a point that is not solved yet.
+constexpr double worth = 1e-3;
 /// Flips tried one by one before the linear program decides.
 constexpr int flips_tried = 5;
 
@@ -80,12 +82,11 @@ class Descent {
     return of.b_stationary.value_or(false) && of.stationarity <= tolerance();
   }
 
-  /// What is better by no more than the errors of a point that is not stationary is not better.
+  /// What is not solved, and is hardly better, is not worth a certified point.
   void go_back() {
-    constexpr double errors = 1e-6;
     if (!certified_) return;
     const double best = certified_->branch.objective;
-    if (best - branch().objective > errors * std::max(1.0, std::abs(best))) return;
+    if (best - branch().objective > worth * std::max(1.0, std::abs(best))) return;
     run_.branch = std::move(certified_->branch);
     certify();
     run_.solution.certificate = certified_->certificate;
@@ -118,7 +119,7 @@ class Descent {
 
   /// Whether it promises an objective that is worth more iterations.
   [[nodiscard]] bool is_nearly_better(const crossover::Branch& next) {
-    constexpr double nearly_feasible = 1e-4, worth = 1e-3;
+    constexpr double nearly_feasible = 1e-4;
     const double best = branch().objective;
     return next.is_feasible(nearly_feasible) && next.objective < best - worth * std::max(1.0, std::abs(best));
   }
