@@ -160,9 +160,15 @@ void take_best_along(const VectorXd& open, const ContactPoint& point, const std:
     result.forces = start.forces + length * way;
     return result.margin = margin_of(point, resting, result);
   };
+  // Bodies that are squeezed hold the better the larger their forces are: large ones only where small ones do not hold.
+  constexpr double large = 8.0;
+  const auto rises_to = [&](double length) {
+    const double before = margin_at(0.5 * length);
+    return (before < holds || std::abs(length) <= large) && margin_at(length) > before;
+  };
   double low = -1.0, high = 1.0;
-  while (high < widest && margin_at(high) > margin_at(0.5 * high)) high *= 2.0;
-  while (low > -widest && margin_at(low) > margin_at(0.5 * low)) low *= 2.0;
+  while (high < widest && rises_to(high)) high *= 2.0;
+  while (low > -widest && rises_to(low)) low *= 2.0;
   for (int step = 0; step < refinements; ++step) {
     const double right = low + golden * (high - low), left = high - golden * (high - low);
     const bool rises = margin_at(left) < margin_at(right);
