@@ -58,11 +58,11 @@ class GrazedSides {
     const auto k = at(made_.element[e - 1].interval);
     const Eigen::VectorXd controls = point;
     const ElementTrial trial(made_, controls);
+    const auto items = items_.of_interval(k);
     auto left = trial.left_of(at(made_.interval[k].first_element));
     for (auto n = at(made_.interval[k].first_element); n < e; ++n) {
       const auto modes = modes_.modes(n);
-      const double length = items_.of_interval(k)[at(made_.element[n].number)].length;
-      const auto own = trial.solve(left, k, modes, factor * length);
+      const auto own = trial.solve(left, k, modes, factor * items[at(made_.element[n].number)].length);
       if (!own) return std::nullopt;
       point.segment(made_.element[n].first, own->size()) = *own;
       left = trial.right_of(*own);
