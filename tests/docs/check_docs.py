@@ -32,12 +32,7 @@ def complaints_of_questions(root):
     return complaints
 
 
-def anchor_of(heading):
-    """What a link to a heading ends in, as MyST makes it."""
-    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
-
-
-def complaints_of_howtos(root):
+def complaints_of_howtos(root, anchor_of):
     """Every row of the table in docs/howto.md has its how-to, under the same words."""
     page = (root / "docs/howto.md").read_text(encoding="utf-8")
     table = page.partition("## I want to")[2].partition("\n## ")[0]
@@ -69,7 +64,7 @@ def main(root, tool):
 
     if doctest.testmod(streams).failed:
         sys.exit(1)
-    complaints = complaints_of_statuses(root) + complaints_of_questions(root) + complaints_of_howtos(root) + complaints_of_index(root)
+    complaints = complaints_of_statuses(root) + complaints_of_questions(root) + complaints_of_howtos(root, blocks.anchor_of) + complaints_of_index(root)
     if complaints:
         sys.exit("\n".join(complaints))
     blocks.run_pages(sorted((root / "docs").rglob("*.md")), tool, quick=True)
