@@ -1,10 +1,18 @@
-"""Shows that check_claims.py sees a claim that is no longer said, one that nothing shows, and one that is new."""
+"""Shows what check_claims.py and the small checks of scripts/ (workflows, stray logs, notes of a release) complain about."""
 
+import contextlib
+import io
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 import check_claims
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+import check_workflows  # noqa: E402
+import release_notes  # noqa: E402
+import stray_logs  # noqa: E402
 
 PAGE = "---\nkey: x\n---\n# Title\n\nIt finds every zero, and\nsays so. It is written in C++.\n\n```\nnever run\n```\n\n- A list with `code` in it.\n"
 CLAIMS = "# Claims\n\n## README.md\n\n> It finds every zero,\n> and says so.\n\n- `tests/a_test.cpp::Finds`, `tests/`\n\n## docs/index.md\n\n> It is written in C++.\n\n- `benchmarks/b.py`\n"
@@ -42,6 +50,30 @@ class ClaimsSelfTest(unittest.TestCase):
 
     def test_a_new_promise(self):
         self.assert_complains("what shows 'It never fails.'", README=PAGE + "\nIt never fails.\n")
+
+
+class ScriptsSelfTest(unittest.TestCase):
+    def test_workflows_call_what_is_there(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = Path(folder)
+            (root / ".github/workflows").mkdir(parents=True)
+            (root / "scripts").mkdir()
+            (root / "scripts/a.sh").write_text("", encoding="utf-8")
+            (root / ".github/workflows/ci.yml").write_text("run: scripts/a.sh && python3 scripts/b.py x\n", encoding="utf-8")
+            for name in (".pre-commit-config.yaml", "pyproject.toml"):
+                (root / name).write_text("", encoding="utf-8")
+            self.assertEqual(list(check_workflows.missing_files(root)), [".github/workflows/ci.yml: there is no scripts/b.py"])
+
+    def test_logs_and_results_are_stray(self):
+        for name, code in (("build.log", 1), ("a/b.log", 1), ("result.json", 1), ("a/x.orig", 1), ("CMakePresets.json", 0), ("tests/r.json", 0)):
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(stray_logs.main([name]), code, name)
+
+    def test_notes_are_the_section_of_the_version(self):
+        changelog = "# Changelog\n\n## Unreleased\n\nnew\n\n## 0.1.10\n\nten\n\n## 0.1.1 (2026)\n\n### Added\n- one\n"
+        self.assertEqual(release_notes.notes(changelog, "0.1.1"), "### Added\n- one")
+        self.assertIsNone(release_notes.notes(changelog, "0.1"))
+        self.assertIsNone(release_notes.notes(changelog, "0.2.0"))
 
 
 if __name__ == "__main__":
