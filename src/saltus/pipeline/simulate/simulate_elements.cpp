@@ -10,11 +10,10 @@
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/model/vanishing_norm.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
-#include "saltus/pipeline/element_choices_internal.hpp"
-#include "saltus/pipeline/options/option_fields.hpp"
-#include "saltus/pipeline/output_rows_internal.hpp"
-#include "saltus/pipeline/simulate_elements_internal.hpp"
-#include "saltus/pipeline/step_observer_internal.hpp"
+#include "saltus/pipeline/options/element_choices_internal.hpp"
+#include "saltus/pipeline/simulate/methods_internal.hpp"
+#include "saltus/pipeline/simulate/output_rows_internal.hpp"
+#include "saltus/pipeline/simulate/step_observer_internal.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::pipeline {
@@ -36,8 +35,9 @@ Error no_sensitivities() {
           {}};
 }
 
-fesd_integrator::IntegrationOptions options_of_elements(const SimulateOptions& options, const ElementOptions& wanted,
+fesd_integrator::IntegrationOptions element_run_options(const Simulation& asked, const ElementOptions& wanted,
                                                         discretization::ButcherTableau tableau) {
+  const auto& options = asked.options;
   fesd_integrator::IntegrationOptions integration;
   integration.switches = options.method == Method::fesd ? fesd_integrator::IntegrationOptions::Switches::detected
                                                         : fesd_integrator::IntegrationOptions::Switches::fixed;
@@ -52,7 +52,12 @@ fesd_integrator::IntegrationOptions options_of_elements(const SimulateOptions& o
   integration.max_events = options.max_events;
   integration.native = native_code(options.native);
   integration.sensitivities = wanted.sensitivities;
+  integration.initial_mode = asked.forced_mode;
+  if (asked.system.freezing) integration.clock = static_cast<std::size_t>(asked.system.freezing->clock);
+  integration.pieces = options.continuous && !integration.clock;
   if (std::holds_alternative<Automatic>(options.output)) integration.straight = straight_share;
+  if (is_at_times(options.output)) integration.rows = fesd_integrator::IntegrationOptions::Rows::at_times;
+  integration.times = asked.times;
   return integration;
 }
 
@@ -63,23 +68,13 @@ void add_vanishing_norm(const model::System& system, fesd_integrator::Integratio
   if (!norm.empty()) run.status.message += norm + ", or method = \"event\", which finds where such friction ends";
 }
 
-result::Result with_run(result::Result frame, fesd_integrator::Integration run) {
-  frame.status = std::move(run.status);
-  frame.final = std::move(run.final);
-  frame.events = std::move(run.events);
-  frame.trajectory = std::move(run.trajectory);
-  frame.statistics = run.statistics;
-  frame.sensitivities = std::move(run.sensitivities);
-  frame.elements = std::move(run.elements);
-  return frame;
-}
-
 }  // namespace
 
-Expected<result::Result> simulate_elements(const model::System& system, const SimulateOptions& options,
-                                           std::vector<double> times, std::vector<std::pair<int, int>> forced,
-                                           result::Result frame, const Observers& observers) {
+Expected<result::Result> simulate_elements(const Simulation& asked) {
+  const SymbolicLock lock;  // its problems are made while it runs
   const Stopwatch stopwatch;
+  const auto& system = asked.system;
+  const auto& options = asked.options;
   const bool detected = options.method == Method::fesd;
   const ElementOptions& wanted = detected ? options.fesd : options.timestepping;
   auto tableau = discretization::butcher_tableau(wanted.scheme, static_cast<int>(wanted.stages));
@@ -89,20 +84,13 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
 
   const double values = static_cast<double>(wanted.steps) * static_cast<double>(wanted.elements * wanted.stages) *
                         static_cast<double>(dcs->selection.numel());
-  fesd_integrator::IntegrationOptions integration = options_of_elements(options, wanted, std::move(*tableau));
-  integration.initial_mode = std::move(forced);
-  if (system.freezing) integration.clock = static_cast<std::size_t>(system.freezing->clock);
-  integration.pieces = options.continuous && !integration.clock;
+  auto integration = element_run_options(asked, wanted, std::move(*tableau));
   integration.record_elements = values > 0.0 && values <= most_recorded_values;
-  if (is_at_times(options.output)) {
-    integration.rows = fesd_integrator::IntegrationOptions::Rows::at_times;
-    integration.times = std::move(times);
-  }
   std::optional<adapters::IpoptSolver> ipopt;
   std::optional<fesd_integrator::StepProblem> step_problem;
   const auto make_problem = [&]() -> Expected<fesd_integrator::StepProblem*> {
     if (step_problem) return &*step_problem;
-    const SymbolicLock lock;  // the run has let go of it
+    const SymbolicLock again;  // the run has let go of it
     ipopt.emplace();
     auto made =
         fesd_integrator::StepProblem::make(*dcs, system.parameter_values, integration.tableau, fesd_options(wanted),
@@ -118,16 +106,20 @@ Expected<result::Result> simulate_elements(const model::System& system, const Si
   } else if (detected) {
     integration.fallback = [&] { return make_problem().value_or(nullptr); };
   }
-  const auto observer = step_observer(observers, {integration.from, integration.until});
+  const auto observer = step_observer(asked.observers, {integration.from, integration.until});
   auto run = fesd_integrator::integrate(system, *dcs, integration, observer);
   if (!run) return tl::unexpected(run.error());
   add_vanishing_norm(system, *run);
-  auto solution = std::move(run->solution);
-  frame = with_run(std::move(frame), std::move(*run));
-  if (options.continuous) frame.continuous = continuous(frame.trajectory, system, options, std::move(solution));
-  if (!options.event_rows) leave_out_event_rows(integration.times, frame.trajectory);
-  frame.statistics.wall_seconds = stopwatch.seconds();
-  return frame;
+  auto result = asked.frame;
+  add_run(*run, result);
+  result.sensitivities = std::move(run->sensitivities);
+  result.elements = std::move(run->elements);
+  if (options.continuous) {
+    result.continuous = continuous(result.trajectory, system, options, std::move(run->solution));
+  }
+  if (!options.event_rows) leave_out_event_rows(asked.times, result.trajectory);
+  result.statistics.wall_seconds = stopwatch.seconds();
+  return result;
 }
 
 }  // namespace saltus::pipeline

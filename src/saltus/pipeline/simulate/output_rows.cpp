@@ -4,27 +4,22 @@
 #include <variant>
 
 #include "saltus/pipeline/options/option_fields.hpp"
-#include "saltus/pipeline/output_rows_internal.hpp"
+#include "saltus/pipeline/simulate/output_rows_internal.hpp"
 
 namespace saltus::pipeline {
-event_integrator::OutputTimes output_times(const OutputGrid& grid, double from, double until) {
-  event_integrator::OutputTimes output;
-  if (std::holds_alternative<Automatic>(grid)) output.straight = straight_share;
-  if (!is_at_times(grid)) return output;
-  output.rows = event_integrator::OutputTimes::Rows::at_times;
-  if (const auto* at = std::get_if<AtTimes>(&grid)) {
-    output.times = at->times;
-    return output;
-  }
+std::vector<double> row_times(const OutputGrid& grid, double from, double until) {
+  if (!is_at_times(grid)) return {};
+  if (const auto* at = std::get_if<AtTimes>(&grid)) return at->times;
+  std::vector<double> times;
   const auto* points = std::get_if<NumberOfPoints>(&grid);
   const auto* every = std::get_if<EveryInterval>(&grid);
   const double count = number_of_rows(grid, from, until) - 1.0;
   for (double i = 0.0; i <= count; i += 1.0) {
     const double t = points ? from + (until - from) * (i / count) : from + i * every->interval;
     // The last multiple may miss `until` by its rounding: one row, not two.
-    output.times.push_back(until - t <= 1e-12 * (until - from) ? until : t);
+    times.push_back(until - t <= 1e-12 * (until - from) ? until : t);
   }
-  return output;
+  return times;
 }
 
 void leave_out_event_rows(const std::vector<double>& times, result::Trajectory& rows) {

@@ -3,7 +3,7 @@
 #include <deque>
 #include <utility>
 
-#include "saltus/pipeline/branches_internal.hpp"
+#include "saltus/pipeline/simulate/branches_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

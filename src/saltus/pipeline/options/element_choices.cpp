@@ -1,4 +1,4 @@
-#include "saltus/pipeline/element_choices_internal.hpp"
+#include "saltus/pipeline/options/element_choices_internal.hpp"
 
 namespace saltus::pipeline {
 
@@ -18,6 +18,18 @@ discretization::FesdOptions fesd_options(const ElementOptions& wanted) {
           .gamma_h = wanted.step_bounds,
           .rho_h = wanted.rho,
           .sigma_h = wanted.equilibration_scale};
+}
+
+evaluation::NativeCode native_code(Native native) {
+  switch (native) {
+    case Native::automatic:
+      return evaluation::NativeCode::automatic;
+    case Native::on:
+      return evaluation::NativeCode::on;
+    case Native::off:
+      return evaluation::NativeCode::off;
+  }
+  __builtin_unreachable();
 }
 
 }  // namespace saltus::pipeline

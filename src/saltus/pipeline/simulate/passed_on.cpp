@@ -4,8 +4,8 @@
 #include <numeric>
 #include <utility>
 
-#include "saltus/pipeline/output_rows_internal.hpp"
-#include "saltus/pipeline/passed_on_internal.hpp"
+#include "saltus/pipeline/simulate/output_rows_internal.hpp"
+#include "saltus/pipeline/simulate/passed_on_internal.hpp"
 #include "saltus/result/kept_columns.hpp"
 
 namespace saltus::pipeline {

@@ -17,7 +17,7 @@ namespace saltus::pipeline {
 [[nodiscard]] Expected<std::optional<result::KeptColumns>> kept_columns(const result::Result& frame,
                                                                         const KeptNames& names);
 
-/// Leaves these columns of a result, and of its branches, that has all; bodies are drawn before.
-void keep_columns(const model::System& system, const result::KeptColumns& kept, result::Result& result);
+/// Leaves the columns Result::kept of a result that has all, and of its branches; bodies are drawn before.
+void keep_columns(const model::System& system, result::Result& result);
 
 }  // namespace saltus::pipeline

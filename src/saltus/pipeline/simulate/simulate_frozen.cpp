@@ -7,12 +7,13 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/decisions.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
-#include "saltus/pipeline/output_rows_internal.hpp"
-#include "saltus/pipeline/simulate_elements_internal.hpp"
+#include "saltus/pipeline/continuous/continuous_internal.hpp"
+#include "saltus/pipeline/simulate/methods_internal.hpp"
+#include "saltus/pipeline/simulate/output_rows_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
-#include "saltus/pipeline/time_freezing/simulate_frozen_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -54,10 +55,41 @@ void put_on_times(const std::vector<double>& times, double until, const std::set
   }
 }
 
+/// The first row, the last, and both of every event: others are at values of a clock to its rounding.
+result::Trajectory rows_at_events(result::Trajectory rows) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < rows.t.size(); ++i) {
+    const bool last = i + 1 == rows.t.size();
+    if (i == 0 || last || side(rows, i) == 1 || side(rows, i + 1) == 1) kept.push_back(i);
+  }
+  rows.keep(kept);
+  return rows;
+}
+
+/// Says of a run in numerical time how it ended at the time that its clock has reached.
+void restate_status(double reached, double until, result::Result& run) {
+  auto& status = run.status;
+  const bool ended = status.termination == result::Termination::stopped_by_event && !run.events.empty() &&
+                     run.events.back().name == "end";
+  if (ended) {
+    run.events.pop_back();
+    status.termination = result::Termination::completed;
+    status.message.clear();
+  } else if (status.termination == result::Termination::completed) {
+    status.termination = result::Termination::not_converged;
+    status.message = "the clock stands still";
+  } else if (status.termination != result::Termination::stopped_by_event && !status.message.empty()) {
+    status.message += fmt::format(" (t is numerical time here; the clock shows {:.10g})", reached);
+  }
+  status.time_reached = ended ? until : reached;
+}
+
 }  // namespace
 
-Expected<result::Result> simulate_frozen(const model::System& system, const SimulateOptions& options,
-                                         std::vector<double> times, result::Result frame, const Observers& observers) {
+Expected<result::Result> simulate_frozen(const Simulation& asked) {
+  const SymbolicLock lock;  // systems are made and dropped
+  const auto& system = asked.system;
+  const auto& options = asked.options;
   const auto& frozen = system.frozen->system;
   if (!frozen) return tl::unexpected(frozen.error());
   if (options.method != Method::fesd) {
@@ -73,35 +105,27 @@ Expected<result::Result> simulate_frozen(const model::System& system, const Simu
   if (auto error = model::find_stale(made)) return tl::unexpected(*error);
   SimulateOptions numerical = options;
   numerical.event_rows = true;
-  Expected<result::Result> run = frame;
+  numerical.continuous = false;
+  const Simulation stated{made, numerical, asked.observers, asked.frame, asked.times, {}};
+  Expected<result::Result> run = asked.frame;
   for (const double length : lengths) {
     numerical.until = from + length * (until - from);
     numerical.fesd.steps = static_cast<long>(std::ceil(length * static_cast<double>(options.fesd.steps)));
-    run = simulate_elements(made, numerical, times, {}, frame, observers);
+    run = simulate_elements(stated);
     if (!run || run->status.termination != result::Termination::completed) break;
   }
   if (!run) return run;
-  const double reached = run->final.x[at(made.freezing->clock)];
-  auto& status = run->status;
-  const bool ended = status.termination == result::Termination::stopped_by_event && !run->events.empty() &&
-                     run->events.back().name == "end";
-  if (ended) {
-    run->events.pop_back();
-    status.termination = result::Termination::completed;
-    status.message.clear();
-  } else if (status.termination == result::Termination::completed) {
-    status.termination = result::Termination::not_converged;
-    status.message = "the clock stands still";
-  } else if (status.termination != result::Termination::stopped_by_event && !status.message.empty()) {
-    status.message += fmt::format(" (t is numerical time here; the clock shows {:.10g})", reached);
-  }
-  status.time_reached = ended ? until : reached;
+  restate_status(run->final.x[at(made.freezing->clock)], until, *run);
   const double standing = standing_part * (until - from) / static_cast<double>(options.fesd.steps);
   run->switching_functions = to_physical_time(made, standing, *run);
   std::set<double> event_times;
-  for (std::size_t i = 0; options.event_rows && i < run->events.size(); ++i) event_times.insert(run->events.t(i));
-  put_on_times(times, until, event_times, run->trajectory);
-  if (!options.event_rows) leave_out_event_rows(times, run->trajectory);
+  const bool has_event_rows = options.event_rows || options.continuous;
+  for (std::size_t i = 0; has_event_rows && i < run->events.size(); ++i) event_times.insert(run->events.t(i));
+  put_on_times(asked.times, until, event_times, run->trajectory);
+  if (options.continuous) {
+    run->continuous = continuous(rows_at_events(run->trajectory), system, options, nullptr);
+  }
+  if (!options.event_rows) leave_out_event_rows(asked.times, run->trajectory);
   run->final.t = run->trajectory.t.back();
   return run;
 }

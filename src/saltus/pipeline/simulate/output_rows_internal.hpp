@@ -4,7 +4,6 @@
 #include <variant>
 #include <vector>
 
-#include "saltus/event_integrator/integrate.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/result/result.hpp"
 
@@ -18,8 +17,8 @@ inline constexpr double straight_share = 1e-3;
   return !std::holds_alternative<Automatic>(grid) && !std::holds_alternative<EveryStep>(grid);
 }
 
-/// Returns the times of the rows that are asked for, beside those at events and the last one.
-[[nodiscard]] event_integrator::OutputTimes output_times(const OutputGrid& grid, double from, double until);
+/// Returns the times of the rows that are asked for, beside those at events and the last one; none for rows at steps.
+[[nodiscard]] std::vector<double> row_times(const OutputGrid& grid, double from, double until);
 
 /// Leaves one row at each time, that behind an event; of those that are not at one of `times` the last one only.
 /// @param times  ascending; empty: all times of rows stay

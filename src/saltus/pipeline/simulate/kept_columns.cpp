@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "saltus/pipeline/bodies/drawing.hpp"
-#include "saltus/pipeline/kept_columns_internal.hpp"
+#include "saltus/pipeline/simulate/kept_columns_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -40,11 +40,11 @@ Expected<std::optional<result::KeptColumns>> kept_columns(const result::Result& 
   return result::KeptColumns{std::move(*states), std::move(*functions)};
 }
 
-void keep_columns(const model::System& system, const result::KeptColumns& kept, result::Result& result) {
+void keep_columns(const model::System& system, result::Result& result) {
+  if (!result.kept) return;
   if (!result.drawing) result.drawing = drawing_of(system, system.parameter_values, result.trajectory);
-  result::keep_columns(kept, result.trajectory);
-  result.kept = kept;
-  for (auto& branch : result.branches) keep_columns(system, kept, branch);
+  result::keep_columns(*result.kept, result.trajectory);
+  for (auto& branch : result.branches) keep_columns(system, branch);
 }
 
 }  // namespace saltus::pipeline
