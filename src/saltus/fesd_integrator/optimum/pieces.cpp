@@ -1,3 +1,5 @@
+#include "saltus/fesd_integrator/optimum/pieces.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,16 +9,12 @@
 #include "saltus/fesd_integrator/element/element_piece.hpp"
 #include "saltus/fesd_integrator/element/projected_field.hpp"
 #include "saltus/fesd_integrator/watch/held_values.hpp"
-#include "saltus/pipeline/optimal_control/optimized_pieces_internal.hpp"
 
-namespace saltus::pipeline {
+namespace saltus::fesd_integrator {
 namespace {
 
 using discretization::OcpSolution;
 using discretization::SolvedElement;
-using fesd_integrator::ActiveSet;
-using fesd_integrator::Facts;
-using fesd_integrator::Part;
 
 /// Of an element's length to the mean of its interval; shorter ones are roundings of the solver.
 constexpr double vanishing_share = 1e-9;
@@ -130,8 +128,7 @@ class PieceMaker {
                                               const std::vector<double>& of_stage) {
     if (piece.set.sliding().empty()) return of_stage;
     std::vector<double> found = of_stage;
-    const double rounding =
-        fesd_integrator::ProjectedField::rounding_of_rates(std::max(piece.element.size, 1.0), piece.element.h);
+    const double rounding = ProjectedField::rounding_of_rates(std::max(piece.element.size, 1.0), piece.element.h);
     if (!projected_.solve(t, x.data(), piece.set, piece.held.data(), found.data(), rounding)) return of_stage;
     projected_.take_undetermined(piece.set, of_stage.data(), found.data());
     const bool inside = std::all_of(found.begin(), found.end(),
@@ -140,22 +137,12 @@ class PieceMaker {
   }
 
   const Facts& facts_;
-  fesd_integrator::ProjectedField projected_;
-  fesd_integrator::HeldValues held_;
+  ProjectedField projected_;
+  HeldValues held_;
   std::vector<int> modes_;  ///< of the last piece
 };
 
 }  // namespace
-
-std::vector<double> node_times(double from, const OcpSolution& solution) {
-  const auto intervals = solution.elements.size();
-  std::vector<double> times{from};
-  // As the elements' own times are added up.
-  for (const double speed : solution.speed_of_time) {
-    times.push_back(times.back() + speed * solution.horizon / static_cast<double>(intervals));
-  }
-  return times;
-}
 
 std::vector<OptimizedPiece> optimized_pieces(const OcpSolution& solution, const std::vector<double>& times,
                                              const discretization::StageKernel& kernel,
@@ -181,11 +168,10 @@ std::vector<OptimizedPiece> optimized_pieces(const OcpSolution& solution, const 
   return pieces;
 }
 
-std::shared_ptr<fesd_integrator::Solution> solution_of(const std::vector<OptimizedPiece>& pieces,
-                                                       const discretization::ButcherTableau& tableau,
-                                                       discretization::StageKernel kernel,
-                                                       discretization::PointFunctions functions, const Facts& facts) {
-  std::vector<fesd_integrator::ElementPiece> elements;
+std::shared_ptr<Solution> solution_of(const std::vector<OptimizedPiece>& pieces,
+                                      const discretization::ButcherTableau& tableau, discretization::StageKernel kernel,
+                                      discretization::PointFunctions functions, const Facts& facts) {
+  std::vector<ElementPiece> elements;
   for (const auto& piece : pieces) {
     auto element = piece.element;
     const std::size_t n_x = facts.n_x, n = kernel.selections();
@@ -196,10 +182,9 @@ std::shared_ptr<fesd_integrator::Solution> solution_of(const std::vector<Optimiz
     }
     elements.push_back({element.t, piece.end, true, std::move(element), piece.left, piece.set, {}, piece.held});
   }
-  fesd_integrator::IntegrationOptions options;
+  IntegrationOptions options;
   options.tableau = tableau;
-  return std::make_shared<fesd_integrator::Solution>(std::move(kernel), std::move(functions), facts, options,
-                                                     std::move(elements));
+  return std::make_shared<Solution>(std::move(kernel), std::move(functions), facts, options, std::move(elements));
 }
 
-}  // namespace saltus::pipeline
+}  // namespace saltus::fesd_integrator

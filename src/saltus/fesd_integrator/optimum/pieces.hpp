@@ -14,33 +14,30 @@
 #include "saltus/fesd_integrator/element/facts.hpp"
 #include "saltus/fesd_integrator/solution.hpp"
 
-namespace saltus::pipeline {
+namespace saltus::fesd_integrator {
 
 /// Holds an element that has a length.
 struct OptimizedPiece {
-  fesd_integrator::Element element;
+  Element element;
   double end = 0.0;  ///< its right end: where the next one begins
-  fesd_integrator::ActiveSet set;
+  ActiveSet set;
   std::vector<double> left, right;  ///< selections at its ends, limits from its inside
   std::vector<double> held;         ///< what is held in its interval
   bool is_frozen = false;           ///< time frozen by hand: the clock stands
 };
 
-/// Returns the left ends of the intervals in the time of the right-hand side, then the end of the last one.
-[[nodiscard]] std::vector<double> node_times(double from, const discretization::OcpSolution& solution);
-
-/// Leaves out elements that vanished (h < 1e-9 of the mean of their interval). Nothing is frozen yet.
+/// Returns the elements of the point, whose intervals have these left ends and the end of the last one. Leaves out
+/// elements that vanished (h < 1e-9 of the mean of their interval). Nothing is frozen yet.
 [[nodiscard]] std::vector<OptimizedPiece> optimized_pieces(const discretization::OcpSolution& solution,
                                                            const std::vector<double>& times,
                                                            const discretization::StageKernel& kernel,
                                                            const discretization::PointFunctions& functions,
-                                                           const fesd_integrator::Facts& facts);
+                                                           const Facts& facts);
 
 /// Returns what is between the ends of pieces; the functions are for this only from now on.
-[[nodiscard]] std::shared_ptr<fesd_integrator::Solution> solution_of(const std::vector<OptimizedPiece>& pieces,
-                                                                     const discretization::ButcherTableau& tableau,
-                                                                     discretization::StageKernel kernel,
-                                                                     discretization::PointFunctions functions,
-                                                                     const fesd_integrator::Facts& facts);
+[[nodiscard]] std::shared_ptr<Solution> solution_of(const std::vector<OptimizedPiece>& pieces,
+                                                    const discretization::ButcherTableau& tableau,
+                                                    discretization::StageKernel kernel,
+                                                    discretization::PointFunctions functions, const Facts& facts);
 
-}  // namespace saltus::pipeline
+}  // namespace saltus::fesd_integrator
