@@ -198,28 +198,27 @@ result::Elements recorded_elements(const std::vector<OptimizedPiece>& pieces, El
 
 Expected<OptimumRun> optimum_run(const model::System& system, const reformulation::Dcs& dcs,
                                  const discretization::OcpSolution& solution, const std::vector<double>& times,
-                                 const ButcherTableau& tableau, const std::optional<OptimumClock>& clock) {
+                                 const ButcherTableau& tableau, std::optional<std::size_t> clock) {
   auto kernel = discretization::StageKernel::compile(dcs, solution.parameters);
   if (!kernel) return tl::unexpected(kernel.error());
   auto functions = discretization::PointFunctions::compile(dcs, solution.parameters);
   if (!functions) return tl::unexpected(functions.error());
   const Facts known = facts(system, dcs);
   auto pieces = optimized_pieces(solution, times, *kernel, *functions, known);
-  if (clock) find_frozen(pieces, clock->state, solution.horizon);
+  if (clock) find_frozen(pieces, *clock, solution.horizon);
 
   OptimumRun run;
   Recording whole(*kernel, *functions, known, tableau);
   whole.record(pieces, Recording::Pieces::all);
   run.events_of_all = whole.recorder().event_list();
-  run.elements =
-      recorded_elements(pieces, {*kernel, known, tableau}, clock ? std::optional(clock->state) : std::nullopt);
+  run.elements = recorded_elements(pieces, {*kernel, known, tableau}, clock);
   Recording moving(*kernel, *functions, known, tableau);
-  const bool leaves_out = clock && clock->frozen == FrozenPieces::left_out;
-  if (leaves_out) {
+  const bool by_hand = clock && !system.freezing;
+  if (by_hand) {
     moving.record(pieces, Recording::Pieces::moving);
-    moving.set_clock(clock->state);
+    moving.set_clock(*clock);
   }
-  Recorder& shown = leaves_out ? moving.recorder() : whole.recorder();
+  Recorder& shown = by_hand ? moving.recorder() : whole.recorder();
   run.final = shown.last();
   run.events = std::move(shown.event_list());
   run.trajectory = std::move(shown.trajectory());

@@ -19,7 +19,6 @@ namespace saltus::fesd_integrator {
 /// Of the horizon: a clock that gains less in an element stands.
 inline constexpr double standing_clock = 1e-9;
 
-/// Holds rows and events in the time of the right-hand side, but for those of FrozenPieces::left_out.
 struct OptimumRun {
   result::Trajectory trajectory;
   result::Events events;
@@ -29,23 +28,16 @@ struct OptimumRun {
   std::shared_ptr<Solution> solution;  ///< null with a clock
 };
 
-/// Says what becomes of elements in which a clock stands: with `left_out` rows and events are at times of the clock.
-enum class FrozenPieces { shown, left_out };
-
-/// Names the state that is physical time.
-struct OptimumClock {
-  std::size_t state = 0;
-  FrozenPieces frozen = FrozenPieces::shown;
-};
-
 /// Reads the sides of the pairs of an element off its sums over the stages: the smaller one is zero. Rows are at stages
 /// and ends of elements, events where the active set changes; elements have the complementarities at their points.
 /// @param system  with the parameters, the initial state and the controls of the solution
 /// @param times   left ends of the intervals in the time of the right-hand side, then the end of the last one
+/// @param clock   state that is physical time: frozen by hand, rows and events are at its times and those of frozen
+///                pieces are left out; of a system with `freezing` all of them are there, in the time of the others
 [[nodiscard]] Expected<OptimumRun> optimum_run(const model::System& system, const reformulation::Dcs& dcs,
                                                const discretization::OcpSolution& solution,
                                                const std::vector<double>& times,
                                                const discretization::ButcherTableau& tableau,
-                                               const std::optional<OptimumClock>& clock);
+                                               std::optional<std::size_t> clock);
 
 }  // namespace saltus::fesd_integrator

@@ -1,6 +1,7 @@
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -100,12 +101,8 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   system = model::with_controls(std::move(system), {times.begin(), times.end() - 1}, solution.controls);
   const auto dcs = reformulation::reformulate(system, form);
   if (!dcs) return tl::unexpected(dcs.error());
-  std::optional<fesd_integrator::OptimumClock> clock;
-  if (ocp.clock) {
-    const bool by_hand = !ocp.system.freezing;
-    clock = {at(ocp.clock->state),
-             by_hand ? fesd_integrator::FrozenPieces::left_out : fesd_integrator::FrozenPieces::shown};
-  }
+  std::optional<std::size_t> clock;
+  if (ocp.clock) clock = at(ocp.clock->state);
   auto read = fesd_integrator::optimum_run(system, *dcs, solution, times, tableau, clock);
   if (!read) return tl::unexpected(read.error());
 
