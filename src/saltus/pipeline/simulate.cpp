@@ -17,6 +17,7 @@
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/model/decisions.hpp"
 #include "saltus/model/mechanics/contacts_at_start.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/branches_internal.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
@@ -251,8 +252,7 @@ Expected<result::Result> simulated(const model::System& system, const SimulateOp
       passing.emplace(observers, of_parts, options.event_rows ? nullptr : &integration.output.times);
       take = [&](result::Trajectory rows, result::Events events) { passing->take(std::move(rows), std::move(events)); };
     }
-    auto run = integrand->restated(
-        event_integrator::integrate(kept->kernel, integrand->system(), integration, observer, take));
+    auto run = integrand->restated(event_integrator::integrate(kept->kernel, integration, observer, take));
     Followed followed{frame(system, options), std::move(run.branch_points), std::move(run.family_numbers), run.chosen};
     auto& result = followed.result;
     result.families = std::move(run.families);
