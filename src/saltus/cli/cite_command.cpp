@@ -12,6 +12,7 @@
 #include "saltus/cli/model_input.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::cli {
 namespace {

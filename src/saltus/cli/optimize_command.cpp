@@ -16,6 +16,7 @@
 #include "saltus/cli/text/source_excerpt.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/model/ocp.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/optimal_control/optimize.hpp"
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/report/mpcc_table.hpp"

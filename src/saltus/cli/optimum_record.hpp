@@ -2,8 +2,11 @@
 #pragma once
 
 #include "saltus/cli/model_input.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::cli {
 

@@ -17,6 +17,7 @@
 #include "saltus/cli/text/source_excerpt.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/vector_field.hpp"
 #include "saltus/report/table.hpp"
 #include "saltus/result/cause.hpp"

@@ -21,6 +21,7 @@
 #include "saltus/cli/sweep/sweep_warnings.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/io/atomic_file.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 
 namespace saltus::cli {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "saltus/discretization/fesd_options.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
-#include "saltus/reformulation/dcs.hpp"
+#include "saltus/reformulation/reformulation_options.hpp"
 
 namespace saltus::pipeline {
 

@@ -1,7 +1,9 @@
 #include <utility>
 
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/integrand_internal.hpp"
+#include "saltus/smoothed/regularise.hpp"
 #include "saltus/smoothed/restate.hpp"
 
 namespace saltus::pipeline {
@@ -18,15 +20,17 @@ Expected<Integrand> Integrand::make(const model::System& system, const SimulateO
   if (options.method != Method::smoothed) return Integrand(system);
   const SymbolicLock lock;
   return smoothed::regularise(system, options.smoothed.epsilon).map([](auto regularisation) {
-    return Integrand(std::move(regularisation));
+    const auto drop = [](const smoothed::Regularisation* made) {
+      const SymbolicLock held;
+      delete made;
+    };
+    return Integrand(
+        std::shared_ptr<const smoothed::Regularisation>(new smoothed::Regularisation(std::move(regularisation)), drop));
   });
 }
 
-Integrand::~Integrand() {
-  if (!regularisation_) return;
-  const SymbolicLock lock;
-  regularisation_.reset();
-}
+Integrand::Integrand(std::shared_ptr<const smoothed::Regularisation> regularisation)
+    : system_(&regularisation->system), regularisation_(std::move(regularisation)) {}
 
 std::size_t Integrand::selections() const {
   if (!regularisation_) return 0;

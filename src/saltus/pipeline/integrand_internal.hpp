@@ -3,13 +3,17 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 
 #include "saltus/base/error.hpp"
 #include "saltus/event_integrator/integrate.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
-#include "saltus/smoothed/regularise.hpp"
+
+namespace saltus::model {
+struct System;
+}
+namespace saltus::smoothed {
+struct Regularisation;
+}
 
 namespace saltus::pipeline {
 
@@ -20,10 +24,8 @@ namespace saltus::pipeline {
 class Integrand {
  public:
   [[nodiscard]] static Expected<Integrand> make(const model::System& system, const SimulateOptions& options);
-  Integrand(Integrand&&) = default;
-  ~Integrand();
 
-  [[nodiscard]] const model::System& system() const { return regularisation_ ? regularisation_->system : *system_; }
+  [[nodiscard]] const model::System& system() const { return *system_; }
   /// Returns how many of the last outputs are selections.
   [[nodiscard]] std::size_t selections() const;
   [[nodiscard]] event_integrator::ThinLayers layers() const;
@@ -34,10 +36,10 @@ class Integrand {
 
  private:
   explicit Integrand(const model::System& system) : system_(&system) {}
-  explicit Integrand(smoothed::Regularisation regularisation) : regularisation_(std::move(regularisation)) {}
+  explicit Integrand(std::shared_ptr<const smoothed::Regularisation> regularisation);
 
   const model::System* system_ = nullptr;
-  std::optional<smoothed::Regularisation> regularisation_;
+  std::shared_ptr<const smoothed::Regularisation> regularisation_;  ///< null for the system itself
 };
 
 }  // namespace saltus::pipeline

@@ -41,7 +41,7 @@ Expected<std::optional<result::KeptColumns>> kept_columns(const result::Result& 
 }
 
 void keep_columns(const model::System& system, const result::KeptColumns& kept, result::Result& result) {
-  if (!result.drawing) result.drawing = drawing_of(system, system.parameter_values, result.trajectory);
+  if (!result.drawing) result.drawing = drawing_of(system, result.trajectory);
   result::keep_columns(kept, result.trajectory);
   result.kept = kept;
   for (auto& branch : result.branches) keep_columns(system, kept, branch);

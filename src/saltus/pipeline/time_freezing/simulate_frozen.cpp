@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/model/decisions.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate_elements_internal.hpp"

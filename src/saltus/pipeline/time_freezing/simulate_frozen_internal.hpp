@@ -4,10 +4,13 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 
