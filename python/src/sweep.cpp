@@ -19,6 +19,7 @@
 #include "saltus/cli/sweep/sweep_input.hpp"
 #include "saltus/cli/sweep/sweep_table.hpp"
 #include "saltus/cli/sweep/sweep_warnings.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 #include "watch.hpp"
 
 namespace nb = nanobind;
