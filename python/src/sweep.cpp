@@ -19,6 +19,7 @@
 #include "saltus/frontend/sweep/sweep_input.hpp"
 #include "saltus/frontend/sweep/sweep_table.hpp"
 #include "saltus/frontend/sweep/sweep_warnings.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 #include "watch.hpp"
 
 namespace nb = nanobind;

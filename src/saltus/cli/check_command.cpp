@@ -19,6 +19,8 @@
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/model/mechanics/contacts_at_start.hpp"
+#include "saltus/model/summary.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -74,7 +76,7 @@ ExitCode run_check(const CheckArguments& arguments) {
   }
   const auto optimization = frontend::optimize_overview(*input);
   if (!optimization) return refuse_model(arguments, optimization.error(), *text);
-  auto overview = io::overview_of(input->file.description, *system, input->file.captions);
+  auto overview = io::overview_of(input->file.description, model::summary_of(*system), input->file.captions);
   if (arguments.json) {
     overview.forms = frontend::complementarity_forms(*system);
     print(io::check_json(text->path, {}, &overview, *optimization ? &**optimization : nullptr));

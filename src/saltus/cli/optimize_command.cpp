@@ -16,6 +16,7 @@
 #include "saltus/frontend/model_input.hpp"
 #include "saltus/frontend/optimum_record.hpp"
 #include "saltus/model/ocp.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/optimal_control/optimize.hpp"
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/report/mpcc_table.hpp"

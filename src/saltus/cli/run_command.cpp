@@ -17,6 +17,7 @@
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/frontend/model_input.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/vector_field.hpp"
 #include "saltus/report/table.hpp"
 #include "saltus/result/cause.hpp"

@@ -14,9 +14,12 @@
 #include "saltus/cli/outputs.hpp"
 #include "saltus/frontend/model_input.hpp"
 #include "saltus/io/toml/toml_model.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace CLI {
 class App;

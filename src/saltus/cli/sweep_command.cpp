@@ -21,6 +21,7 @@
 #include "saltus/frontend/sweep/sweep_table.hpp"
 #include "saltus/frontend/sweep/sweep_warnings.hpp"
 #include "saltus/io/atomic_file.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 
 namespace saltus::cli {
 namespace {

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/surfaces.hpp"
 
 namespace saltus::frontend {

@@ -5,8 +5,11 @@
 #include <string>
 
 #include "saltus/frontend/model_input.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::frontend {
 

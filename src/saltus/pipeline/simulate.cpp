@@ -7,6 +7,7 @@
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/decisions.hpp"
 #include "saltus/model/mechanics/contacts_at_start.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/simulate/dropped_under_lock_internal.hpp"
 #include "saltus/pipeline/simulate/methods_internal.hpp"

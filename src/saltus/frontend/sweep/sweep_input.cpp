@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saltus/model/build.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 
 namespace saltus::frontend {
 namespace {

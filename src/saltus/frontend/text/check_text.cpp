@@ -6,6 +6,8 @@
 #include "saltus/frontend/text/overview_text.hpp"
 #include "saltus/frontend/text/reformulation_text.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/summary.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/reformulation/dcs.hpp"
 #include "saltus/smoothed/regularise.hpp"
@@ -50,7 +52,7 @@ Expected<std::string> check_text(const ModelInput& input) {
   if (!system) return tl::unexpected(system.error());
   const auto optimization = optimize_overview(input);
   if (!optimization) return tl::unexpected(optimization.error());
-  const auto overview = io::overview_of(input.file.description, *system, input.file.captions);
+  const auto overview = io::overview_of(input.file.description, model::summary_of(*system), input.file.captions);
   return check_text(input, *system, overview, *optimization);
 }
 

@@ -7,8 +7,11 @@
 #include "saltus/base/error.hpp"
 #include "saltus/frontend/model_input.hpp"
 #include "saltus/io/check/model_overview.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/optimal_control/describe_ocp.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::frontend {
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/well_posedness.hpp"
 #include "saltus/reformulation/sizes.hpp"

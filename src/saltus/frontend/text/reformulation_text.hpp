@@ -6,8 +6,11 @@
 #include <vector>
 
 #include "saltus/io/check/model_overview.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::frontend {
 

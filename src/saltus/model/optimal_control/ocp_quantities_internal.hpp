@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "saltus/model/description.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/model/statement/build_internal.hpp"
 

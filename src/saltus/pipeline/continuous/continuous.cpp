@@ -10,11 +10,11 @@
 namespace saltus::pipeline {
 namespace {
 
-/// Another kernel of what is compiled, with the parameters of a system.
+/// Another kernel of what is compiled, with the values of a system.
 Expected<evaluation::ModelKernel> kernel_of(const std::shared_ptr<evaluation::CompiledModel>& compiled,
                                             const EventRun& run) {
   auto kernel = evaluation::ModelKernel::of(compiled, run.native);
-  if (!kernel || kernel->set_parameters(run.system->parameter_values)) return kernel;
+  if (!kernel || kernel->set_values(*run.system)) return kernel;
   return evaluation::ModelKernel::compile(*run.system, run.native);
 }
 
@@ -36,7 +36,7 @@ class EventInterior final : public result::Interior {
     if (!solution_) {
       auto kernel = kernel_of(compiled_, run_);
       if (!kernel) return {};
-      solution_.emplace(pieces_, std::move(*kernel), *run_.system);
+      solution_.emplace(pieces_, std::move(*kernel));
     }
     return restated(solution_->rows(times));
   }
@@ -46,7 +46,7 @@ class EventInterior final : public result::Interior {
     if (!kernel) return tl::unexpected(kernel.error());
     auto options = run_.options;
     options.output = {event_integrator::OutputTimes::Rows::at_times, times};
-    auto again = event_integrator::integrate(*kernel, *run_.system, options, until(times.back(), observer));
+    auto again = event_integrator::integrate(*kernel, options, until(times.back(), observer));
     return restated(std::move(again.trajectory));
   }
 

@@ -12,6 +12,7 @@
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/decisions.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/optimal_control/advice_internal.hpp"

@@ -4,7 +4,7 @@
 #include "saltus/discretization/fesd_options.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
-#include "saltus/reformulation/dcs.hpp"
+#include "saltus/reformulation/reformulation_options.hpp"
 
 namespace saltus::pipeline {
 

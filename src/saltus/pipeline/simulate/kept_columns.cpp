@@ -42,7 +42,7 @@ Expected<std::optional<result::KeptColumns>> kept_columns(const result::Result& 
 
 void keep_columns(const model::System& system, result::Result& result) {
   if (!result.kept) return;
-  if (!result.drawing) result.drawing = drawing_of(system, system.parameter_values, result.trajectory);
+  if (!result.drawing) result.drawing = drawing_of(system, result.trajectory);
   result::keep_columns(*result.kept, result.trajectory);
   for (auto& branch : result.branches) keep_columns(system, branch);
 }

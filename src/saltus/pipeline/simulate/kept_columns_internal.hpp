@@ -4,9 +4,12 @@
 #include <optional>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 

@@ -7,6 +7,7 @@
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/step_problem.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/model/vanishing_norm.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"

@@ -62,7 +62,7 @@ class Trajectories {
       passing.emplace(asked_.observers, asked_.frame, asked_.options.event_rows ? nullptr : &asked_.times);
       take = [&](result::Trajectory rows, result::Events events) { passing->take(std::move(rows), std::move(events)); };
     }
-    auto run = event_integrator::integrate(kernel_, own_ ? *own_ : asked_.system, options_, observer, take);
+    auto run = event_integrator::integrate(kernel_, options_, observer, take);
     Followed followed{asked_.frame, std::move(run.branch_points), std::move(run.family_numbers), run.chosen};
     auto& result = followed.result;
     add_run(run, result);

@@ -9,6 +9,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/decisions.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/simulate/methods_internal.hpp"

@@ -84,7 +84,7 @@ Expected<result::Result> simulate_smoothed(const Simulation& asked, KernelStore&
   integration.layers = layers_of(*regularisation);
   integration.output.selections = selections_of(*regularisation);
   const auto observer = step_observer(asked.observers, {integration.from, integration.until});
-  auto run = event_integrator::integrate(kept->kernel, *system, integration, observer);
+  auto run = event_integrator::integrate(kept->kernel, integration, observer);
   restate_run(*regularisation, run);
   auto result = asked.frame;
   add_run(run, result);

@@ -1,10 +1,11 @@
-#include "saltus/evaluation/guard_words.hpp"
+#include "saltus/evaluation/surfaces/guard_words.hpp"
 
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
 namespace {

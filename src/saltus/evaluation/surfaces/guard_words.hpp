@@ -4,7 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "saltus/model/system.hpp"
+namespace saltus::model {
+struct Jump;
+struct System;
+}  // namespace saltus::model
 
 namespace saltus::evaluation {
 

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "saltus/model/system.hpp"
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::evaluation {
 

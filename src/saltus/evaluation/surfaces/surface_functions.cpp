@@ -1,4 +1,4 @@
-#include "saltus/evaluation/surface_functions.hpp"
+#include "saltus/evaluation/surfaces/surface_functions.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,8 +9,9 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
-#include "saltus/evaluation/guard_words.hpp"
+#include "saltus/evaluation/surfaces/guard_words.hpp"
 #include "saltus/model/graph/model_function.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::evaluation {
 
