@@ -40,8 +40,7 @@ class Model {
     auto input = input_;
     for (const auto& setting : request.settings) value_or_raise(frontend::apply_setting(input, setting));
     for (const auto& [key, value, written] : request.options) {
-      value_or_raise(io::set_option(input.file, key, value, {written, 0, 0}));
-      input.settings.push_back(key + "=" + value);
+      value_or_raise(frontend::apply_option(input, key, value, written));
     }
     return input;
   }

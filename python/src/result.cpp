@@ -17,7 +17,7 @@
 #include "parts.hpp"
 #include "saltus/base/at.hpp"
 #include "saltus/frontend/catalogue.hpp"
-#include "saltus/frontend/text/difference_text.hpp"
+#include "saltus/frontend/difference_text.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/pipeline/vector_field.hpp"

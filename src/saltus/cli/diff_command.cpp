@@ -7,7 +7,7 @@
 #include "saltus/base/text.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/text/terminal.hpp"
-#include "saltus/frontend/text/difference_text.hpp"
+#include "saltus/frontend/difference_text.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/result/difference.hpp"
 

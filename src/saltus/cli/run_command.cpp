@@ -203,9 +203,8 @@ Expected<frontend::ModelInput> stated_model(const RunArguments& arguments) {
 Expected<void> apply_shortcuts(const RunArguments& arguments, frontend::ModelInput& input) {
   for (const auto& [shortcut, value] : arguments.shortcuts) {
     if (!value) continue;
-    const SourceLocation typed{fmt::format("{} {}", shortcut.flag, *value), 0, 0};
-    if (auto done = io::set_option(input.file, shortcut.key, *value, typed); !done) return done;
-    input.settings.push_back(fmt::format("{}={}", shortcut.key, *value));
+    const auto typed = fmt::format("{} {}", shortcut.flag, *value);
+    if (auto done = frontend::apply_option(input, shortcut.key, *value, typed); !done) return done;
   }
   return {};
 }

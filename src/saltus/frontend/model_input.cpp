@@ -102,6 +102,13 @@ Expected<void> apply_setting(ModelInput& input, const std::string& setting) {
   return {};
 }
 
+Expected<void> apply_option(ModelInput& input, const std::string& key, const std::string& value,
+                            const std::string& written) {
+  if (auto done = io::set_option(input.file, key, value, {written, 0, 0}); !done) return done;
+  input.settings.push_back(fmt::format("{}={}", key, value));
+  return {};
+}
+
 Expected<ModelText> read_model_text(const std::string& model) {
   const auto path = find_model(model);
   if (!path) return tl::unexpected(path.error());

@@ -36,6 +36,11 @@ struct ModelInput {
 /// Applies one of these settings, which is noted.
 [[nodiscard]] Expected<void> apply_setting(ModelInput& input, const std::string& setting);
 
+/// Sets an option by its key, which is noted as such a setting.
+/// @param written  what was typed, for messages
+[[nodiscard]] Expected<void> apply_option(ModelInput& input, const std::string& key, const std::string& value,
+                                          const std::string& written);
+
 /// Says whether a command runs the method that was chosen, or several.
 enum class RunMethods { chosen, several };
 

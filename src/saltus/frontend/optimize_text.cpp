@@ -1,4 +1,4 @@
-#include "saltus/frontend/text/optimize_text.hpp"
+#include "saltus/frontend/optimize_text.hpp"
 
 #include <cstddef>
 #include <string_view>

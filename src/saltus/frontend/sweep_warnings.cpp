@@ -1,4 +1,4 @@
-#include "saltus/frontend/sweep/sweep_warnings.hpp"
+#include "saltus/frontend/sweep_warnings.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -7,9 +7,9 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/frontend/model_input.hpp"
-#include "saltus/frontend/sweep/page.hpp"
-#include "saltus/frontend/sweep/sweep_plan.hpp"
-#include "saltus/frontend/sweep/sweep_table.hpp"
+#include "saltus/frontend/sweep_page.hpp"
+#include "saltus/frontend/sweep_plan.hpp"
+#include "saltus/frontend/sweep_table.hpp"
 
 namespace saltus::frontend {
 

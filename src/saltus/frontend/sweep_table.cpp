@@ -1,4 +1,4 @@
-#include "saltus/frontend/sweep/sweep_table.hpp"
+#include "saltus/frontend/sweep_table.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "saltus/frontend/sweep/sweep_plan.hpp"
-#include "saltus/frontend/sweep/sweep_table.hpp"
+#include "saltus/frontend/sweep_plan.hpp"
+#include "saltus/frontend/sweep_table.hpp"
 #include "saltus/result/caption.hpp"
 
 namespace saltus::frontend {

@@ -1,4 +1,4 @@
-#include "saltus/frontend/text/difference_text.hpp"
+#include "saltus/frontend/difference_text.hpp"
 
 #include <algorithm>
 #include <string_view>

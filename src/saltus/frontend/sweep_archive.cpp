@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "saltus/frontend/sweep/sweep_table.hpp"
+#include "saltus/frontend/sweep_table.hpp"
 #include "saltus/io/zip/npy.hpp"
 #include "saltus/io/zip/zip_stream.hpp"
 

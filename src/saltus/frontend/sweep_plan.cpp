@@ -1,4 +1,4 @@
-#include "saltus/frontend/sweep/sweep_plan.hpp"
+#include "saltus/frontend/sweep_plan.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/frontend/model_input.hpp"
-#include "saltus/frontend/sweep/sweep_plan.hpp"
+#include "saltus/frontend/sweep_plan.hpp"
 #include "saltus/pipeline/sweep.hpp"
 
 namespace saltus::frontend {

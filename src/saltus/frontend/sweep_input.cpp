@@ -1,4 +1,4 @@
-#include "saltus/frontend/sweep/sweep_input.hpp"
+#include "saltus/frontend/sweep_input.hpp"
 
 #include <algorithm>
 #include <utility>

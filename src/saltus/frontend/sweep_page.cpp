@@ -1,4 +1,4 @@
-#include "saltus/frontend/sweep/page.hpp"
+#include "saltus/frontend/sweep_page.hpp"
 
 #include <algorithm>
 #include <string_view>

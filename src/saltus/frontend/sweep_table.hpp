@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "saltus/frontend/sweep/sweep_plan.hpp"
+#include "saltus/frontend/sweep_plan.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/pipeline/sweep.hpp"
 

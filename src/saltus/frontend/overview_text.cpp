@@ -1,4 +1,4 @@
-#include "saltus/frontend/text/overview_text.hpp"
+#include "saltus/frontend/overview_text.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "saltus/frontend/text/reformulation_text.hpp"
+#include "saltus/frontend/reformulation_text.hpp"
 
 #include <algorithm>
 #include <string>

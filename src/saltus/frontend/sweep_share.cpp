@@ -1,4 +1,4 @@
-#include "saltus/frontend/sweep/share.hpp"
+#include "saltus/frontend/sweep_share.hpp"
 
 #include <algorithm>
 #include <array>

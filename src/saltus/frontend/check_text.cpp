@@ -1,10 +1,10 @@
-#include "saltus/frontend/text/check_text.hpp"
+#include "saltus/frontend/check_text.hpp"
 
 #include <fmt/format.h>
 
-#include "saltus/frontend/text/optimize_text.hpp"
-#include "saltus/frontend/text/overview_text.hpp"
-#include "saltus/frontend/text/reformulation_text.hpp"
+#include "saltus/frontend/optimize_text.hpp"
+#include "saltus/frontend/overview_text.hpp"
+#include "saltus/frontend/reformulation_text.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/model/summary.hpp"
 #include "saltus/model/system.hpp"
