@@ -23,8 +23,8 @@ model::System valves(double every) {
   model.input("u", SX(3));
   model.event(x - 5);
   model.event(greater(x, SX(2)) && less(x, SX(4)));
-  model.jump(greater(first, u), {{"second", 1 - second}}, {.name = "by number"});
-  model.jump(greater(x, first), {{"first", 1 - first}}, {.name = "by state"});
+  model.jump(greater(first, u), {{"second", 1 - second}}, {.name = "by_number"});
+  model.jump(greater(x, first), {{"first", 1 - first}}, {.name = "by_state"});
   model.jump_every(every, {{"second", SX(0)}}, {.name = "tick"});
   auto system = model.build();
   EXPECT_TRUE(system.has_value()) << (system ? "" : to_text(system.error()));
@@ -74,12 +74,12 @@ TEST(KernelLayout, MovesWithTheValuesOfASystem) {
 }
 
 TEST(KernelLayout, ExplanationsHaveTheValuesOfTheKernel) {
-  model::Builder model("slider");
+  model::Builder model("drag");
   const SX mu = model.parameter("mu", 0.5);
   const SX vx = model.state("vx", {3.0}), vy = model.state("vy", {4.0});
   const SX speed = sqrt(vx * vx + vy * vy);
-  model.dynamics("vx", -mu * vx / speed);
-  model.dynamics("vy", -mu * vy / speed);
+  model.dynamics("vx", -mu * vx * speed);
+  model.dynamics("vy", -mu * vy * speed);
   auto system = model.build();
   ASSERT_TRUE(system.has_value());
   const auto kernel = ModelKernel::compile(*system);
