@@ -1,11 +1,11 @@
-# saltus_module(NAME [HEAVY_HEADERS] [FACE] [COLD] [LINKS other modules…] [PUBLIC_LIBRARIES …] [PRIVATE_LIBRARIES …])
+# saltus_module(NAME [HEAVY_HEADERS] [FACE] [COLD|HOT] [LINKS other modules…] [PUBLIC_LIBRARIES …] [PRIVATE_LIBRARIES …])
 # One static library saltus_NAME (outside: saltus::NAME) from src/saltus/NAME; headers not ending in _internal.hpp are
 # public and installed. HEAVY_HEADERS: they include CasADi, so the check that each header compiles alone leaves them out.
 # FACE: only the headers at the module's root are installed, those in its rooms are its own.
-# COLD: no run spends its time there, so SALTUS_COLD_OPTIONS may make its compilation fast.
+# COLD: no run spends its time there, so SALTUS_COLD_OPTIONS may make its compilation fast. HOT: runs spend it there.
 # A module inside a folder of modules (adapters/ipopt) is called by its last name: saltus_ipopt, saltus::ipopt.
 function(saltus_module folder)
-  cmake_parse_arguments(arg "HEAVY_HEADERS;FACE;COLD" "" "LINKS;PUBLIC_LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  cmake_parse_arguments(arg "HEAVY_HEADERS;FACE;COLD;HOT" "" "LINKS;PUBLIC_LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
   set(directory ${PROJECT_SOURCE_DIR}/src/saltus/${folder})
   get_filename_component(name ${folder} NAME)
   list(TRANSFORM arg_LINKS REPLACE ".*/" "")
@@ -20,8 +20,17 @@ function(saltus_module folder)
     set(visibility PUBLIC)
     set_target_properties(saltus_${name} PROPERTIES UNITY_BUILD ${SALTUS_JOINED_SOURCES})
     target_link_libraries(saltus_${name} PRIVATE fmt::fmt $<BUILD_INTERFACE:saltus_warnings> ${arg_PRIVATE_LIBRARIES})
+    set(options ${SALTUS_USUAL_OPTIONS})
     if(arg_COLD)
-      target_compile_options(saltus_${name} PRIVATE ${SALTUS_COLD_OPTIONS})
+      set(options ${SALTUS_COLD_OPTIONS})
+    elseif(arg_HOT)
+      set(options ${SALTUS_HOT_OPTIONS})
+    endif()
+    target_compile_options(saltus_${name} PRIVATE ${options})
+    if(arg_HEAVY_HEADERS)
+      saltus_share_headers(saltus_${name} SYMBOLIC ${options})
+    else()
+      saltus_share_headers(saltus_${name} PLAIN ${options})
     endif()
   else()
     add_library(saltus_${name} INTERFACE)

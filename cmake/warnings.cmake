@@ -1,8 +1,9 @@
 # Flags of our own targets: linked as $<BUILD_INTERFACE:saltus_warnings>, so nothing of this is ever exported.
+option(SALTUS_WARNINGS_AS_ERRORS "A warning of our own sources stops the build (developers only)" ON)
 add_library(saltus_warnings INTERFACE)
 if(SALTUS_DEVELOPER)
   target_compile_options(saltus_warnings INTERFACE
-    -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor -Werror)
+    -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor $<$<BOOL:${SALTUS_WARNINGS_AS_ERRORS}>:-Werror>)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # In the place of the sanitizer's check of alignment (preset sanitize).
     target_compile_options(saltus_warnings INTERFACE -Wcast-align=strict)

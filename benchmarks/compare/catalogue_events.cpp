@@ -117,8 +117,8 @@ Cost cost_of(const std::vector<Interval>& intervals, const ClockCost& clock) {
 }
 
 /// No events if the run does not complete.
-Cost measure(evaluation::ModelKernel& kernel, const model::System& system,
-             const event_integrator::IntegrationOptions& options, const ClockCost& clock) {
+Cost measure(evaluation::ModelKernel& kernel, const event_integrator::IntegrationOptions& options,
+             const ClockCost& clock) {
   std::vector<Interval> intervals;
   const auto begin = Clock::now();
   for (int run = 0; run < fewest_runs || (run < most_runs && nanoseconds_since(begin) < 1e9 * wanted_seconds); ++run) {
@@ -137,7 +137,7 @@ Cost measure(evaluation::ModelKernel& kernel, const model::System& system,
       last = Clock::now();
       return event_integrator::Continue::yes;
     };
-    const auto result = event_integrator::integrate_compact(kernel, system, options, observe);
+    const auto result = event_integrator::integrate_compact(kernel, options, observe);
     if (result.status.termination != saltus::result::Termination::completed) return {};
   }
   return cost_of(intervals, clock);
@@ -147,16 +147,15 @@ Cost measure(evaluation::ModelKernel& kernel, const model::System& system,
 /// along it, the step once more up to there, and the right-hand sides on both sides. No search among several
 /// functions, no decision, nothing recorded. By the library's own steps, from the end of a run; NaN where that is not
 /// possible.
-double floor_of_events(evaluation::ModelKernel& kernel, const model::System& system,
-                       const event_integrator::IntegrationOptions& options) {
-  const auto result = event_integrator::integrate_compact(kernel, system, options, {});
+double floor_of_events(evaluation::ModelKernel& kernel, const event_integrator::IntegrationOptions& options) {
+  const auto result = event_integrator::integrate_compact(kernel, options, {});
   const auto& recording = result.recording;
   const auto n = static_cast<std::size_t>(kernel.states());
   const double t = recording.row_times.back();
   const std::vector<double> x(recording.row_states.end() - kernel.states(), recording.row_states.end());
   const double h = (t - options.from) / static_cast<double>(std::max(result.statistics.steps, 1L));
   event_integrator::ModeState region;
-  region.alpha.assign(system.switching.size(), 1.0);
+  region.alpha.assign(static_cast<std::size_t>(kernel.switching_functions()), 1.0);
   std::vector<double> values(static_cast<std::size_t>(kernel.event_functions()));
   kernel.functions(t, x.data(), region.alpha.data(), values.data());
   for (std::size_t j = 0; j < region.alpha.size(); ++j) {
@@ -258,15 +257,15 @@ int table(const std::filesystem::path& folder) {
     for (std::size_t m = 0; m < 2; ++m) {
       options.method = methods[m].method;
       options.output.rows = event_integrator::OutputTimes::Rows::at_times;
-      const Cost bare = measure(*kernel, *system, options, clock);
+      const Cost bare = measure(*kernel, options, clock);
       options.output.rows = event_integrator::OutputTimes::Rows::at_steps;
-      const Cost cost = measure(*kernel, *system, options, clock);
+      const Cost cost = measure(*kernel, options, clock);
       if (cost.events < fewest_events || cost.steps < fewest_steps || !(cost.step > 0.0)) continue;
       // What is left of spirals are the steps behind their limits, which are others.
       if (cost.steps < static_cast<std::size_t>(cost.events) / 4) continue;
       summaries[m].in_steps.push_back(cost.event / cost.step);
       summaries[m].in_bare_steps.push_back(bare.event / bare.step);
-      const double floor = floor_of_events(*kernel, *system, options) / bare.step;
+      const double floor = floor_of_events(*kernel, options) / bare.step;
       summaries[m].floors.push_back(floor);
       std::printf("| %s | %s | %ld | %zu | %.0f | %.0f | %.1f | %.0f | %.0f | %.1f | ", file.stem().c_str(),
                   methods[m].name, cost.events, cost.steps, cost.step, cost.event, cost.event / cost.step, bare.step,

@@ -84,13 +84,13 @@ void sweep(Request request) {
   for (const double tolerance : request.tolerances) {
     options.tolerances = {tolerance, 0.01 * tolerance};
     const long before = kernel.field_evaluations();
-    Run run = run_of(event_integrator::integrate(kernel, system, options));
+    Run run = run_of(event_integrator::integrate(kernel, options));
     run.evaluations = kernel.field_evaluations() - before;
     const Timing timing = median_time(request.seconds, [&] {
       if (request.variant == "trajectory") {
-        static_cast<void>(event_integrator::integrate(kernel, system, options));
+        static_cast<void>(event_integrator::integrate(kernel, options));
       } else {
-        static_cast<void>(event_integrator::integrate_compact(kernel, system, options));
+        static_cast<void>(event_integrator::integrate_compact(kernel, options));
       }
     });
     print(request, tolerance, timing, run, parts);

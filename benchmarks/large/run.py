@@ -130,7 +130,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("tool")
     parser.add_argument("--sizes", type=int, nargs="+", default=[10, 100, 1000, 10000])
-    parser.add_argument("--models", nargs="+", default=sorted(large_models.MODELS))
+    parser.add_argument("--models", nargs="+", default=sorted(large_models.NAMES))
     parser.add_argument("--limit", type=float, default=60.0)
     parser.add_argument("--note", default="", help="of the machine, and what was left out")
     parser.add_argument("-o", "--output", default=str(HERE.parent / "results" / "large.md"))

@@ -48,14 +48,14 @@ struct Measured {
 
 using Rows = OutputTimes::Rows;  ///< at steps: the default; at_times: none but at events
 
-Measured run(evaluation::ModelKernel& kernel, const model::System& system, ode::Method method, Rows rows) {
+Measured run(evaluation::ModelKernel& kernel, ode::Method method, Rows rows) {
   IntegrationOptions options;
   options.method = method;
   options.tolerances = {1e-8, 1e-10};
   options.until = 1000.0;
   options.output.rows = rows;
   const std::clock_t begin = std::clock();  // of the processor: other work on the machine does not count
-  const CompactIntegration result = integrate_compact(kernel, system, options);
+  const CompactIntegration result = integrate_compact(kernel, options);
   const std::clock_t end = std::clock();
   if (result.status.termination != result::Termination::completed) return {};
   return {static_cast<double>(end - begin) / CLOCKS_PER_SEC, result.statistics.steps,
@@ -76,8 +76,8 @@ void compare(benchmark::State& state, const model::System& with, const model::Sy
   }
   Measured events, steps;
   for (auto _ : state) {
-    const Measured one = run(*kernel, with, method, rows);
-    const Measured other = run(*plain, without, method, rows);
+    const Measured one = run(*kernel, method, rows);
+    const Measured other = run(*plain, method, rows);
     events = {events.seconds + one.seconds, events.steps + one.steps, events.events + one.events};
     steps = {steps.seconds + other.seconds, steps.steps + other.steps, steps.events + other.events};
   }

@@ -24,7 +24,7 @@ inline Integration integrate_repeatedly(benchmark::State& state, const model::Sy
   options.output.rows = OutputTimes::Rows::at_times;
   Integration result;
   for (auto _ : state) {
-    result = integrate(*kernel, system, options);
+    result = integrate(*kernel, options);
     benchmark::DoNotOptimize(result);
   }
   if (result.status.termination != result::Termination::completed) state.SkipWithError(result.status.message.c_str());

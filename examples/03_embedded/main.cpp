@@ -7,6 +7,7 @@
 #include <saltus/base/symbolic_lock.hpp>
 #include <saltus/io/json/json_result.hpp>
 #include <saltus/model/builder.hpp>
+#include <saltus/pipeline/options/stated_run.hpp>
 #include <saltus/pipeline/simulate.hpp>
 #include <saltus/pipeline/sweep.hpp>
 #include <saltus/result/continuous.hpp>

@@ -5,10 +5,14 @@ from __future__ import annotations
 import ctypes
 import importlib.util
 import pathlib
+import sys
 
 from ._build import CASADI
 
-_LIBRARIES = ("libcasadi.so.*", "libipopt.so.3", "libhighs.so.1")
+if sys.platform == "darwin":
+    _LIBRARIES = ("libcasadi.*.dylib", "libipopt.3.dylib", "libhighs.1.dylib")
+else:
+    _LIBRARIES = ("libcasadi.so.*", "libipopt.so.3", "libhighs.so.1")
 
 
 def _folder() -> pathlib.Path:

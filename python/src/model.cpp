@@ -7,6 +7,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -15,10 +16,9 @@
 #include "errors.hpp"
 #include "parts.hpp"
 #include "result.hpp"
-#include "saltus/cli/model_input.hpp"
-#include "saltus/cli/optimum_record.hpp"
-#include "saltus/cli/run_command.hpp"
-#include "saltus/cli/text/check_text.hpp"
+#include "saltus/frontend/check_text.hpp"
+#include "saltus/frontend/model_input.hpp"
+#include "saltus/frontend/optimum_record.hpp"
 #include "saltus/io/check/model_overview.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
@@ -37,7 +37,7 @@ namespace saltus::python {
 namespace {
 
 /// The run as an object of Python; raises what came during it.
-nb::object finished(Expected<result::Result> result, const cli::ModelInput& input,
+nb::object finished(Expected<result::Result> result, const frontend::ModelInput& input,
                     std::shared_ptr<const model::System> system, Watch& watch) {
   if (!result) raise(io::located(result.error(), input.file));
   auto shared = std::make_shared<result::Result>(std::move(*result));
@@ -52,22 +52,24 @@ nb::object run_simulation(Model& model, const Request& request, nb::object progr
                           Compute compute) {
   const auto input = model.stated(request);
   value_or_raise(io::check_options(input.file));
-  if (request.methods == cli::RunMethods::chosen) append(warnings, cli::options_without_effect(input.file));
+  if (request.methods == frontend::RunMethods::chosen) append(warnings, frontend::options_without_effect(input.file));
   const auto system = model.system(input, request);
   append(warnings, system->warnings);
   Watch watch(std::move(progress));
-  const auto result = [&] {
+  std::optional<std::string> note;
+  auto result = [&] {
     const nb::gil_scoped_release released;
     auto computed = compute(*system, input.file.simulate, watch.observers());
-    if (computed) cli::complete_record(input, *computed);
+    if (computed) note = frontend::complete_record(input, *computed);
     return computed;
   }();
+  if (note) warnings.append(*note);
   return finished(std::move(result), input, system, watch);
 }
 
 nb::object simulate(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
                     nb::list warnings) {
-  const Request request{std::move(settings), std::move(options), cli::RunMethods::chosen};
+  const Request request{std::move(settings), std::move(options), frontend::RunMethods::chosen};
   return run_simulation(model, request, std::move(progress), std::move(warnings),
                         [&](const auto& system, const auto& options, const auto& observers) {
                           return pipeline::simulate(system, options, observers, &model.kernels());
@@ -76,8 +78,8 @@ nb::object simulate(Model& model, std::vector<std::string> settings, std::vector
 
 nb::object compare(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
                    nb::list warnings) {
-  return run_simulation(model, {std::move(settings), std::move(options), cli::RunMethods::several}, std::move(progress),
-                        std::move(warnings), pipeline::compare);
+  return run_simulation(model, {std::move(settings), std::move(options), frontend::RunMethods::several},
+                        std::move(progress), std::move(warnings), pipeline::compare);
 }
 
 nb::object order(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,
@@ -85,15 +87,16 @@ nb::object order(Model& model, std::vector<std::string> settings, std::vector<Op
   pipeline::OrderOptions what;
   if (!schemes.empty()) what.schemes = value_or_raise(pipeline::parse_schemes(schemes));
   if (!steps.empty()) what.steps = value_or_raise(pipeline::parse_steps(steps));
-  return run_simulation(model, {std::move(settings), std::move(options), cli::RunMethods::several}, std::move(progress),
-                        std::move(warnings), [&](const auto& system, const auto& simulate, const auto& observers) {
+  return run_simulation(model, {std::move(settings), std::move(options), frontend::RunMethods::several},
+                        std::move(progress), std::move(warnings),
+                        [&](const auto& system, const auto& simulate, const auto& observers) {
                           return pipeline::order(system, simulate, what, observers);
                         });
 }
 
 nb::object optimize(Model& model, std::vector<std::string> settings, std::vector<Option> options,
                     const std::string& start, nb::object on_step, nb::list warnings) {
-  auto input = model.stated({std::move(settings), std::move(options), cli::RunMethods::several});
+  auto input = model.stated({std::move(settings), std::move(options), frontend::RunMethods::several});
   value_or_raise(io::check_optimize_options(input.file));
   if (!start.empty()) input.file.optimize->start_result = start;
   value_or_raise(io::read_start_result(input.file));
@@ -116,8 +119,8 @@ nb::object optimize(Model& model, std::vector<std::string> settings, std::vector
     return pipeline::optimize(*ocp, *input.file.optimize, observers);
   }();
   if (result) {
-    cli::complete_optimum(input, *result);
-    cli::add_surfaces(*ocp, *result);
+    if (const auto note = frontend::complete_optimum(input, *result)) warnings.append(*note);
+    frontend::add_surfaces(*ocp, *result);
   }
   return finished(std::move(result), input, nullptr, watch);
 }
@@ -125,7 +128,7 @@ nb::object optimize(Model& model, std::vector<std::string> settings, std::vector
 /// The run once more, with what is between its rows; with all its branches, or none.
 nb::object simulate_between(Model& model, std::vector<std::string> settings, std::vector<Option> options,
                             bool branches) {
-  const Request request{std::move(settings), std::move(options), cli::RunMethods::chosen};
+  const Request request{std::move(settings), std::move(options), frontend::RunMethods::chosen};
   auto input = model.stated(request);
   auto& chosen = input.file.simulate;
   chosen.continuous = chosen.event_rows = true;
@@ -142,8 +145,8 @@ nb::object simulate_between(Model& model, std::vector<std::string> settings, std
 }
 
 std::string check(Model& model, std::vector<std::string> settings) {
-  const auto input = model.stated({std::move(settings), {}, cli::RunMethods::several});
-  auto text = cli::check_text(input);
+  const auto input = model.stated({std::move(settings), {}, frontend::RunMethods::several});
+  auto text = frontend::check_text(input);
   if (!text) raise(io::located(text.error(), input.file));
   return *text;
 }
@@ -170,7 +173,7 @@ bool declares(const Model& model, const std::string& name) {
 
 /// (name, initial value) of states and parameters, as they are without settings.
 std::vector<std::pair<std::string, double>> quantities(Model& model, bool of_states) {
-  const Request request{{}, {}, cli::RunMethods::several};
+  const Request request{{}, {}, frontend::RunMethods::several};
   const auto system = model.system(model.input(), request);
   const auto& names = of_states ? system->state_names : system->parameter_names;
   const auto& values = of_states ? system->initial_state : system->parameter_values;

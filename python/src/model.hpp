@@ -2,16 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <nanobind/nanobind.h>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include <nanobind/nanobind.h>
-
 #include "errors.hpp"
-#include "saltus/cli/model_input.hpp"
-#include "saltus/cli/run_command.hpp"
+#include "saltus/frontend/model_input.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/simulate.hpp"
 
@@ -24,33 +22,32 @@ using Option = std::tuple<std::string, std::string, std::string>;
 struct Request {
   std::vector<std::string> settings;  ///< NAME=VALUE, as behind --set
   std::vector<Option> options;
-  cli::RunMethods methods = cli::RunMethods::several;
+  frontend::RunMethods methods = frontend::RunMethods::several;
 };
 
 /// A model file, read once, and the system it was last built into.
 class Model {
  public:
-  explicit Model(const std::string& model) : input_(value_or_raise(cli::read_input(model, {}))) {}
+  explicit Model(const std::string& model) : input_(value_or_raise(frontend::read_input(model, {}))) {}
   Model(const std::string& text, const std::string& name)
       : input_{name, value_or_raise(io::parse_model(text, name)), {}} {}
 
-  [[nodiscard]] const cli::ModelInput& input() const { return input_; }
+  [[nodiscard]] const frontend::ModelInput& input() const { return input_; }
 
   [[nodiscard]] pipeline::KernelStore& kernels() { return *kernels_; }
 
-  [[nodiscard]] cli::ModelInput stated(const Request& request) const {
+  [[nodiscard]] frontend::ModelInput stated(const Request& request) const {
     auto input = input_;
-    for (const auto& setting : request.settings) value_or_raise(cli::apply_setting(input, setting));
+    for (const auto& setting : request.settings) value_or_raise(frontend::apply_setting(input, setting));
     for (const auto& [key, value, written] : request.options) {
-      value_or_raise(io::set_option(input.file, key, value, {written, 0, 0}));
-      input.settings.push_back(key + "=" + value);
+      value_or_raise(frontend::apply_option(input, key, value, written));
     }
     return input;
   }
 
   /// The system of a request. Options change nothing of it: one that is asked for with the same settings again is
   /// there.
-  [[nodiscard]] std::shared_ptr<const model::System> system(const cli::ModelInput& input, const Request& request) {
+  [[nodiscard]] std::shared_ptr<const model::System> system(const frontend::ModelInput& input, const Request& request) {
     if (built_ && settings_ == request.settings) return built_;
     auto system = model::build(input.file.description, input.overrides);
     if (!system) raise(io::located(system.error(), input.file));
@@ -60,7 +57,7 @@ class Model {
   }
 
  private:
-  cli::ModelInput input_;
+  frontend::ModelInput input_;
   std::shared_ptr<const model::System> built_;
   std::vector<std::string> settings_;
   std::unique_ptr<pipeline::KernelStore> kernels_ = std::make_unique<pipeline::KernelStore>();

@@ -16,8 +16,8 @@
 #include "errors.hpp"
 #include "parts.hpp"
 #include "saltus/base/at.hpp"
-#include "saltus/cli/catalogue.hpp"
-#include "saltus/cli/text/difference_text.hpp"
+#include "saltus/frontend/catalogue.hpp"
+#include "saltus/frontend/difference_text.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/pipeline/vector_field.hpp"
@@ -171,7 +171,7 @@ std::string page_of(Run& run, const std::vector<std::string>& labels, const nb::
     overlays.push_back({labels.at(overlays.size()), *nb::cast<Run&>(other).result});
     value_or_raise(report::check_overlay(*run.result, overlays.back()));
   }
-  return report::to_html(*run.result, value_or_raise(cli::plotly_source()), overlays);
+  return report::to_html(*run.result, value_or_raise(frontend::plotly_source()), overlays);
 }
 
 /// (what, in a, in b) of each.
@@ -192,7 +192,7 @@ nb::dict difference_of(const Run& a, const Run& b, double rtol, std::optional<do
   entries["events"] = nb::make_tuple(found.events_a, found.events_b);
   entries["first_event"] = found.first_event;
   entries["ends"] = found.ends;
-  entries["text"] = cli::difference_text(found, tolerances, a.result->states.size());
+  entries["text"] = frontend::difference_text(found, tolerances, a.result->states.size());
   return entries;
 }
 

@@ -14,11 +14,12 @@
 #include "model.hpp"
 #include "parts.hpp"
 #include "result.hpp"
-#include "saltus/cli/sweep/page.hpp"
-#include "saltus/cli/sweep/share.hpp"
-#include "saltus/cli/sweep/sweep_input.hpp"
-#include "saltus/cli/sweep/sweep_table.hpp"
-#include "saltus/cli/sweep/sweep_warnings.hpp"
+#include "saltus/frontend/sweep_input.hpp"
+#include "saltus/frontend/sweep_page.hpp"
+#include "saltus/frontend/sweep_share.hpp"
+#include "saltus/frontend/sweep_table.hpp"
+#include "saltus/frontend/sweep_warnings.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 #include "watch.hpp"
 
 namespace nb = nanobind;
@@ -56,10 +57,10 @@ nb::object column_of(std::variant<std::vector<double>, std::vector<std::string>>
 
 /// What Python asks a sweep for, as the tool spells it.
 struct Sweep {
-  cli::SweepRequest request;
+  frontend::SweepRequest request;
   std::string keep;
   std::size_t jobs = 1;
-  cli::Share share;
+  frontend::Share share;
 };
 
 /// What a warning is until those of all shares are told together.
@@ -72,17 +73,17 @@ void note(nb::list& warnings, const pipeline::SweepWarning& warning) {
 std::vector<std::string> told_with_runs(std::vector<SharedWarning> warnings) {
   std::vector<pipeline::SweepWarning> all;
   for (auto& [text, runs] : warnings) all.push_back({std::move(text), std::move(runs)});
-  return cli::told_with_runs(all);
+  return frontend::told_with_runs(all);
 }
 
 nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::object progress, nb::list warnings) {
-  const auto plan = value_or_raise(cli::SweepPlan::make(what.request));
+  const auto plan = value_or_raise(frontend::SweepPlan::make(what.request));
   const auto keep = keep_named(what.keep);
   const auto input = model.stated(asked);
-  const auto first = value_or_raise(cli::input_of_run(input, plan, 0));
+  const auto first = value_or_raise(frontend::input_of_run(input, plan, 0));
   // Results that are kept whole have their branches.
-  if (keep != pipeline::Keep::trajectory) value_or_raise(cli::check_branches(first, plan));
-  for (const auto& warning : cli::options_without_effect(first.file)) note(warnings, {warning, {}});
+  if (keep != pipeline::Keep::trajectory) value_or_raise(frontend::check_branches(first, plan));
+  for (const auto& warning : frontend::options_without_effect(first.file)) note(warnings, {warning, {}});
   Watch watch{nb::none()};
   std::atomic<bool> stopped = false;
   const auto caller = std::this_thread::get_id();
@@ -102,14 +103,14 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
   auto outcome = [&] {
     const nb::gil_scoped_release released;
     return pipeline::sweep(
-        {count, keep, what.jobs, begin}, [&](std::size_t run) { return cli::state_run(input, plan, begin + run); },
+        {count, keep, what.jobs, begin}, [&](std::size_t run) { return frontend::state_run(input, plan, begin + run); },
         observers);
   }();
   if (!outcome) raise(io::located(outcome.error(), input.file));
   for (const auto& warning : outcome->warnings) note(warnings, warning);
   auto& runs = outcome->runs;
   nb::dict columns;
-  for (auto& column : cli::sweep_table(plan, runs, keep, begin)) {
+  for (auto& column : frontend::sweep_table(plan, runs, keep, begin)) {
     columns[nb::str(column.name.c_str())] = column_of(std::move(column.values));
   }
   nb::list results;
@@ -133,7 +134,7 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
 /// The page of a table that Python holds: columns are lists of numbers or of words.
 std::string sweep_page(const Model& model, const nb::list& columns, std::vector<std::string> names, std::string command,
                        bool grid) {
-  std::vector<cli::TableColumn> table;
+  std::vector<frontend::TableColumn> table;
   for (const auto column : columns) {
     const auto [name, words, numbers] =
         nb::cast<std::tuple<std::string, std::vector<std::string>, std::vector<double>>>(column);
@@ -144,7 +145,8 @@ std::string sweep_page(const Model& model, const nb::list& columns, std::vector<
     }
   }
   const auto& file = model.input().file;
-  return cli::sweep_page(table, {file.description.name, std::move(command), std::move(names), grid, file.captions});
+  return frontend::sweep_page(table,
+                              {file.description.name, std::move(command), std::move(names), grid, file.captions});
 }
 
 }  // namespace
@@ -158,7 +160,7 @@ void add_sweep(nb::class_<Model>& type) {
          bool paired, std::vector<std::string> samples, std::optional<long> runs, std::uint64_t seed, std::string keep,
          bool yes, std::size_t jobs, std::pair<std::size_t, std::size_t> share, nb::object progress,
          nb::list warnings) {
-        const Request asked{std::move(settings), std::move(options), cli::RunMethods::chosen};
+        const Request asked{std::move(settings), std::move(options), frontend::RunMethods::chosen};
         const std::size_t threads = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
         const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, yes},
                          std::move(keep),

@@ -11,8 +11,8 @@
 #include "errors.hpp"
 #include "parts.hpp"
 #include "saltus/base/version.hpp"
-#include "saltus/cli/catalogue.hpp"
-#include "saltus/cli/sized_models.hpp"
+#include "saltus/frontend/catalogue.hpp"
+#include "saltus/frontend/sized_models.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -32,13 +32,13 @@ int run_tool(std::vector<std::string> arguments) {
 
 std::vector<std::string> models() {
   std::vector<std::string> names;
-  for (const auto& entry : cli::catalogue()) names.push_back(entry.name);
+  for (const auto& entry : frontend::catalogue()) names.push_back(entry.name);
   return names;
 }
 
 /// The file of a shipped model, whatever files of that name there are.
 std::string find_catalogue(const std::string& name) {
-  const auto entries = cli::catalogue();
+  const auto entries = frontend::catalogue();
   for (const auto& entry : entries) {
     if (entry.name == name) return entry.file.string();
   }
@@ -46,10 +46,10 @@ std::string find_catalogue(const std::string& name) {
 }
 
 /// The text of a shipped model of any size; None for other names.
-std::optional<std::string> sized_model(const std::string& name, const cli::ModelSizes& sizes) {
-  const auto* model = cli::find_sized_model(name);
+std::optional<std::string> sized_model(const std::string& name, const frontend::ModelSizes& sizes) {
+  const auto* model = frontend::find_sized_model(name);
   if (model == nullptr) return std::nullopt;
-  return value_or_raise(cli::write_sized_model(*model, sizes));
+  return value_or_raise(frontend::write_sized_model(*model, sizes));
 }
 
 }  // namespace
@@ -58,14 +58,14 @@ void add_tool(nb::module_& module) {
   module.attr("version") = nb::str(std::string(version).c_str());
   module.def("run_tool", run_tool);
   module.def("models", models);
-  module.def("set_shared_folder", [](const std::string& folder) { cli::set_shared_folder(folder); });
+  module.def("set_shared_folder", [](const std::string& folder) { frontend::set_shared_folder(folder); });
   module.def("find_catalogue", find_catalogue);
   module.def("sized_model", sized_model, nb::arg("name"), nb::arg("sizes"));
   module.def("write_file", [](const std::string& path, const std::string& content) {
     value_or_raise(io::check_writable(path));
     value_or_raise(io::write_file(path, content));
   });
-  module.def("plotly_source", [] { return value_or_raise(cli::plotly_source()); });
+  module.def("plotly_source", [] { return value_or_raise(frontend::plotly_source()); });
   module.def("simulate_keys", [] { return pipeline::simulate_keys(); });
   module.def("optimize_keys", [] { return pipeline::optimize_keys(); });
 }

@@ -9,6 +9,7 @@ import re
 from pathlib import Path
 
 from prose import PROSE_CHECKS
+from ratchets import RATCHET_CHECKS
 from sizes import SIZE_CHECKS
 from sources import lines_of
 
@@ -223,4 +224,5 @@ ALL_CHECKS = {
     "names_of_sources": check_names_of_sources,
     **SIZE_CHECKS,
     **PROSE_CHECKS,
+    **RATCHET_CHECKS,
 }

@@ -1,4 +1,4 @@
-"""Checks of prose: how long the sentences of comments are, that they come to an end, and that docstrings have a verb.
+"""Checks of prose: how long the sentences of comments are, that they come to an end, and that pages name files that are there.
 
 A comment has parts: paragraphs, items of a list ("- ", "1. "), fields ("@param x") and displayed lines. Displayed are
 formulas, tables and examples, which stand farther to the right than the text around them. A sentence ends at a full
@@ -19,26 +19,6 @@ END_OF_SENTENCE = re.compile(r"(?<=[.:;!?])\s+")
 ELLIPSIS = re.compile(r"\.\.\.|…")
 # What may stand before and behind an ellipsis: "k_1, ..., k_m", "m = 1 ... n", "c0 + c1 r + ...", "t_0 < … < t_n".
 BEFORE_ELLIPSIS = re.compile(r"(?:[+*<]\s*|(?:\S*[\d_^)\]]\S*|\b[A-Za-z]),?\s*)$")
-
-ACCESS = re.compile(r"^( *) (public|protected|private):$")
-TYPE_OR_FUNCTION = re.compile(r"(?:struct|class|enum|union|concept)\b|(?!using\b|namespace\b)[^={;]*\(")
-CALLABLE_DATA = re.compile(r"[^={;]*(?:std::function|FunctionRef)<[^={;]*> \w+\s*[;={]")
-BEFORE_DECLARATION = re.compile(r"^(?:template <.*?> (?=[\w\[])|\[\[.*?\]\] ?)+")
-NAMES_ITSELF = re.compile(r"^(?:An? )?[A-Z]\w*[a-z][A-Z]\w* ")
-VERBS = set(
-    "accumulates adds allocates appends applies asks attempts begins bounds builds calls carries changes checks "
-    "chooses classifies closes collects compares compiles computes continues controls copies corrects counts cuts "
-    "decides declares describes differentiates divides does draws drops eliminates ends enters evaluates expands "
-    "factorizes factors fails fills finds fires flushes follows foresees forgets gets gives goes guesses hands "
-    "has helps holds integrates interpolates interprets is iterates joins judges keeps knows leaves lets lifts "
-    "limits lists loads locates looks lowers makes maps marks measures moves names narrows notes notices numbers "
-    "opens orders owns parses passes places prints projects puts reads records reduces reformulates refuses "
-    "remembers removes replaces reports resolves restores returns rewrites runs samples says searches sets "
-    "settles shifts shortens shows simulates sizes solves sorts splits starts states stops takes tells tests "
-    "throws transcribes tries turns updates uses waits warps watches widens works writes".split()
-)
-
-NOUNS = set("bounds copies counts factors limits lists names notes numbers places records samples sizes states tests".split())
 
 
 def comments(lines):
@@ -112,44 +92,6 @@ def check_comment_sentences(root, table):
     return complaints
 
 
-def docstrings(lines):
-    """(line number, text) of the docstrings of types and functions of a header that are not private."""
-    hidden = {}  # by the indent of what an access word is about
-    index = 0
-    while index < len(lines):
-        line = lines[index]
-        indent = len(line) - len(line.lstrip())
-        access = ACCESS.match(line)
-        if access:
-            hidden[indent + 1] = access.group(2) != "public"
-        elif line.strip():
-            hidden = {column: is_hidden for column, is_hidden in hidden.items() if column <= indent}
-        if not re.match(r" *///(?!<)", line):
-            index += 1
-            continue
-        start, text = index, []
-        while index < len(lines) and lines[index].lstrip().startswith("///"):
-            text.append(lines[index].lstrip()[3:].strip())
-            index += 1
-        declaration = BEFORE_DECLARATION.sub("", " ".join(line.strip() for line in lines[index : index + 8]))
-        if TYPE_OR_FUNCTION.match(declaration) and not CALLABLE_DATA.match(declaration) and True not in hidden.values():
-            yield start + 1, " ".join(text)
-
-
-def check_docstring_verbs(root, _table):
-    """(o) docstrings of types and functions say first what these do ("Returns the time"), or what must be."""
-    complaints = []
-    for path in sorted((root / "src" / "saltus").rglob("*.hpp")):
-        for number, text in docstrings(lines_of(path)):
-            sentence = NAMES_ITSELF.sub("", END_OF_SENTENCE.split(text)[0])
-            words = [word.strip(",.:;").lower() for word in sentence.split()] + [""] * 2
-            has_verb = words[0] in VERBS and not (words[1] == "of" and words[0] in NOUNS)
-            if not has_verb and "must" not in words and not text.startswith(("@", "Cost:")):
-                place = f"{path.relative_to(root)}:{number}"
-                complaints.append(f"{place}: no verb of prose.py begins this docstring: {sentence[:60]}")
-    return complaints
-
-
 NAMED_FILE = re.compile(r"`((?:[\w-]+/)*[\w-]+\.(?:cpp|hpp|py|toml|sh|cmake)|(?:[\w-]+/)+[\w-]+)/?`")
 NOT_OURS = re.compile(r"tl/|_internal\.hpp")
 
@@ -173,6 +115,5 @@ def check_named_files(root, _table):
 
 PROSE_CHECKS = {
     "comment_sentences": check_comment_sentences,
-    "docstring_verbs": check_docstring_verbs,
     "named_files": check_named_files,
 }

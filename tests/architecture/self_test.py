@@ -1,44 +1,9 @@
 """Shows that every architecture check accepts a good tree and complains about each kind of bad one."""
 
-import tempfile
-import tomllib
 import unittest
-from pathlib import Path
 
 import checks
-
-TABLE = tomllib.loads((Path(__file__).parent / "dependencies.toml").read_text(encoding="utf-8"))
-GOOD = {
-    "CMakeLists.txt": "saltus_module(base)\nsaltus_module(expression LINKS base)\n"
-    "saltus_module(model HEAVY_HEADERS LINKS base expression PUBLIC_LIBRARIES casadi::casadi)\n"
-    "saltus_module(evaluation LINKS base model ode\n  PRIVATE_LIBRARIES casadi::casadi)\nsaltus_module(ode LINKS base)\n",
-    "src/saltus/base/error.hpp": "#pragma once\n",
-    "src/saltus/ode/stepper.cpp": '#include "saltus/ode/stepper.hpp"\n#include "saltus/base/error.hpp"\n',
-    "src/saltus/model/system.hpp": '#include <casadi/core/sx.hpp>\n#include "saltus/expression/parser.hpp"\n',
-    "src/saltus/evaluation/kernel.cpp": "#include <casadi/core/sx.hpp>\n",
-    "src/saltus/io/reader.cpp": "#include <toml++/toml.h>\n#include <iostream>\n",
-    "src/saltus/io/hidden_internal.hpp": "#include <nlohmann/json.hpp>\n",
-    "src/saltus/cli/main.cpp": '#include <CLI/CLI.hpp>\n#include "saltus/report/html.hpp"\n',
-    "tests/unit/ode/stepper_test.cpp": '#include <gtest/gtest.h>\n#include "saltus/report/html.hpp"\n',
-}
-
-
-class Tree:
-    """A small source tree in a temporary folder: the good one with some files added or replaced."""
-
-    def __init__(self, changes):
-        self.changes = changes
-
-    def __enter__(self):
-        self.folder = tempfile.TemporaryDirectory()
-        root = Path(self.folder.name)
-        for name, text in {**GOOD, **self.changes}.items():
-            (root / name).parent.mkdir(parents=True, exist_ok=True)
-            (root / name).write_text(text, encoding="utf-8")
-        return root
-
-    def __exit__(self, *_):
-        self.folder.cleanup()
+from small_tree import GOOD, TABLE, Tree
 
 
 class SelfTest(unittest.TestCase):
@@ -271,27 +236,6 @@ class SelfTest(unittest.TestCase):
             self.assert_sentences(f"/// Numbers {formula} of it.\n")
         for prose in ("states, controls, ...", "What it sets …", "… and their values", "{ initial = … }", "if(...)"):
             self.assert_sentences(f"int a;  ///< {prose}\n", "an ellipsis")
-
-    def test_docstrings_begin_with_a_verb(self):
-        name = "src/saltus/ode/a.hpp"
-        for text in (
-            "/// Returns the time.\n[[nodiscard]] double time() const;",
-            "/// A LongName holds states.\nstruct LongName {",
-            "/// The kernel must outlive it.\nexplicit A(const Kernel& kernel);",
-            "/// Cost: n.\ndouble f();\n/// @param n  states\ndouble g(int n);",
-            "/// The number of states.\ninline constexpr int states = 3;\n/// Of any number.\nusing Number = double;",
-            "/// Called often.\nstd::function<void(int)> often;",
-            "class A {\n public:\n  void f();\n\n private:\n  /// The time.\n  double time();\n};",
-        ):
-            self.assertEqual(self.complaints("docstring_verbs", {name: text + "\n"}), [], text)
-        for text in (
-            "/// The time.\n[[nodiscard]] double time() const;",
-            "/// Names of states.\ntemplate <class T> std::vector<T> names();",
-            "/// Where it holds.\nenum class Place { path };",
-            "class A {\n  double a_;\n\n private:\n  void g();\n};\n/// The time.\ndouble time();",
-            "class A {\n private:\n  void g();\n\n public:\n  /// The time.\n  double time();\n};",
-        ):
-            self.assert_complains("docstring_verbs", {name: text + "\n"}, "a.hpp:", "no verb")
 
     def test_pages_name_files_that_are_there(self):
         good = "`ode/stepper.cpp`, `stepper.cpp`, `ode/stepper`, `io/hidden`, `src/saltus/ode/`, `tl/expected.hpp`, `a / b`\n"

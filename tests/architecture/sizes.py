@@ -6,7 +6,7 @@ The sources are formatted by clang-format, so what begins a scope is known from 
 
 import re
 
-from sources import lines_of
+from sources import cpp_files, lines_of
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"(saltus/[^"]+)"')
 SCOPE_WORD = re.compile(r"^(namespace|class|struct|union|enum|extern|template|using|typedef|friend|static_assert)\b")
@@ -14,10 +14,6 @@ CLASS = re.compile(r"^(\s*)(?:template\s*<.*>\s*)?(class|struct)\s+(\w+)[^;=()]*
 CONTROL_WORD = re.compile(r"^(if|for|while|switch|else|do|return|\}|:|,)\b|^[:,})]")
 DATA_MEMBER = re.compile(r"^(?!using\b|friend\b|typedef\b|static\b|enum\b|struct\b|class\b|return\b|public\b|private\b)"
                          r"(?:mutable\s+)?[A-Za-z_][\w:<>,\s\*&\.\(\)]*?[\s\*&>]\w+(?:\[\w*\])?\s*(?:=[^;]*|\{[^;]*\})?(?:,\s*\w+[^;()]*)?;")
-
-
-def cpp_files(root):
-    return sorted(path for path in (root / "src" / "saltus").rglob("*") if path.suffix in (".cpp", ".hpp"))
 
 
 def check_files_in_folder(root, table):

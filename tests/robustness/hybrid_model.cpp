@@ -146,8 +146,10 @@ Result HybridModel::run(HybridIntegrator integrator, double rtol, const std::vec
   options.tolerances = {rtol, rtol / 100.0};
   options.until = end_time;
   options.max_steps = 200000;
-  std::copy(start.begin(), start.end(), parts_->system.initial_state.begin());
-  auto run = event_integrator::integrate(parts_->kernel, parts_->system, options);
+  std::vector<double> x = parts_->system.initial_state;
+  std::copy(start.begin(), start.end(), x.begin());
+  parts_->kernel.set_initial_state(std::move(x));
+  auto run = event_integrator::integrate(parts_->kernel, options);
   Result result;
   for (const auto& column : parts_->system.columns) result.switching_functions.push_back(column.name);
   result.status = std::move(run.status);

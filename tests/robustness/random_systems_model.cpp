@@ -90,8 +90,8 @@ result::Result Model::run(const Accuracy& accuracy, const std::vector<double>& s
   options.until = end_time;
   // Contracting fields need a few hundred steps, and a few thousand events at most: more is a run that got stuck.
   options.max_steps = 200000;
-  parts_->system.initial_state = start;
-  auto run = event_integrator::integrate(parts_->kernel, parts_->system, options);
+  parts_->kernel.set_initial_state(start);
+  auto run = event_integrator::integrate(parts_->kernel, options);
   result::Result result;
   for (const auto& column : parts_->system.columns) result.switching_functions.push_back(column.name);
   result.status = std::move(run.status);

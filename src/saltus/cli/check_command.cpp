@@ -8,17 +8,19 @@
 #include "saltus/base/same_place.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
-#include "saltus/cli/model_input.hpp"
 #include "saltus/cli/progress.hpp"
-#include "saltus/cli/text/check_text.hpp"
-#include "saltus/cli/text/optimize_text.hpp"
-#include "saltus/cli/text/reformulation_text.hpp"
 #include "saltus/cli/text/source_excerpt.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/check_text.hpp"
+#include "saltus/frontend/model_input.hpp"
+#include "saltus/frontend/optimize_text.hpp"
+#include "saltus/frontend/reformulation_text.hpp"
 #include "saltus/io/check/json_check.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/model/mechanics/contacts_at_start.hpp"
+#include "saltus/model/summary.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -31,14 +33,14 @@ struct CheckArguments {
 };
 
 /// Every mistake of the file, or the one that is none of the file: of --set, of an option.
-std::vector<Error> all_mistakes(const Error& first, const ModelText& text) {
+std::vector<Error> all_mistakes(const Error& first, const frontend::ModelText& text) {
   auto errors = io::diagnose_model(text.text, text.name).errors;
   const auto is_first = [&](const Error& error) { return same_place(error.location, first.location); };
   if (std::none_of(errors.begin(), errors.end(), is_first)) errors.push_back(first);
   return errors;
 }
 
-ExitCode refuse_model(const CheckArguments& arguments, const Error& first, const ModelText& text) {
+ExitCode refuse_model(const CheckArguments& arguments, const Error& first, const frontend::ModelText& text) {
   const auto errors = all_mistakes(first, text);
   for (const auto& error : errors) print_error(with_source(error, text));
   if (errors.size() > 1) print_error(fmt::format("{} mistakes", errors.size()));
@@ -47,9 +49,10 @@ ExitCode refuse_model(const CheckArguments& arguments, const Error& first, const
 }
 
 /// What is for specialists, and takes a simulation.
-ExitCode print_well_posedness(const ModelInput& input, const model::System& system) {
+ExitCode print_well_posedness(const frontend::ModelInput& input, const model::System& system) {
   ProgressLine progress(ShowProgress::when_terminal);
-  const auto text = reformulation_text(system) + ranks_text(system, input.file.simulate, watched(progress));
+  const auto text =
+      frontend::reformulation_text(system) + frontend::ranks_text(system, input.file.simulate, watched(progress));
   progress.clear();
   print(text);
   if (!interrupted()) return ExitCode::done;
@@ -58,9 +61,9 @@ ExitCode print_well_posedness(const ModelInput& input, const model::System& syst
 }
 
 ExitCode run_check(const CheckArguments& arguments) {
-  const auto text = read_model_text(arguments.model);
+  const auto text = frontend::read_model_text(arguments.model);
   if (!text) return refuse(text.error());
-  const auto input = read_input(*text, arguments.settings);
+  const auto input = frontend::read_input(*text, arguments.settings);
   if (!input) return refuse_model(arguments, input.error(), *text);
   const auto system = model::build(input->file.description, input->overrides);
   if (!system) return refuse_model(arguments, io::located(system.error(), input->file), *text);
@@ -71,15 +74,15 @@ ExitCode run_check(const CheckArguments& arguments) {
   if (const auto apart = model::check_contacts_at_start(*system, input->file.simulate.from)) {
     return refuse_model(arguments, io::located(*apart, input->file), *text);
   }
-  const auto optimization = optimize_overview(*input);
+  const auto optimization = frontend::optimize_overview(*input);
   if (!optimization) return refuse_model(arguments, optimization.error(), *text);
-  auto overview = io::overview_of(input->file.description, *system, input->file.captions);
+  auto overview = io::overview_of(input->file.description, model::summary_of(*system), input->file.captions);
   if (arguments.json) {
-    overview.forms = complementarity_forms(*system);
+    overview.forms = frontend::complementarity_forms(*system);
     print(io::check_json(text->path, {}, &overview, *optimization ? &**optimization : nullptr));
     return ExitCode::done;
   }
-  print(check_text(*input, *system, overview, *optimization));
+  print(frontend::check_text(*input, *system, overview, *optimization));
   return arguments.well_posedness ? print_well_posedness(*input, *system) : ExitCode::done;
 }
 

@@ -9,9 +9,10 @@
 #include "references.hpp"
 #include "saltus/base/version.hpp"
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/model_input.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/model_input.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -57,7 +58,7 @@ Citation cite_integrator(pipeline::Integrator integrator) {
 }
 
 /// The papers behind what a model is run with.
-std::vector<Citation> citations_of(const ModelInput& input, const model::System& system) {
+std::vector<Citation> citations_of(const frontend::ModelInput& input, const model::System& system) {
   const auto& options = input.file.simulate;
   std::vector<Citation> list;
   const bool by_elements = options.method == pipeline::Method::fesd || options.method == pipeline::Method::timestepping;
@@ -81,7 +82,7 @@ ExitCode cite(const std::string& model) {
   std::vector<Citation> list = {{"guglielmi2022", "the event-driven method (simulate)"},
                                 {"nurkanovic2024", "finite elements with switch detection (--method fesd, optimize)"}};
   if (!model.empty()) {
-    const auto input = read_input(model, {});
+    const auto input = frontend::read_input(model, {});
     if (!input) return refuse(input.error());
     const auto system = model::build(input->file.description, input->overrides);
     if (!system) return refuse(io::located(system.error(), input->file));

@@ -6,8 +6,8 @@
 
 #include "saltus/base/text.hpp"
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/text/difference_text.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/difference_text.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/result/difference.hpp"
 
@@ -26,7 +26,7 @@ ExitCode run_diff(const DiffArguments& arguments) {
   if (!b) return refuse(b.error());
   const auto difference = result::difference(*a, *b, arguments.tolerances);
   if (!difference) return refuse(difference.error());
-  print(difference_text(*difference, arguments.tolerances, a->states.size()));
+  print(frontend::difference_text(*difference, arguments.tolerances, a->states.size()));
   return difference->is_none() ? ExitCode::done : ExitCode::different;
 }
 

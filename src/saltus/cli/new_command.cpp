@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
-#include "saltus/cli/model_input.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/catalogue.hpp"
+#include "saltus/frontend/model_input.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/check/model_schema.hpp"
 
@@ -151,7 +151,7 @@ fs::path file_of(const std::string& name) {
 }
 
 Error no_template(const NewArguments& arguments) {
-  const auto models = catalogue();
+  const auto models = frontend::catalogue();
   const bool is_model =
       std::any_of(models.begin(), models.end(), [&](const auto& entry) { return entry.name == arguments.like; });
   return {ErrorCode::unknown_name,
@@ -191,8 +191,9 @@ ExitCode run_new(const NewArguments& arguments) {
     if (auto written = io::write_file(schema, io::model_schema()); !written) return refuse(written.error());
     print(fmt::format("{} (for editors)\n", schema.string()));
   }
-  print(fmt::format("next: {}\n      {}\n", command_line({"check", file.string()}),
-                    command_line({"simulate", file.string(), "--report", fs::path(file).replace_extension(".html")})));
+  print(fmt::format(
+      "next: {}\n      {}\n", frontend::command_line({"check", file.string()}),
+      frontend::command_line({"simulate", file.string(), "--report", fs::path(file).replace_extension(".html")})));
   return ExitCode::done;
 }
 

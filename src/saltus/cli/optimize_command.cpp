@@ -9,13 +9,14 @@
 
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
-#include "saltus/cli/model_input.hpp"
-#include "saltus/cli/optimum_record.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/run_command.hpp"
 #include "saltus/cli/text/source_excerpt.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/model_input.hpp"
+#include "saltus/frontend/optimum_record.hpp"
 #include "saltus/model/ocp.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/optimal_control/optimize.hpp"
 #include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/report/mpcc_table.hpp"
@@ -36,8 +37,8 @@ struct OptimizeArguments {
 };
 
 /// The model with what was typed beside --set.
-Expected<ModelInput> set_input(const OptimizeArguments& arguments, const ModelText& text) {
-  auto input = read_input(text, arguments.run.settings);
+Expected<frontend::ModelInput> set_input(const OptimizeArguments& arguments, const frontend::ModelText& text) {
+  auto input = frontend::read_input(text, arguments.run.settings);
   if (!input) return input;
   if (auto done = apply_shortcuts(arguments.run, *input); !done) return tl::unexpected(done.error());
   if (auto fits = io::check_optimize_options(input->file); !fits) return tl::unexpected(fits.error());
@@ -47,13 +48,13 @@ Expected<ModelInput> set_input(const OptimizeArguments& arguments, const ModelTe
   }
   input->call = call_of("optimize", arguments.run);
   if (!arguments.start.empty())
-    input->call += command_line({"--start", arguments.start}).substr(std::size("saltus") - 1);
+    input->call += frontend::command_line({"--start", arguments.start}).substr(std::size("saltus") - 1);
   if (auto done = io::read_start_result(input->file); !done) return tl::unexpected(done.error());
   return input;
 }
 
 /// Of a model without [optimize] nothing can be set: that is said, whatever was typed.
-Expected<ModelInput> stated_input(const OptimizeArguments& arguments, const ModelText& text) {
+Expected<frontend::ModelInput> stated_input(const OptimizeArguments& arguments, const frontend::ModelText& text) {
   auto input = set_input(arguments, text);
   if (input) return input;
   const auto file = io::parse_model(text.text, text.name, text.files);
@@ -72,7 +73,7 @@ pipeline::OptimizeObservers observers_of(const RunArguments& arguments) {
   return observers;
 }
 
-Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, const ModelInput& input,
+Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, const frontend::ModelInput& input,
                                          const Outputs& outputs) {
   const auto ocp = model::build_ocp(input.file.description, input.overrides);
   if (!ocp) return tl::unexpected(ocp.error());
@@ -80,13 +81,13 @@ Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, con
   for (const auto& warning : ocp->warnings) print_error(fmt::format("warning: {}", warning));
   auto result = pipeline::optimize(*ocp, *input.file.optimize, observers_of(arguments.run));
   if (!result) return result;
-  complete_optimum(input, *result);
-  if (outputs.show_surfaces()) add_surfaces(*ocp, *result);
+  if (const auto note = frontend::complete_optimum(input, *result)) print_error(*note);
+  if (outputs.show_surfaces()) frontend::add_surfaces(*ocp, *result);
   return result;
 }
 
 ExitCode run_optimize(const OptimizeArguments& arguments) {
-  const auto text = read_model_text(arguments.run.model);
+  const auto text = frontend::read_model_text(arguments.run.model);
   if (!text) return refuse(text.error());
   const auto input = stated_input(arguments, *text);
   if (!input) return refuse_with_source(input.error(), *text);

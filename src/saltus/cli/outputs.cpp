@@ -10,9 +10,9 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/contains.hpp"
-#include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/catalogue.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/report/html.hpp"
@@ -160,7 +160,7 @@ Expected<Outputs> Outputs::make(const OutputNames& names, const std::string& inp
   Outputs outputs;
   outputs.names_ = names;
   if (!names.report.empty()) {
-    auto plotly = plotly_source();
+    auto plotly = frontend::plotly_source();
     if (!plotly) return tl::unexpected(with_context(plotly.error(), fmt::format("for --report {}", names.report)));
     outputs.plotly_ = std::move(*plotly);
   }

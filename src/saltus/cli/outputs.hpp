@@ -41,7 +41,8 @@ class Outputs {
   /// Returns whether standard output has one of them, and nothing else.
   [[nodiscard]] bool fill_standard_output() const;
 
-  /// Returns these outputs as files that grow while a run goes on, maybe none; nullopt where one needs the whole result.
+  /// Returns these outputs as files that grow while a run goes on, maybe none; nullopt where one needs the whole
+  /// result.
   /// @param events  of the table, at each end
   [[nodiscard]] std::optional<GrowingOutputs> growing(std::size_t events) const;
   /// Ends them as write() does.

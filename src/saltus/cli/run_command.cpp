@@ -11,12 +11,13 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/text.hpp"
-#include "saltus/cli/model_input.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/progress.hpp"
 #include "saltus/cli/text/source_excerpt.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/model_input.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/vector_field.hpp"
 #include "saltus/report/table.hpp"
 #include "saltus/result/cause.hpp"
@@ -33,8 +34,8 @@ Expected<void> check_shown(const RunArguments& arguments, const model::System& s
 }
 
 /// @param growing  gets rows and events on the way; may be null
-Expected<result::Result> compute_all(const RunArguments& arguments, const ModelInput& input, const Outputs& outputs,
-                                     GrowingOutputs* growing, Compute compute) {
+Expected<result::Result> compute_all(const RunArguments& arguments, const frontend::ModelInput& input,
+                                     const Outputs& outputs, GrowingOutputs* growing, Compute compute) {
   const auto system = model::build(input.file.description, input.overrides);
   if (!system) return tl::unexpected(system.error());
   if (auto known = check_shown(arguments, *system); !known) return tl::unexpected(known.error());
@@ -59,7 +60,7 @@ Expected<result::Result> compute_all(const RunArguments& arguments, const ModelI
   if (growing != nullptr && growing->only_counts()) pipeline::leave_out_rows(*system, options);
   auto result = compute(*system, options, observers);
   if (!result) return result;
-  complete_record(input, *result);
+  if (const auto note = frontend::complete_record(input, *result)) print_error(*note);
   if (outputs.show_surfaces()) pipeline::add_drawings(*system, *result);
   return result;
 }
@@ -192,19 +193,18 @@ void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const
       ->type_name("FILE.html");
 }
 
-Expected<ModelInput> stated_model(const RunArguments& arguments) {
-  auto input = read_input(arguments.model, arguments.settings);
+Expected<frontend::ModelInput> stated_model(const RunArguments& arguments) {
+  auto input = frontend::read_input(arguments.model, arguments.settings);
   if (!input) return input;
   if (auto done = apply_shortcuts(arguments, *input); !done) return tl::unexpected(done.error());
   return input;
 }
 
-Expected<void> apply_shortcuts(const RunArguments& arguments, ModelInput& input) {
+Expected<void> apply_shortcuts(const RunArguments& arguments, frontend::ModelInput& input) {
   for (const auto& [shortcut, value] : arguments.shortcuts) {
     if (!value) continue;
-    const SourceLocation typed{fmt::format("{} {}", shortcut.flag, *value), 0, 0};
-    if (auto done = io::set_option(input.file, shortcut.key, *value, typed); !done) return done;
-    input.settings.push_back(fmt::format("{}={}", shortcut.key, *value));
+    const auto typed = fmt::format("{} {}", shortcut.flag, *value);
+    if (auto done = frontend::apply_option(input, shortcut.key, *value, typed); !done) return done;
   }
   return {};
 }
@@ -215,11 +215,11 @@ std::string call_of(const char* command, const RunArguments& arguments) {
     if (value) call.insert(call.end(), {shortcut.flag, *value});
   }
   for (const auto& setting : arguments.settings) call.insert(call.end(), {"--set", setting});
-  return command_line(call);
+  return frontend::command_line(call);
 }
 
 /// A stored optimum holds its model, and that its first guess of the controls.
-void tell_whose_controls(const ModelInput& input) {
+void tell_whose_controls(const frontend::ModelInput& input) {
   const auto& description = input.file.description;
   const bool stored = input.path != description.file;
   if (!stored || !input.file.optimize || description.controls.empty()) return;
@@ -233,9 +233,9 @@ void tell_whose_controls(const ModelInput& input) {
 ExitCode run_model(const char* command, const RunArguments& arguments, Compute compute) {
   const auto shown = shown_events(arguments.events);
   if (!shown) return refuse(shown.error());
-  const auto text = read_model_text(arguments.model);
+  const auto text = frontend::read_model_text(arguments.model);
   if (!text) return refuse(text.error());
-  auto input = read_input(*text, arguments.settings);
+  auto input = frontend::read_input(*text, arguments.settings);
   if (!input) return refuse_with_source(input.error(), *text);
   if (auto done = apply_shortcuts(arguments, *input); !done) return refuse(done.error());
   if (auto fits = io::check_options(input->file); !fits) return refuse_with_source(fits.error(), *text);
@@ -243,8 +243,8 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
   const auto outputs = Outputs::make(arguments.outputs, input->path);
   if (!outputs) return refuse(outputs.error());
 
-  const bool one_run = arguments.methods == RunMethods::chosen;
-  if (one_run) print_warnings(options_without_effect(input->file));
+  const bool one_run = arguments.methods == frontend::RunMethods::chosen;
+  if (one_run) print_warnings(frontend::options_without_effect(input->file));
   tell_whose_controls(*input);
   auto growing = one_run ? outputs->growing(*shown) : std::nullopt;
   auto result = compute_all(arguments, *input, *outputs, growing ? &*growing : nullptr, compute);

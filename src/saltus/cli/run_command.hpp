@@ -11,12 +11,15 @@
 #include "saltus/base/error.hpp"
 #include "saltus/base/function_ref.hpp"
 #include "saltus/cli/exit_code.hpp"
-#include "saltus/cli/model_input.hpp"
 #include "saltus/cli/outputs.hpp"
+#include "saltus/frontend/model_input.hpp"
 #include "saltus/io/toml/toml_model.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace CLI {
 class App;
@@ -46,9 +49,6 @@ inline constexpr std::array simulate_shortcuts{
              "report, all or K: follow other admissible motions, at most K trajectories"},
 };
 
-/// Says whether a command runs the method that was chosen, or several.
-enum class RunMethods { chosen, several };
-
 /// Holds what was typed behind one of these commands.
 struct RunArguments {
   std::string model;
@@ -58,7 +58,7 @@ struct RunArguments {
   std::string events;             ///< of --events; empty: the default
   std::vector<std::string> show;  ///< of --show
   bool quiet = false;
-  RunMethods methods = RunMethods::several;
+  frontend::RunMethods methods = frontend::RunMethods::several;
 };
 
 /// Adds MODEL, the shortcuts, --set and --quiet to a command.
@@ -66,7 +66,7 @@ struct RunArguments {
 void add_model_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts);
 
 /// Returns the model with the settings and shortcuts applied.
-[[nodiscard]] Expected<ModelInput> stated_model(const RunArguments& arguments);
+[[nodiscard]] Expected<frontend::ModelInput> stated_model(const RunArguments& arguments);
 
 /// Adds MODEL, the shortcuts, --set, --out, --report and --quiet to a command.
 /// @param arguments  filled when the command line is parsed; must stay where it is
@@ -83,7 +83,7 @@ void add_run_options(CLI::App& command, RunArguments& arguments, std::span<const
 void print_warnings(const std::vector<std::string>& warnings);
 
 /// Applies what was typed beside --set, and notes it as settings.
-[[nodiscard]] Expected<void> apply_shortcuts(const RunArguments& arguments, ModelInput& input);
+[[nodiscard]] Expected<void> apply_shortcuts(const RunArguments& arguments, frontend::ModelInput& input);
 
 /// Returns the call, without what says where its results go.
 [[nodiscard]] std::string call_of(const char* command, const RunArguments& arguments);

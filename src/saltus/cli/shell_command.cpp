@@ -7,10 +7,10 @@
 #include <fmt/format.h>
 
 #include "saltus/base/version.hpp"
-#include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/text/completion_text.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/catalogue.hpp"
 #include "saltus/io/check/model_schema.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 
@@ -115,11 +115,11 @@ ExitCode print_completion(const CLI::App& app, const std::string& shell) {
 ExitCode print_names(const std::vector<std::string>& words) {
   std::set<std::string> names;
   if (words.empty()) {
-    for (const auto& entry : catalogue()) names.insert(entry.name);
+    for (const auto& entry : frontend::catalogue()) names.insert(entry.name);
   }
   for (const auto& word : words) {
     if (word.empty() || word.starts_with('-')) continue;
-    const auto path = find_model(word);
+    const auto path = frontend::find_model(word);
     if (!path || *path == "-") continue;
     if (const auto text = io::read_model_text(*path)) {
       const auto described = io::diagnose_model(text->text, text->name).model.description;

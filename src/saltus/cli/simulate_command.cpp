@@ -26,7 +26,7 @@ Command add_simulate(CLI::App& app) {
   auto* command = app.add_subcommand("simulate", "simulate a model and show its end state and events");
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<RunArguments>();
-  arguments->methods = RunMethods::chosen;
+  arguments->methods = frontend::RunMethods::chosen;
   add_run_options(*command, *arguments, simulate_shortcuts, {".json", ".csv", ".npz"},
                   "write the result: .json all, .csv trajectory, .events.csv events, .npz for NumPy; may repeat");
   command->add_option("--events", arguments->events, "events in the table: N at each end (10), or all")

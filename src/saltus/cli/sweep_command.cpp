@@ -14,13 +14,14 @@
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/run_command.hpp"
-#include "saltus/cli/sweep/page.hpp"
-#include "saltus/cli/sweep/share.hpp"
-#include "saltus/cli/sweep/sweep_input.hpp"
-#include "saltus/cli/sweep/sweep_table.hpp"
-#include "saltus/cli/sweep/sweep_warnings.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/sweep_input.hpp"
+#include "saltus/frontend/sweep_page.hpp"
+#include "saltus/frontend/sweep_share.hpp"
+#include "saltus/frontend/sweep_table.hpp"
+#include "saltus/frontend/sweep_warnings.hpp"
 #include "saltus/io/atomic_file.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -29,7 +30,7 @@ using pipeline::Keep;
 
 struct SweepArguments {
   RunArguments run;
-  SweepRequest request;
+  frontend::SweepRequest request;
   std::string keep = "final";
   std::string out;
   std::string page;
@@ -98,18 +99,18 @@ Expected<void> check_output(const SweepArguments& arguments, const std::string& 
   return io::check_writable(arguments.out);
 }
 
-Expected<void> write_table(const std::string& file, const std::vector<TableColumn>& table) {
-  if (std::filesystem::path(file).extension() == ".csv") return io::write_file(file, to_csv(table));
-  return io::stream_file(file, [&](io::Sink sink) { return write_npz(table, sink); });
+Expected<void> write_table(const std::string& file, const std::vector<frontend::TableColumn>& table) {
+  if (std::filesystem::path(file).extension() == ".csv") return io::write_file(file, frontend::to_csv(table));
+  return io::stream_file(file, [&](io::Sink sink) { return frontend::write_npz(table, sink); });
 }
 
-Expected<void> write_files(const SweepArguments& arguments, const std::vector<TableColumn>& table,
-                           const SweepPage& page) {
+Expected<void> write_files(const SweepArguments& arguments, const std::vector<frontend::TableColumn>& table,
+                           const frontend::SweepPage& page) {
   if (!arguments.out.empty()) {
     if (auto written = write_table(arguments.out, table); !written) return written;
   }
   if (arguments.page.empty()) return {};
-  return io::write_file(arguments.page, sweep_page(table, page));
+  return io::write_file(arguments.page, frontend::sweep_page(table, page));
 }
 
 /// "98 completed, 2 iteration_limit"
@@ -122,7 +123,7 @@ std::string statuses(const std::vector<pipeline::SweepRun>& runs) {
 }
 
 /// "; 1 not unique", of a table with a column of that: how many runs are in doubt.
-std::string doubts(const std::vector<TableColumn>& table) {
+std::string doubts(const std::vector<frontend::TableColumn>& table) {
   const auto unique =
       std::find_if(table.begin(), table.end(), [](const auto& column) { return column.name == "unique"; });
   if (unique == table.end()) return "";  // joined shares of an older version
@@ -164,7 +165,7 @@ pipeline::SweepObservers sweep_observers(const SweepArguments& arguments, std::s
   return observers;
 }
 
-Expected<SweepRequest> request_of(const SweepArguments& arguments) {
+Expected<frontend::SweepRequest> request_of(const SweepArguments& arguments) {
   auto request = arguments.request;
   if (!arguments.seed) return request;
   if (*arguments.seed < 0) {
@@ -176,7 +177,7 @@ Expected<SweepRequest> request_of(const SweepArguments& arguments) {
 }
 
 /// Whether what the sweep changes is not set, too.
-Expected<void> check_settings(const std::vector<std::string>& settings, const SweepPlan& plan) {
+Expected<void> check_settings(const std::vector<std::string>& settings, const frontend::SweepPlan& plan) {
   for (const auto& setting : settings) {
     const auto name = setting.substr(0, setting.find('='));
     if (!contains(plan.names(), name)) continue;
@@ -191,7 +192,7 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   const auto stated = request_of(arguments);
   if (!stated) return refuse(stated.error());
   const auto& request = *stated;
-  const auto plan = SweepPlan::make(request);
+  const auto plan = frontend::SweepPlan::make(request);
   if (!plan) return refuse(plan.error());
   const auto keep = keep_named(arguments.keep);
   if (!keep) return refuse(keep.error());
@@ -201,27 +202,29 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   if (!model) return refuse(model.error());
   if (auto writable = check_output(arguments, model->path); !writable) return refuse(writable.error());
   if (auto once = check_settings(arguments.run.settings, *plan); !once) return refuse(once.error());
-  const auto first = input_of_run(*model, *plan, 0);
+  const auto first = frontend::input_of_run(*model, *plan, 0);
   if (!first) return refuse(first.error());
-  if (auto one = check_branches(*first, *plan); !one) return refuse(one.error());
-  print_warnings(options_without_effect(first->file));
+  if (auto one = frontend::check_branches(*first, *plan); !one) return refuse(one.error());
+  print_warnings(frontend::options_without_effect(first->file));
 
-  const auto share = arguments.task.empty() ? Expected<Share>(Share{}) : parse_share(arguments.task, plan->runs());
+  const auto share = arguments.task.empty() ? Expected<frontend::Share>(frontend::Share{})
+                                            : frontend::parse_share(arguments.task, plan->runs());
   if (!share) return refuse(share.error());
   const std::size_t begin = share->begin(plan->runs()), count = share->end(plan->runs()) - begin;
   catch_interrupt();
   const auto observers = sweep_observers(arguments, count);
-  const auto state = [&](std::size_t run) { return state_run(*model, *plan, begin + run); };
+  const auto state = [&](std::size_t run) { return frontend::state_run(*model, *plan, begin + run); };
   const auto outcome = pipeline::sweep({count, *keep, *jobs, begin}, state, observers);
   if (!outcome) return refuse(io::located(outcome.error(), model->file));
-  print_warnings(told_with_runs(outcome->warnings));
+  print_warnings(frontend::told_with_runs(outcome->warnings));
   const auto& runs = outcome->runs;
-  auto table = sweep_table(*plan, runs, *keep, begin);
+  auto table = frontend::sweep_table(*plan, runs, *keep, begin);
   const bool grid = !request.paired && request.samples.empty();
-  const SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid,
-                       model->file.captions};
+  const frontend::SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid,
+                                 model->file.captions};
   if (!arguments.task.empty()) {
-    table.front().name = share_heading(*share, plan->runs(), sweep_mark(*model, request, arguments.keep), page);
+    table.front().name =
+        frontend::share_heading(*share, plan->runs(), frontend::sweep_mark(*model, request, arguments.keep), page);
   }
   if (auto written = write_files(arguments, table, page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
@@ -239,11 +242,11 @@ ExitCode run_join(const SweepArguments& arguments) {
         misuse("--join takes the tables of shares, and no model", "saltus sweep --join 1.csv 2.csv --out all.csv"));
   }
   if (auto writable = check_output(arguments, ""); !writable) return refuse(writable.error());
-  const auto whole = join_shares(arguments.join);
+  const auto whole = frontend::join_shares(arguments.join);
   if (!whole) return refuse(whole.error());
   if (auto written = write_files(arguments, whole->table, whole->page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
-    print(fmt::format("{} shares, {} rows{}\n{}\n", arguments.join.size(), rows_of(whole->table.front()),
+    print(fmt::format("{} shares, {} rows{}\n{}\n", arguments.join.size(), frontend::rows_of(whole->table.front()),
                       doubts(whole->table), arguments.out.empty() ? arguments.page : arguments.out));
   }
   return ExitCode::done;
@@ -266,7 +269,7 @@ Command add_sweep(CLI::App& app) {
   several("--sample", request.samples, "random values: normal(m,s), uniform(a,b), lognormal(m,s)", "NAME=DISTRIBUTION");
   command->add_option("--runs", request.runs, "samples (of every point of the grid)")->type_name("N");
   command->add_option("--seed", arguments->seed, "of the random numbers (1)")->type_name("N");
-  command->add_flag("--yes", request.confirmed, fmt::format("also more than {} runs", unconfirmed_runs));
+  command->add_flag("--yes", request.confirmed, fmt::format("also more than {} runs", frontend::unconfirmed_runs));
   command->add_option("--keep", arguments->keep, "a row for every run, for every event, or for every time (final)")
       ->type_name("final|events|trajectory");
   command->add_option("--jobs", arguments->jobs, "threads (as many as processors); the table does not depend on it")

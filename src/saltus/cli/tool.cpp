@@ -13,10 +13,10 @@
 
 #include "saltus/base/contains.hpp"
 #include "saltus/base/version.hpp"
-#include "saltus/cli/catalogue.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/exit_code.hpp"
 #include "saltus/cli/text/terminal.hpp"
+#include "saltus/frontend/catalogue.hpp"
 
 namespace saltus::cli {
 namespace {
@@ -74,7 +74,7 @@ Error unknown_command(const std::string& word, const std::vector<Command>& comma
     if (!hidden) known.push_back(command.name);
   }
   std::error_code unknown;
-  const auto model = find_model(word);
+  const auto model = frontend::find_model(word);
   const bool is_model = nearest_names(word, known).empty() && model && std::filesystem::exists(*model, unknown);
   return {ErrorCode::unknown_name,
           fmt::format("'{}' is no command of saltus", word),

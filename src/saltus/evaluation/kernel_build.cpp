@@ -60,7 +60,7 @@ KernelSymbols::KernelSymbols(const model::System& system)
 }
 
 CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system) {
-  auto& [parameters, regions, cells] = start;
+  auto& parameters = start.parameters;
   parameters = system.parameter_values;
   fixed_parameters = parameters.size();
   input = SX::densify(system.input);
@@ -85,10 +85,10 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
       jump_guards.push_back({jump.name, guard, jump.targets, with_inputs(jump.values), discrete});
     }
   }
-  regions = RegionConstants(system, p, parameters);
-  cells = CellFunctions(system, p, parameters);
+  start.regions = RegionConstants(system, p, parameters);
+  start.cells = CellFunctions(system, p, parameters);
   places = SymbolPlaces(symbols());
-  for (auto& end : cells.rows(system)) rows.push_back(std::move(end));
+  for (auto& end : start.cells.rows(system)) rows.push_back(std::move(end));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
 
   const RootLimits limits = limit_roots(free.f, phi(casadi::Slice(0, n_psi)), symbols(), system.parameter_values);
@@ -98,6 +98,7 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
   continued_roots = limits.continued;
   find_structure(system);
   compile_functions(system);
+  find_layout(system);
 }
 
 /// Guards of contacts are numbers of order 1, in the units of their modes; a gap is a length.

@@ -23,6 +23,7 @@
 #include "saltus/evaluation/region_constants_internal.hpp"
 #include "saltus/evaluation/sparse/used_symbols_internal.hpp"
 #include "saltus/model/graph/model_function.hpp"
+#include "saltus/model/layout.hpp"
 
 namespace saltus::evaluation {
 
@@ -116,9 +117,13 @@ struct LimitedFunction {
 
 /// Says where a run begins beside t, x and alpha.
 struct KernelValues {
-  std::vector<double> parameters;  ///< values of p
-  RegionConstants regions;         ///< their references
-  CellFunctions cells;             ///< in which each argument is
+  std::vector<double> parameters;     ///< values of p
+  RegionConstants regions;            ///< their references
+  CellFunctions cells;                ///< in which each argument is
+  std::vector<double> initial_state;  ///< x where a run begins
+  std::shared_ptr<const model::System>
+      system;  ///< stated with these values; copied and dropped under the symbolic lock
+  std::shared_ptr<const model::Layout> layout;  ///< its own: names and times are no part of what is compiled
 };
 
 /// Holds a model as compiled functions, for kernels in any threads. Nothing of it changes but what is made when it is
@@ -140,6 +145,8 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   [[nodiscard]] const std::optional<ode::JacobianPattern>& jacobian_pattern();
   [[nodiscard]] const ModelFunction& jacobian(CompiledMotion& motion, const ode::JacobianPattern* pattern);
   [[nodiscard]] Expected<CompiledMotion*> held(const std::vector<int>& guards);
+  /// Returns the layout of a system with the same structure, with what is known from the expressions.
+  [[nodiscard]] model::Layout layout_with_parts(const model::System& system) const;
 
   KernelFunctions functions;
   KernelValues start;
@@ -152,6 +159,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   void compile_functions(const model::System& system);
   [[nodiscard]] ModelFunction range_function(casadi_int moving) const;
   void find_structure(const model::System& system);
+  void find_layout(const model::System& system);
   [[nodiscard]] std::vector<std::vector<int>> normal_dependencies(const casadi::SX& f) const;
   void compile_conditions(const model::System& system);
 

@@ -77,19 +77,6 @@ Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
   return {};
 }
 
-bool ModelKernel::set_parameters(const std::vector<double>& values) {
-  auto& self = *implementation_;
-  SALTUS_ASSERT(values.size() == self.compiled->fixed_parameters);
-  if (self.compiled->by_values || !self.limited.empty() || !self.regions.groups().empty()) return false;
-  std::copy(values.begin(), values.end(), self.parameters.begin());
-  for (int cell = 0; cell < self.cells.size(); ++cell) self.cells.move(cell, 0, self.parameters);
-  self.constant_gradients.reset();
-  self.free.linear_always.reset();
-  for (auto& [functions, motion] : self.held) motion.linear_always.reset();
-  self.field_use.motion = self.motion = &self.free;
-  return true;
-}
-
 void ModelKernel::hold_pressure(double t, const double* x, const double* alpha, double* pressure) const {
   auto& self = *implementation_;
   SALTUS_ASSERT(!self.motion->pressure.is_null());

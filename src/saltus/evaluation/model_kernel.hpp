@@ -12,8 +12,9 @@
 #include "saltus/ode/sparse/jacobian_pattern.hpp"
 
 namespace saltus::model {
+struct Layout;
 struct System;
-}
+}  // namespace saltus::model
 
 namespace saltus::evaluation {
 
@@ -113,10 +114,10 @@ class ModelKernel {
   [[nodiscard]] static Expected<ModelKernel> of(std::shared_ptr<CompiledModel> model, NativeCode native);
   [[nodiscard]] std::shared_ptr<CompiledModel> compiled() const;
 
-  /// Returns the kernel of a system with the same structure (model::structure) and these parameters, as if it was just
-  /// compiled and bit by bit; what was compiled stays.
+  /// Takes values and names of a system with the same structure (model::structure), as if it was just compiled and bit
+  /// by bit; what was compiled stays.
   /// @return false, and nothing has changed, where expressions depend on values (roots) or on what was before.
-  [[nodiscard]] bool set_parameters(const std::vector<double>& values);
+  [[nodiscard]] bool set_values(const model::System& system);
 
   ModelKernel(ModelKernel&&) noexcept;
   ModelKernel& operator=(ModelKernel&&) noexcept;
@@ -127,6 +128,13 @@ class ModelKernel {
   [[nodiscard]] int event_functions() const;  ///< psi, event expressions and guards together
   [[nodiscard]] int outputs() const;
   [[nodiscard]] int controls() const;
+  /// Returns what of the system is no expression. Stays where it is until set_values().
+  [[nodiscard]] const model::Layout& layout() const;
+  /// Returns the system whose values it has, for words in messages. Stays where it is until set_values().
+  [[nodiscard]] const model::System& stated() const;
+  /// Returns where a run begins: that of the system, unless it was set (n_x).
+  [[nodiscard]] const std::vector<double>& initial_state() const;
+  void set_initial_state(std::vector<double> x);
 
   /// Evaluates xdot = f(t, x, u(t), p, alpha).
   void field(double t, const double* x, const double* alpha, double* xdot) const;

@@ -7,44 +7,44 @@
 
 namespace saltus::event_integrator {
 
-CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const model::System& system,
-                                     const IntegrationOptions& options, const StepObserver& observer) {
-  return Run(kernel, system, options).to_end(observer);
+CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const IntegrationOptions& options,
+                                     const StepObserver& observer) {
+  return Run(kernel, options).to_end(observer);
 }
 
 namespace {
 
 /// Rows and events of a part of a run.
-void expand(const model::System& system, Recording recording, Integration& integration) {
+void expand(const model::Layout& layout, Recording recording, Integration& integration) {
   // Contacts are shown by states that are left out of the rows.
-  integration.final = recording.last(system);
-  integration.events = recording.events(system);
-  integration.trajectory = std::move(recording).trajectory(system);
-  if (!system.contacts.empty()) {
-    show_contacts(system, integration.final, integration.events, integration.trajectory);
+  integration.final = recording.last(layout);
+  integration.events = recording.events(layout);
+  integration.trajectory = std::move(recording).trajectory(layout);
+  if (!layout.contacts.empty()) {
+    show_contacts(layout, integration.final, integration.events, integration.trajectory);
   }
 }
 
 }  // namespace
 
-Integration integrate(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-                      const StepObserver& observer, const TakeRecorded& take) {
+Integration integrate(evaluation::ModelKernel& kernel, const IntegrationOptions& options, const StepObserver& observer,
+                      const TakeRecorded& take) {
   Integration integration;
   const auto pass_on = [&](Recording recording) {
     if (recording.row_times.empty()) return;
-    expand(system, std::move(recording), integration);
+    expand(kernel.layout(), std::move(recording), integration);
     if (!take) return;
     take(std::move(integration.trajectory), std::move(integration.events));
     integration.trajectory = {};
     integration.events = {};
   };
-  CompactIntegration run = Run(kernel, system, options).to_end(observer, take ? TakeRecording(pass_on) : nullptr);
+  CompactIntegration run = Run(kernel, options).to_end(observer, take ? TakeRecording(pass_on) : nullptr);
   auto& recording = run.recording;
   integration.status = std::move(run.status);
   integration.statistics = run.statistics;
   integration.chosen = run.chosen;
   integration.pieces = std::move(run.pieces);
-  integration.families = recording.listed_families(system);
+  integration.families = recording.listed_families(kernel.layout());
   integration.family_numbers = recording.family_numbers();
   if (!take) integration.branch_points = std::move(recording.branch_points);
   pass_on(std::move(recording));

@@ -8,7 +8,6 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/choices.hpp"
 #include "saltus/event_integrator/options.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::event_integrator {
@@ -43,8 +42,7 @@ using TakeRecorded = std::function<void(result::Trajectory, result::Events)>;
 /// @return everything computed up to the termination; never throws for numerical reasons. Independent of the output
 ///         times bit for bit.
 /// Cost: evaluations of f (m + 1 or m + 2 per evaluation while sliding on m surfaces), 9 of the event functions a step.
-[[nodiscard]] Integration integrate(evaluation::ModelKernel& kernel, const model::System& system,
-                                    const IntegrationOptions& options, const StepObserver& observer = {},
-                                    const TakeRecorded& take = {});
+[[nodiscard]] Integration integrate(evaluation::ModelKernel& kernel, const IntegrationOptions& options,
+                                    const StepObserver& observer = {}, const TakeRecorded& take = {});
 
 }  // namespace saltus::event_integrator

@@ -15,13 +15,12 @@
 namespace saltus::event_integrator {
 
 struct Solution::Implementation {
-  Implementation(std::shared_ptr<const Pieces> of, evaluation::ModelKernel of_it, const model::System& its)
+  Implementation(std::shared_ptr<const Pieces> of, evaluation::ModelKernel of_it)
       : pieces(std::move(of)),
         kernel(std::move(of_it)),
-        system(its),
-        field(kernel, is_affine_in_selections(its)),
-        contacts(kernel, its),
-        holding(kernel, its),
+        field(kernel, kernel.layout().affine_in_selections),
+        contacts(kernel),
+        holding(kernel),
         x(at(kernel.states())),
         slope(at(kernel.states())) {
     holding.keep(&contacts);
@@ -32,7 +31,6 @@ struct Solution::Implementation {
 
   std::shared_ptr<const Pieces> pieces;
   evaluation::ModelKernel kernel;
-  const model::System& system;
   ModeField field;
   Contacts contacts;
   Holding holding;
@@ -70,17 +68,17 @@ bool Solution::Implementation::write(double t, Recorder& recorder) {
   return true;
 }
 
-Solution::Solution(std::shared_ptr<const Pieces> pieces, evaluation::ModelKernel kernel, const model::System& system)
-    : implementation_(std::make_unique<Implementation>(std::move(pieces), std::move(kernel), system)) {}
+Solution::Solution(std::shared_ptr<const Pieces> pieces, evaluation::ModelKernel kernel)
+    : implementation_(std::make_unique<Implementation>(std::move(pieces), std::move(kernel))) {}
 Solution::Solution(Solution&&) noexcept = default;
 Solution::~Solution() = default;
 
 result::Trajectory Solution::rows(const std::vector<double>& times) {
-  const auto& system = implementation_->system;
-  Recorder recorder(implementation_->kernel, system);
+  const auto& layout = implementation_->kernel.layout();
+  Recorder recorder(implementation_->kernel);
   for (const double t : times) static_cast<void>(implementation_->write(t, recorder));
-  auto rows = recorder.take().trajectory(system);
-  if (!system.contacts.empty()) show_contacts(system, rows);
+  auto rows = recorder.take().trajectory(layout);
+  if (!layout.contacts.empty()) show_contacts(layout, rows);
   return rows;
 }
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::event_integrator {
@@ -17,8 +16,8 @@ struct Pieces;
 /// Rows are those that the run writes at the same times, bit for bit.
 class Solution {
  public:
-  /// @param kernel  of the system, for this only; the system must outlive it
-  Solution(std::shared_ptr<const Pieces> pieces, evaluation::ModelKernel kernel, const model::System& system);
+  /// @param kernel  of the system, for this only
+  Solution(std::shared_ptr<const Pieces> pieces, evaluation::ModelKernel kernel);
   Solution(Solution&&) noexcept;
   ~Solution();
 

@@ -11,23 +11,9 @@
 #include "saltus/model/hysteresis/hysteresis_description.hpp"
 #include "saltus/model/mechanics/mechanics_description.hpp"
 #include "saltus/model/ocp_description.hpp"
+#include "saltus/model/roles.hpp"
 
 namespace saltus::model {
-
-enum class Inclusion { filippov, aizerman_pyatnitskii };
-enum class Direction { up, down, both };
-enum class AtEvent { record, stop };
-
-/// Says what turns a jump of [[jumps]] on (docs/model-file.md).
-enum class JumpTrigger {
-  condition,   ///< a condition becomes true
-  guard_down,  ///< g < 0 becomes true
-  guard_up,    ///< g > 0 becomes true
-  guard_both,  ///< either
-  times,       ///< given times
-};
-/// Says when the right-hand sides of `set` are evaluated.
-enum class JumpValues { at_trigger, at_execution };
 
 /// Holds name = "expression"; location is that of the name, the expression carries its own positions.
 struct NamedExpression {

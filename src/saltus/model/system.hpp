@@ -9,20 +9,12 @@
 #include <casadi/core/sx_elem.hpp>
 
 #include "saltus/model/cells.hpp"
-#include "saltus/model/description.hpp"
+#include "saltus/model/layout.hpp"
 #include "saltus/model/mechanics/contact_system.hpp"
 #include "saltus/model/mechanics/drawn_shape.hpp"
+#include "saltus/model/roles.hpp"
 
 namespace saltus::model {
-
-/// Says how a switching function takes part in a result.
-enum class SwitchingRole {
-  listed,      ///< makes a jump somewhere: column in the result, each change of sign is an event
-  kink,        ///< nothing jumps on its surface: restart only (column if named)
-  time_event,  ///< depends on time and controls only: restart only (column if named)
-  discrete,    ///< depends on discrete states only: changes by jumps only, never slides; at zero it is as written
-  region,      ///< of a mode by `indicator`: see ModeGroup; in no column
-};
 
 /// Holds psi_j(t, x, u, p, alpha_inner); alpha_inner are the selections of switching functions with smaller index
 /// (nesting).
@@ -39,13 +31,6 @@ struct SwitchingFunction {
   bool continuous = false;  ///< listed, though nothing jumps on its surface: an edge of a layer
   /// Returns whether f is the same on both sides: then nothing slides on the surface.
   [[nodiscard]] bool is_kink() const { return role == SwitchingRole::kink || continuous; }
-};
-
-/// Holds a column of the result: a switching function, or an alias of one (the same surface named twice).
-struct SwitchingColumn {
-  std::string name;
-  int function = 0;      ///< index into System::switching
-  int orientation = +1;  ///< -1 if this name's psi is a negative multiple of the function's
 };
 
 /// Holds `when` of [[events]]: value = 0 is the event if `guards` is empty; otherwise a condition whose truth is the

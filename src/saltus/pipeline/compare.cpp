@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/layout_of.hpp"
 #include "saltus/pipeline/observers_internal.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
 #include "saltus/pipeline/recorded_internal.hpp"
@@ -68,8 +69,9 @@ std::vector<double> times_to_compare(double from, double until) {
 
 /// Whether `smoothed` is another method than `event`.
 bool is_regularised(const model::System& system) {
-  return std::any_of(system.switching.begin(), system.switching.end(),
-                     [](const auto& function) { return function.role != model::SwitchingRole::discrete; });
+  const auto layout = model::layout_of(system);
+  return std::any_of(layout.surfaces.begin(), layout.surfaces.end(),
+                     [](const auto& surface) { return surface.role != model::SwitchingRole::discrete; });
 }
 
 /// The reference first.

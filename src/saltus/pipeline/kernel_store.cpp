@@ -33,7 +33,7 @@ Expected<KernelStore::Kept> KernelStore::take(const model::System& system, evalu
     if (!kernel) return tl::unexpected(kernel.error());
     found = Kept{structure, native, std::move(*kernel)};
   }
-  if (found && found->kernel.set_parameters(system.parameter_values)) return std::move(*found);
+  if (found && found->kernel.set_values(system)) return std::move(*found);
   auto kernel = evaluation::ModelKernel::compile(system, native);
   if (!kernel) return tl::unexpected(kernel.error());
   remember({structure, native, kernel->compiled()});

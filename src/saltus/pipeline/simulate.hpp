@@ -11,9 +11,12 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 

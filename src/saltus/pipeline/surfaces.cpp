@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
-#include "saltus/evaluation/surface_functions.hpp"
+#include "saltus/evaluation/surfaces/surface_functions.hpp"
 #include "saltus/pipeline/level_curves.hpp"
 #include "saltus/pipeline/recorded_internal.hpp"
 #include "saltus/result/kept_columns.hpp"

@@ -3,9 +3,12 @@
 
 #include <vector>
 
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/level_curves.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 

@@ -17,6 +17,7 @@
 #include "saltus/base/contracts.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 
 namespace saltus::pipeline {
 namespace {

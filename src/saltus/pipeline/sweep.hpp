@@ -9,7 +9,6 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/base/function_ref.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/result.hpp"
 
@@ -25,11 +24,8 @@ struct SweepOptions {
   std::size_t before = 0;  ///< of a share of a sweep: runs that others do before these; for messages
 };
 
-/// Holds one run: a system with its values, and the options.
-struct StatedRun {
-  model::System system{};
-  SimulateOptions options{};
-};
+struct StatedRun;  // options/stated_run.hpp
+
 /// States run number i, from 0. Called by all threads, one at a time, under the symbolic lock.
 using StateRun = FunctionRef<Expected<StatedRun>(std::size_t run)>;
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saltus/base/without_repeats.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/result/continuous.hpp"
 
 namespace saltus::pipeline {

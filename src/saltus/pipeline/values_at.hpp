@@ -4,11 +4,14 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/continuous.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 

@@ -9,6 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/surfaces.hpp"
 
@@ -214,7 +215,7 @@ namespace {
 
 /// An optimum has them already: its parameters are its own.
 void add_bodies(const model::System& system, result::Result& result) {
-  if (!result.drawing) result.drawing = drawing_of(system, system.parameter_values, result.trajectory);
+  if (!result.drawing) result.drawing = drawing_of(system, result.trajectory);
   for (auto& branch : result.branches) add_bodies(system, branch);
 }
 

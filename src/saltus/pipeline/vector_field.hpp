@@ -3,8 +3,11 @@
 
 #include <optional>
 
-#include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 

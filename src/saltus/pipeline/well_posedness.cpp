@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
 
 namespace saltus::pipeline {

@@ -10,20 +10,9 @@
 #include "saltus/base/error.hpp"
 #include "saltus/linalg/int_matrix.hpp"
 #include "saltus/model/system.hpp"
+#include "saltus/reformulation/reformulation_options.hpp"
 
 namespace saltus::reformulation {
-
-/// Says how a set-valued selection is written with complementarities.
-enum class Form {
-  step,     ///< of a step function: (22) of [nurkanovic2024]
-  stewart,  ///< of the smallest of several indicators: (28) of [nurkanovic2024], [stewart1990]
-};
-
-struct ReformulationOptions {
-  Form reformulation = Form::step;
-  /// Most factors per product of the step form (n_d >= 2), longer ones get lifted variables; none: no lifting.
-  std::optional<int> lifting = 2;
-};
 
 /// Holds consecutive selections that belong together: all step selections are one part; every simplex of Stewart's form
 /// is one part.

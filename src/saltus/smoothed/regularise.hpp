@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saltus/base/error.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::smoothed {

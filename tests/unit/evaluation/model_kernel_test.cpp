@@ -182,7 +182,12 @@ TEST(ModelKernel, KernelsOfOneCompiledModelDoNotSeeEachOther) {
   ASSERT_TRUE(first.has_value());
   auto second = ModelKernel::of(first->compiled(), NativeCode::off);
   ASSERT_TRUE(second.has_value());
-  ASSERT_TRUE(second->set_parameters({7.0}));
+  auto changed = example();
+  changed.parameter_values = {7.0};
+  changed.initial_state[0] += 1.0;
+  ASSERT_TRUE(second->set_values(changed));
+  EXPECT_EQ(second->initial_state(), changed.initial_state);
+  EXPECT_EQ(first->initial_state(), example().initial_state);
   const double t = 0.5;
   const double x[] = {0.3, -0.4};
   const double alpha[] = {0.25, 1.0, 0.0};
@@ -194,7 +199,7 @@ TEST(ModelKernel, KernelsOfOneCompiledModelDoNotSeeEachOther) {
   const double rate = second->lie_derivative(0, 2, t, x, alpha);
   first.emplace(std::move(*ModelKernel::of(second->compiled(), NativeCode::off)));
   EXPECT_NE(first->lie_derivative(0, 2, t, x, alpha), rate);  // of other parameters
-  ASSERT_TRUE(first->set_parameters({7.0}));
+  ASSERT_TRUE(first->set_values(changed));
   EXPECT_EQ(first->lie_derivative(0, 2, t, x, alpha), rate);
   EXPECT_EQ(first->field_evaluations(), 0);
 }

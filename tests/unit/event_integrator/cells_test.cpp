@@ -35,7 +35,7 @@ Integration run(Builder& builder, const Settings& settings) {
   options.until = settings.until;
   options.max_step = settings.max_step;
   if (!settings.times.empty()) options.output = {OutputTimes::Rows::at_times, settings.times};
-  auto result = integrate(*kernel, *system, options);
+  auto result = integrate(*kernel, options);
   EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
   return result;
 }

@@ -18,7 +18,7 @@ constexpr auto all_methods = {ode::Method::dopri5, ode::Method::dop853, ode::Met
 CompactIntegration run(const model::System& system, const IntegrationOptions& options, Run::Way way) {
   auto kernel = evaluation::ModelKernel::compile(system);
   EXPECT_TRUE(kernel.has_value());
-  return Run(*kernel, system, options, way).to_end({});
+  return Run(*kernel, options, way).to_end({});
 }
 
 void expect_same_bits(const std::vector<double>& a, const std::vector<double>& b, const std::string& what) {

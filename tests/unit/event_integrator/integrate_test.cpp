@@ -23,7 +23,7 @@ Integration run(const model::System& system, double until, double rtol = 1e-10,
   options.method = method;
   options.tolerances = {rtol, rtol / 100};
   options.until = until;
-  return integrate(*kernel, system, options);
+  return integrate(*kernel, options);
 }
 
 TEST(Integrate, CrossesAtTheExactTime) {
@@ -165,10 +165,10 @@ TEST(Integrate, RowsDoNotChangeStepsThatHaveNoDenseOutput) {
   options.tolerances = {1e-10, 1e-12};
   options.until = 3.0;
   options.output.rows = OutputTimes::Rows::at_times;
-  const auto without = integrate(*kernel, system, options);
+  const auto without = integrate(*kernel, options);
   const double wanted = steps[k] + 0.5 * h;
   options.output.times = {wanted};
-  const auto with = integrate(*kernel, system, options);
+  const auto with = integrate(*kernel, options);
   ASSERT_EQ(with.status.termination, Termination::completed) << with.status.message;
   EXPECT_EQ(without.final.x, with.final.x);
   EXPECT_EQ(without.statistics.steps, with.statistics.steps);
@@ -204,8 +204,8 @@ TEST(Integrate, AKernelCanBeUsedAgain) {
   ASSERT_TRUE(kernel.has_value());
   IntegrationOptions options;
   options.until = 10.0;
-  const auto first = integrate(*kernel, system, options);
-  const auto second = integrate(*kernel, system, options);
+  const auto first = integrate(*kernel, options);
+  const auto second = integrate(*kernel, options);
   EXPECT_GT(first.statistics.rhs_evaluations, 0);
   EXPECT_EQ(first.statistics.rhs_evaluations, second.statistics.rhs_evaluations);
   EXPECT_EQ(first.final.x, second.final.x);

@@ -160,7 +160,7 @@ TEST(LinearMotion, RunsOfAffineModesTakeSeriesThroughSlidingToo) {
     options.method = method;
     options.tolerances = {1e-8, 1e-10};
     options.until = 10.0;
-    const auto result = integrate(kernel, system, options);
+    const auto result = integrate(kernel, options);
     EXPECT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
     EXPECT_NEAR(result.final.x[1], -0.8973301894997, 1e-8);
     EXPECT_NEAR(result.final.x[2], 2.3586988111948, 1e-8);

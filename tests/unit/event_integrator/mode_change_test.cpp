@@ -54,11 +54,11 @@ std::array<Case, 4> cases() {
 
 /// Everything that begins with a mode, in the mode before.
 struct Parts {
-  Parts(evaluation::ModelKernel& kernel, const model::System& system, const ModeState& before)
+  Parts(evaluation::ModelKernel& kernel, const ModeState& before)
       : field(kernel, true),
         here(1.0, {0.0, 0.0, 1.0}),
         search(kernel, field, ode::Method::dopri5, tolerances),
-        recorder(kernel, system) {
+        recorder(kernel) {
     here.change_mode(before);
     field.enter(before);
     field(here.t, here.x.data(), here.slope.data());
@@ -127,7 +127,7 @@ TEST(ModeChange, EveryPartBeginsTheSameModeFromOneSurfaceAsFromAllOfIt) {
     transition.zero_order.assign(2, 0);
     transition.zero_order[static_cast<std::size_t>(told.surface)] = change.order();
 
-    Parts one(*kernel, system, before), all(*kernel, system, before);
+    Parts one(*kernel, before), all(*kernel, before);
     one.begin(change);
     all.begin(transition.from(before));
 

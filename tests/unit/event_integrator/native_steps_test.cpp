@@ -46,7 +46,7 @@ Integration run(const model::System& system, NativeCode native, const Integratio
   const std::vector<double> alpha(system.switching.size(), 0.0);
   kernel->prepare_field(alpha.data(), constants);
   EXPECT_EQ(constants.has_steps(), native == NativeCode::on);
-  return integrate(*kernel, system, options);
+  return integrate(*kernel, options);
 }
 
 /// Runs with both explicit methods; returns how many events there were.

@@ -20,7 +20,7 @@ inline Integration run_model(model::Builder& builder, const IntegrationOptions& 
   EXPECT_TRUE(system.has_value()) << (system ? "" : system.error().message);
   auto kernel = evaluation::ModelKernel::compile(*system);
   EXPECT_TRUE(kernel.has_value());
-  return integrate(*kernel, *system, options);
+  return integrate(*kernel, options);
 }
 
 /// With DOP853; `initial_mode` by numbers of switching functions.

@@ -10,6 +10,7 @@
 #include "saltus/event_integrator/sequences/switch_accumulation.hpp"
 #include "saltus/event_integrator/steps/step_attempt.hpp"
 #include "saltus/event_integrator/steps/step_tolerances.hpp"
+#include "saltus/model/layout.hpp"
 #include "systems.hpp"
 
 namespace saltus::event_integrator {
@@ -32,7 +33,7 @@ struct Scene {
   const model::System system;
   const IntegrationOptions options;
   evaluation::ModelKernel kernel;
-  const SwitchingContext switching_context{kernel, system, true, {}, {}};
+  const SwitchingContext switching_context{kernel, true, {}, {}};
   ModeField field{kernel, true};
   Position here{options.from, system.initial_state};
   StepTolerances tolerances{options.tolerances};
@@ -77,8 +78,8 @@ TEST(OutputRows, PassEveryRequestedTimeOnce) {
   IntegrationOptions options;
   options.output = {OutputTimes::Rows::at_times, {0.0, 0.25, 0.5, 0.75, 1.0}};
   Scene scene(testing::sign_system(0.5, -1.0, -0.25), options);
-  Holding holding(scene.kernel, scene.system);
-  Recorder recorder(scene.kernel, scene.system);
+  Holding holding(scene.kernel);
+  Recorder recorder(scene.kernel);
   OutputRows rows(scene.kernel, scene.options, scene.here, scene.field, holding, recorder);
   rows.skip_here();
   EXPECT_FALSE(rows.any_before(0.25));
@@ -97,7 +98,7 @@ TEST(OutputRows, PassEveryRequestedTimeOnce) {
 
 TEST(StepAttempt, HasADenseOutputOfItsLastAttemptOnly) {
   Scene scene(testing::sign_system(0.5, -1.0, -4.0));  // x' = 1.5 below 0
-  StepAttempt steps(scene.options, scene.system, scene.field, scene.here, scene.tolerances);
+  StepAttempt steps(scene.options, scene.kernel.layout(), scene.field, scene.here, scene.tolerances);
   ASSERT_EQ(steps.take(1.0), ode::Attempt::finite);
   ASSERT_TRUE(steps.make_dense());
   EXPECT_EQ(steps.dense().h, 1.0);

@@ -63,7 +63,7 @@ TEST(SingleSurface, DecidesCrossingsAndEntriesLikeTheGeneralDecision) {
     const auto system = random_fields(random, false);
     auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
-    const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+    const SwitchingContext switching_context{*kernel, true, {}, {}};
     SingleSurface single(switching_context);
     Transition transition;
     for (const int side : {-1, 1}) {
@@ -91,7 +91,7 @@ TEST(SingleSurface, DecidesExitsLikeTheGeneralDecision) {
     const auto system = random_fields(random, true);
     auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
-    const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+    const SwitchingContext switching_context{*kernel, true, {}, {}};
     SingleSurface single(switching_context);
     Transition transition;
     ModeState before{{0}, {1.0}, {0}, {}};
@@ -126,7 +126,7 @@ TEST(SingleSurface, DecidesBesideAnotherSurfaceOnWhichTheSolutionSlides) {
     testing::set_field(s, {f(0), f(1), f(2), s.x(0) + s.alpha(1), 0.6 - 2 * s.alpha(1) + 0.7 + s.x(3)}, origin);
     auto kernel = evaluation::ModelKernel::compile(s);
     ASSERT_TRUE(kernel.has_value());
-    const SwitchingContext switching_context{*kernel, s, true, {}, {}};
+    const SwitchingContext switching_context{*kernel, true, {}, {}};
     SingleSurface single(switching_context);
     Transition transition;
     ModeState before{{leaves ? 0 : -1, 0}, {leaves ? 1.0 : 0.0, 0.65}, {1}, {}};
@@ -157,7 +157,7 @@ TEST(SingleSurface, RowsOfALargeFieldDecideLikeAllOfIt) {
   testing::set_field(s, f, std::vector<double>(2 * blocks, 0.0));
   auto kernel = evaluation::ModelKernel::compile(s);
   ASSERT_TRUE(kernel.has_value());
-  const SwitchingContext switching_context{*kernel, s, true, {}, {}};
+  const SwitchingContext switching_context{*kernel, true, {}, {}};
   SingleSurface single(switching_context);
   int decided = 0;
   for (int k = 0; k < 80; ++k) {
@@ -215,7 +215,7 @@ TEST(SingleSurface, LeavesWhatIsNotSimpleToTheGeneralDecision) {
   testing::set_field(s, {SX(1), SX(1), s.alpha(1)}, {0, 0, 0});
   auto kernel = evaluation::ModelKernel::compile(s);
   ASSERT_TRUE(kernel.has_value());
-  const SwitchingContext switching_context{*kernel, s, true, {}, {}};
+  const SwitchingContext switching_context{*kernel, true, {}, {}};
   SingleSurface single(switching_context);
   Transition transition;
   const ModeState before{{-1, -1}, {0.0, 0.0}, {}, {}};
@@ -241,7 +241,7 @@ long evaluations_of_oscillator(ode::Method method, FunctionRef<SX(const SX&)> ps
   options.method = method;
   options.tolerances = {1e-8, 1e-10};
   options.until = 100.0;
-  const auto result = integrate(*kernel, s, options);
+  const auto result = integrate(*kernel, options);
   EXPECT_EQ(result.status.termination, result::Termination::completed);
   EXPECT_EQ(result.events.size(), events);
   steps = static_cast<long>(result.statistics.steps);

@@ -41,7 +41,7 @@ Count count(const model::System& system, ode::Method method, double until) {
     seen = allocations;
     return Continue::yes;
   };
-  const auto result = integrate(*kernel, system, options, observer);
+  const auto result = integrate(*kernel, options, observer);
   EXPECT_EQ(result.status.termination, result::Termination::completed) << result.status.message;
   return count;
 }

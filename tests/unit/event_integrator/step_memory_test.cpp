@@ -52,7 +52,7 @@ TEST(StepMemory, ComingBackToAModeRejectsHardlyAnyStep) {
     options.method = method;
     options.tolerances = {1e-8, 1e-10};
     options.until = 200.0;
-    const auto result = integrate(*kernel, s, options);
+    const auto result = integrate(*kernel, options);
     ASSERT_EQ(result.status.termination, result::Termination::completed);
     ASSERT_GT(result.events.size(), 120U);
     // The fast side costs about one at its steepest; starting it with the step of the slow side, four more.
@@ -89,12 +89,12 @@ TEST(StepMemory, AnErrorEstimateThatVanishesByChanceIsNotBelieved) {
     double worst = 0.0;
     for (int k = 0; k < 4000; ++k) {
       const double frequency = std::pow(10.0, k / 4000.0), phase = std::fmod(0.618033988749895 * k, 1.0) * 2.0 * M_PI;
-      s.initial_state = {-1.0, 0.0, frequency, phase};
+      kernel->set_initial_state({-1.0, 0.0, frequency, phase});
       IntegrationOptions options;
       options.method = method;
       options.tolerances = {rtol, rtol};
       options.until = 1.0 + end;
-      const auto result = integrate(*kernel, s, options);
+      const auto result = integrate(*kernel, options);
       ASSERT_EQ(result.status.termination, result::Termination::completed);
       const double exact = (std::sin(frequency * end + phase) - std::sin(phase)) / frequency;
       worst = std::max(worst, std::abs(result.final.x[1] - exact));

@@ -71,7 +71,7 @@ TEST(SurfacePair, DecidesLikeTheGeneralDecision) {
     const auto system = random_meeting(random);
     auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
-    const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+    const SwitchingContext switching_context{*kernel, true, {}, {}};
     SurfacePair pair(switching_context);
     Transition transition;
     for (const std::array<int, 2> mode : {std::array{0, -1}, {0, 1}, {-1, 0}, {1, 0}, {-1, -1}, {1, 1}}) {
@@ -103,7 +103,7 @@ TEST(SurfacePair, SlidesAcrossWithTheSelectionsOfTheGeneralDecision) {
     const auto system = random_meeting(random);
     auto kernel = evaluation::ModelKernel::compile(system);
     ASSERT_TRUE(kernel.has_value());
-    const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+    const SwitchingContext switching_context{*kernel, true, {}, {}};
     SurfacePair pair(switching_context);
     ModeField field(*kernel, true);
     for (const std::array<int, 2> mode : {std::array{0, -1}, {0, 1}, {-1, 0}, {1, 0}}) {
@@ -145,7 +145,7 @@ TEST(SurfacePair, LeavesWhatIsNotSimpleToTheGeneralDecision) {
     for (int k = 0; k < 20; ++k) {
       const auto system = random_meeting(same);
       auto kernel = evaluation::ModelKernel::compile(system);
-      const SwitchingContext switching_context{*kernel, system, true, {}, {}};
+      const SwitchingContext switching_context{*kernel, true, {}, {}};
       SurfacePair pair(switching_context);
       Transition transition;
       const ModeState before = state_of({0, -1});

@@ -24,7 +24,7 @@ Integration run_found(const model::System& system, double until, double rtol = 1
   options.method = method;
   options.tolerances = {rtol, rtol / 100};
   options.until = until;
-  return integrate(*kernel, system, options);
+  return integrate(*kernel, options);
 }
 
 SX sign_of(const SX& alpha) { return 2 * alpha - 1; }
@@ -200,7 +200,7 @@ TEST(TortureFindings, CyclesOfOneStepEachEndOnTheirSurface) {
     options.tolerances = {1e-8, 1e-10};
     options.until = 60.0;
     options.max_events = 20000;
-    const auto result = integrate(*kernel, s, options);
+    const auto result = integrate(*kernel, options);
     ASSERT_EQ(result.events.size(), 20000U) << result.status.message;
     double largest = 0.0;
     for (std::size_t i = 1; i < result.events.size(); ++i) {

@@ -61,7 +61,7 @@ std::optional<std::string> at_origin(const std::function<SX(model::Builder&, con
   EXPECT_TRUE(system.has_value());
   auto kernel = evaluation::ModelKernel::compile(*system);
   EXPECT_TRUE(kernel.has_value());
-  const SwitchingContext switching_context{*kernel, *system, true, switching::SelectionPolicy::active_dominant, {}};
+  const SwitchingContext switching_context{*kernel, true, switching::SelectionPolicy::active_dominant, {}};
   return without_limit(switching_context, 0.0, {0.0, 0.0}, std::vector<double>(system->switching.size(), 0.5), 1e-10);
 }
 

@@ -11,6 +11,7 @@
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/summary.hpp"
 
 namespace saltus::io {
 namespace {
@@ -45,7 +46,8 @@ Cost cost_of(int blocks) {
     const auto system = model::build(file->description, {});
     EXPECT_TRUE(system);
     if (!system) return {};
-    EXPECT_EQ(overview_of(file->description, *system).surfaces.size(), static_cast<std::size_t>(blocks));
+    EXPECT_EQ(overview_of(file->description, model::summary_of(*system)).surfaces.size(),
+              static_cast<std::size_t>(blocks));
   }
   return {static_cast<double>(tests::allocations - before), static_cast<double>(tests::allocated_bytes - bytes_before)};
 }

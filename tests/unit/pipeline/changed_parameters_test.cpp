@@ -7,6 +7,7 @@
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/model/builder.hpp"
+#include "saltus/pipeline/options/stated_run.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/pipeline/sweep.hpp"
 

@@ -282,7 +282,7 @@ event_integrator::Integration simulated(const model::System& system) {
   EXPECT_TRUE(kernel.has_value());
   event_integrator::IntegrationOptions options;
   options.until = 4.0;
-  return event_integrator::integrate(*kernel, system, options);
+  return event_integrator::integrate(*kernel, options);
 }
 
 TEST(VerifyTest, ControlsActAsSampledInputs) {

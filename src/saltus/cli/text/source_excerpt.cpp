@@ -60,14 +60,14 @@ std::string excerpt(const SourceLocation& location, std::string_view text) {
 
 }  // namespace
 
-std::string with_source(const Error& error, const ModelText& source) {
+std::string with_source(const Error& error, const frontend::ModelText& source) {
   std::string text = to_text(error);
   if (error.location.file != source.name || error.location.line < 1 || error.location.column < 1) return text;
   const auto end = text.find('\n');
   return text.insert(end == std::string::npos ? text.size() : end, excerpt(error.location, source.text));
 }
 
-ExitCode refuse_with_source(const Error& error, const ModelText& source) {
+ExitCode refuse_with_source(const Error& error, const frontend::ModelText& source) {
   print_error(with_source(error, source));
   return ExitCode::bad_input;
 }

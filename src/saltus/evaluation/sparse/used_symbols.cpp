@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <casadi/core/sx_elem.hpp>
+
 #include "saltus/evaluation/sparse/used_symbols_internal.hpp"
 
 namespace saltus::evaluation {

@@ -51,7 +51,7 @@ Families::Families(const SwitchingContext& switching_context)
       x_(f_.size()) {}
 
 bool Families::is_watched(int surface) const {
-  return s_.system.switching[at(surface)].role == model::SwitchingRole::listed;
+  return s_.layout.surfaces[at(surface)].role == model::SwitchingRole::listed;
 }
 
 /// Whether no other sliding surface influences this one, or is influenced by it.

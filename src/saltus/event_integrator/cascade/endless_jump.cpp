@@ -24,7 +24,7 @@ bool sets_the_same(const ExecutedJump& executed, std::size_t state, double left)
 bool JumpCascade::is_taken_back(const ExecutedJump& executed, int guard) {
   const int function = kernel_.jump_guard(executed.jump, guard);
   if (!contains(zeros_, function) || holding_.holds(function) || jumps_.is_discrete_guard(function)) return false;
-  const auto& entry = switching_context_.system.jumps[at(executed.jump)];
+  const auto& entry = switching_context_.layout.jumps[at(executed.jump)];
   const double left = 64.0 * rounding_unit * std::abs(here_.t) * rate(function);
   const auto kept = [&](int state) { return sets_the_same(executed, at(state), left); };
   const bool nothing_else = std::all_of(entry.targets.begin(), entry.targets.end(), kept);
@@ -44,7 +44,7 @@ bool JumpCascade::is_taken_back(const ExecutedJump& executed, int guard) {
 std::optional<int> JumpCascade::endless_jump() {
   for (const auto& executed : executed_.items()) {
     if (contacts_.owns(executed.jump)) continue;
-    const int guards = static_cast<int>(switching_context_.system.jumps[at(executed.jump)].guards.numel());
+    const int guards = static_cast<int>(switching_context_.layout.jumps[at(executed.jump)].guards.size());
     for (int guard = 0; guard < guards; ++guard) {
       if (is_taken_back(executed, guard)) return executed.jump;
     }

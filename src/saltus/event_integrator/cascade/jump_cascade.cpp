@@ -64,9 +64,9 @@ void JumpCascade::begin(const Located& located) {
 void JumpCascade::note_guards() {
   auto& slope = slope_;
   kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
-  for (std::size_t k = 0; k < switching_context_.system.jumps.size(); ++k) {
+  for (std::size_t k = 0; k < switching_context_.layout.jumps.size(); ++k) {
     if (contacts_.owns(static_cast<int>(k))) continue;  // velocities that an impact ends are 0 exactly
-    const int guards = static_cast<int>(switching_context_.system.jumps[k].guards.numel());
+    const int guards = static_cast<int>(switching_context_.layout.jumps[k].guards.size());
     for (int g = 0; g < guards; ++g) {
       const int function = kernel_.jump_guard(static_cast<int>(k), g);
       const Rate rate = rates_.along(function, slope);
@@ -249,9 +249,9 @@ std::vector<HeldGuard> JumpCascade::guards_kept_by_sliding(const RestingGuards& 
   std::vector<int> surfaces;
   if (here_.state.sliding.empty() || !holding_.guards().empty()) return kept;
   const auto& vanish = search_.user_zeros();
-  for (int jump = 0; jump < static_cast<int>(switching_context_.system.jumps.size()); ++jump) {
+  for (int jump = 0; jump < static_cast<int>(switching_context_.layout.jumps.size()); ++jump) {
     if (contacts_.owns(jump)) continue;
-    for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
+    for (int g = 0; g < static_cast<int>(switching_context_.layout.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       if (!vanish[at(function - kernel_.switching_functions())] || jumps_.is_discrete_guard(function)) continue;
       const Motion motion = motion_of(function);
@@ -289,7 +289,7 @@ JumpCascade::RestingGuards JumpCascade::pressed_guards() {
   const auto& vanish = search_.user_zeros();
   for (const int jump : jumps) {
     if (contacts_.owns(jump)) continue;
-    for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
+    for (int g = 0; g < static_cast<int>(switching_context_.layout.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const bool at_zero = vanish[at(function - kernel_.switching_functions())];
       if (!at_zero || jumps_.is_discrete_guard(function)) continue;
@@ -320,8 +320,8 @@ void JumpCascade::leave_guards(const std::vector<int>& zero_order) {
   auto vanish = search_.user_zeros();
   std::vector<int> orders(signs.size(), 1);
   bool any = false;
-  for (int jump = 0; jump < static_cast<int>(switching_context_.system.jumps.size()); ++jump) {
-    for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
+  for (int jump = 0; jump < static_cast<int>(switching_context_.layout.jumps.size()); ++jump) {
+    for (int g = 0; g < static_cast<int>(switching_context_.layout.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const auto user = at(function - kernel_.switching_functions());
       const bool by_contact = contacts_.owns(jump);

@@ -14,11 +14,11 @@ using result::EventKind;
 
 class Shown {
  public:
-  explicit Shown(const model::ContactSystem& contacts) : contacts_(contacts) {}
+  explicit Shown(const model::Layout& layout) : layout_(layout) {}
 
   [[nodiscard]] std::vector<result::ContactMode> modes(const std::vector<double>& x) const {
     std::vector<result::ContactMode> result;
-    for (const auto& contact : contacts_.contacts) {
+    for (const auto& contact : layout_.contacts) {
       const bool closed = x[at(contact.closed)] != 0.0;
       result.push_back(!closed                      ? result::ContactMode::open
                        : !contact.has_friction      ? result::ContactMode::closed
@@ -31,7 +31,7 @@ class Shown {
   [[nodiscard]] std::vector<std::vector<double>> impulses(const std::vector<double>& before,
                                                           const std::vector<double>& x) const {
     std::vector<std::vector<double>> result;
-    for (const auto& contact : contacts_.contacts) {
+    for (const auto& contact : layout_.contacts) {
       result.emplace_back();
       for (int k = contact.impulse; k <= contact.impulse + contact.tangents(); ++k) {
         result.back().push_back(x[at(k)] - before[at(k)]);
@@ -41,13 +41,13 @@ class Shown {
   }
 
   void cut(std::vector<double>& x) const {
-    if (x.size() > at(contacts_.first_hidden)) x.resize(at(contacts_.first_hidden));
+    if (x.size() > at(layout_.shown_states)) x.resize(at(layout_.shown_states));
   }
 
-  [[nodiscard]] std::size_t states() const { return at(contacts_.first_hidden); }
+  [[nodiscard]] std::size_t states() const { return at(layout_.shown_states); }
 
   [[nodiscard]] bool owns(const std::string& name) const {
-    return std::any_of(contacts_.contacts.begin(), contacts_.contacts.end(),
+    return std::any_of(layout_.contacts.begin(), layout_.contacts.end(),
                        [&](const auto& contact) { return contact.name == name; });
   }
 
@@ -68,8 +68,8 @@ class Shown {
     for (std::size_t i = 0; i < before.size(); ++i) {
       const bool pushed =
           std::any_of(impulse[i].begin(), impulse[i].end(), [](double component) { return component != 0.0; });
-      if (before[i] == after[i] && !pushed && !turns(contacts_.contacts[i], event.x, event.x_after)) continue;
-      event.surfaces.push_back(contacts_.contacts[i].name);
+      if (before[i] == after[i] && !pushed && !turns(layout_.contacts[i], event.x, event.x_after)) continue;
+      event.surfaces.push_back(layout_.contacts[i].name);
       hit = hit || pushed;
       closes = closes || before[i] == result::ContactMode::open;
       opens = opens || after[i] == result::ContactMode::open;
@@ -93,20 +93,20 @@ class Shown {
   }
 
  private:
-  const model::ContactSystem& contacts_;
+  const model::Layout& layout_;
 };
 
 }  // namespace
 
-void show_contacts(const model::System& system, result::Trajectory& trajectory) {
-  const Shown shown(system.contacts);
+void show_contacts(const model::Layout& layout, result::Trajectory& trajectory) {
+  const Shown shown(layout);
   for (const auto& x : trajectory.x) trajectory.contact_modes.push_back(shown.modes(x));
   trajectory.x.narrow(shown.states());
 }
 
-void show_contacts(const model::System& system, result::Final& final, result::Events& events,
+void show_contacts(const model::Layout& layout, result::Final& final, result::Events& events,
                    result::Trajectory& trajectory) {
-  const Shown shown(system.contacts);
+  const Shown shown(layout);
   result::Events told;
   for (result::Event event : events) {
     const bool of_contact = event.kind == EventKind::jump && event.name && shown.owns(*event.name);
@@ -127,7 +127,7 @@ void show_contacts(const model::System& system, result::Final& final, result::Ev
     told.push_back(std::move(event));
   }
   events = std::move(told);
-  show_contacts(system, trajectory);
+  show_contacts(layout, trajectory);
   final.contact_modes = shown.modes(final.x);
   shown.cut(final.x);
 }

@@ -20,12 +20,12 @@ constexpr double small_velocity =
 
 }  // namespace
 
-Contacts::Contacts(const evaluation::ModelKernel& kernel, const model::System& system)
-    : kernel_(kernel), system_(system.contacts), contacts_(system.contacts.contacts) {
+Contacts::Contacts(const evaluation::ModelKernel& kernel)
+    : kernel_(kernel), layout_(kernel.layout()), contacts_(layout_.contacts) {
   if (contacts_.empty()) return;
   guards_.assign(at(kernel.event_functions()), false);
   for (const auto& contact : contacts_) {
-    const auto guards = static_cast<int>(system.jumps[at(contact.jump)].guards.numel());
+    const auto guards = static_cast<int>(layout_.jumps[at(contact.jump)].guards.size());
     for (int g = 0; g < guards; ++g) guards_[at(kernel.jump_guard(contact.jump, g))] = true;
   }
 }
@@ -75,8 +75,8 @@ double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, 
   double largest = 0.0;
   for (linalg::Index row = 0; row < values_.acceleration.size(); ++row) {
     double terms = 0.0, along = 0.0;
-    for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-      const double term = values_.rows(row, index(k)) * rate[at(system_.velocities[k])];
+    for (std::size_t k = 0; k < layout_.velocities.size(); ++k) {
+      const double term = values_.rows(row, index(k)) * rate[at(layout_.velocities[k])];
       terms += std::abs(term);
       along += term;
     }
@@ -154,7 +154,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
     const auto mode = mode_of(contact, x);
     const bool slip_ends = slip_has_ended[at(contact)];
     const bool held = row < m ? mode != ContactMode::open : mode == ContactMode::stick || slip_ends;
-    const auto rounding = [&] { return 16.0 * rounding_unit * terms_of(values_.rows, row, system_.velocities, x); };
+    const auto rounding = [&] { return 16.0 * rounding_unit * terms_of(values_.rows, row, layout_.velocities, x); };
     if (held || std::abs(point.velocity(row)) <= rounding()) point.velocity(row) = 0.0;
   }
 }
@@ -480,7 +480,7 @@ std::optional<int> Contacts::jump_to_tell(const std::vector<double>& x) const {
 }
 
 void Contacts::copy_modes(const std::vector<double>& from, std::vector<double>& x) const {
-  const auto first = static_cast<std::ptrdiff_t>(system_.first_hidden);
+  const auto first = static_cast<std::ptrdiff_t>(layout_.shown_states);
   if (!none()) std::copy(from.begin() + first, from.end(), x.begin() + first);
 }
 

@@ -10,7 +10,7 @@
 #include "saltus/event_integrator/contact/contact_forces.hpp"
 #include "saltus/linalg/factors.hpp"
 #include "saltus/linalg/matrix.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::event_integrator {
@@ -27,7 +27,7 @@ struct ContactMoment {
 /// (its forces, when a mode ends) is an expression of the system (model::ContactSystem).
 class Contacts {
  public:
-  Contacts(const evaluation::ModelKernel& kernel, const model::System& system);
+  explicit Contacts(const evaluation::ModelKernel& kernel);
 
   [[nodiscard]] bool none() const { return contacts_.empty(); }
   /// Returns whether a jump is that of a contact.
@@ -207,7 +207,7 @@ class Contacts {
   void find_held_rows(const std::vector<double>& x);
 
   const evaluation::ModelKernel& kernel_;
-  const model::ContactSystem& system_;
+  const model::Layout& layout_;
   const std::vector<model::Contact>& contacts_;
   std::vector<bool> guards_;  ///< by event function; empty without contacts
   evaluation::ContactValues values_;

@@ -16,8 +16,8 @@ std::vector<int> Contacts::without_normal(const ContactMoment& moment, const std
                                           const std::vector<double>& x) const {
   constexpr double none = 1e-3;
   auto ahead = x;
-  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    ahead[at(system_.positions[k])] += ahead_by * moment.time_scale * x[at(system_.velocities[k])];
+  for (std::size_t k = 0; k < layout_.positions.size(); ++k) {
+    ahead[at(layout_.positions[k])] += ahead_by * moment.time_scale * x[at(layout_.velocities[k])];
   }
   evaluation::ContactValues later;
   kernel_.contacts(moment.t, ahead.data(), moment.alpha.data(), later);
@@ -37,7 +37,7 @@ double Contacts::terms_of(const evaluation::ContactValues::Rows& rows, int row, 
 }
 
 double Contacts::gap_terms(int contact, const std::vector<double>& x) const {
-  return terms_of(values_.rows, contact, system_.positions, x);
+  return terms_of(values_.rows, contact, layout_.positions, x);
 }
 
 /// How large a gap may be that is 0 to the rounding of its terms.
@@ -76,7 +76,7 @@ bool Contacts::closes_flatly(const ContactMoment& moment, int contact, const Con
                              const std::vector<double>& x) const {
   const double speed = std::abs(point.normal_velocity(contact)), acceleration = point.acceleration(contact);
   const double terms = std::abs(acceleration) * std::max(std::abs(moment.t), moment.time_scale) +
-                       terms_of(values_.rows, contact, system_.velocities, x);
+                       terms_of(values_.rows, contact, layout_.velocities, x);
   if (speed <= 64.0 * rounding_unit * terms) return true;
   if (speed > rests_below * slowest(moment, point, x)) return false;
   auto ahead = x;
@@ -119,8 +119,8 @@ bool Contacts::comes_to_rest(const ContactMoment& moment, int contact, const Con
 
 bool Contacts::are_moved(const std::vector<double>& x, const std::vector<double>& x_after) const {
   const auto differ = [&](int state) { return x[at(state)] != x_after[at(state)]; };
-  return !none() && (std::any_of(system_.positions.begin(), system_.positions.end(), differ) ||
-                     std::any_of(system_.velocities.begin(), system_.velocities.end(), differ));
+  return !none() && (std::any_of(layout_.positions.begin(), layout_.positions.end(), differ) ||
+                     std::any_of(layout_.velocities.begin(), layout_.velocities.end(), differ));
 }
 
 bool Contacts::have_jumped(const ContactMoment& moment, const std::vector<double>& x) {
@@ -182,12 +182,12 @@ auto Contacts::gap_motion(int function, const ContactMoment& moment, const std::
     known = true;
   }
   // A guard is positive where its gap is negative.
-  GapMotion motion{terms_of(here.rows, *contact, system_.positions, x), -here.velocity(*contact),
-                   terms_of(here.rows, *contact, system_.velocities, x),
+  GapMotion motion{terms_of(here.rows, *contact, layout_.positions, x), -here.velocity(*contact),
+                   terms_of(here.rows, *contact, layout_.velocities, x),
                    (here.velocity(*contact) - later.velocity(*contact)) / h};
   double along_time = here.velocity(*contact);
-  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    along_time -= here.rows(*contact, index(k)) * x[at(system_.velocities[k])];
+  for (std::size_t k = 0; k < layout_.positions.size(); ++k) {
+    along_time -= here.rows(*contact, index(k)) * x[at(layout_.velocities[k])];
   }
   motion.terms += std::abs(along_time);
   motion.size += std::abs(along_time * moment.t);

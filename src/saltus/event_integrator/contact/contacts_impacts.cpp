@@ -43,8 +43,8 @@ std::optional<Vector> Contacts::push(const ContactMoment& moment, const std::vec
   if (!impulses) return impulses;
   const int m = point.contacts();
   const Vector change = values_.responses * *impulses;
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    x[at(system_.velocities[k])] += change(static_cast<linalg::Index>(k));
+  for (std::size_t k = 0; k < layout_.velocities.size(); ++k) {
+    x[at(layout_.velocities[k])] += change(static_cast<linalg::Index>(k));
   }
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];

@@ -13,7 +13,7 @@ using linalg::Vector;
 
 double Contacts::fastest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
   double speed = moment.time_scale * point.acceleration.max_abs();
-  for (const int velocity : system_.velocities) speed = std::max(speed, std::abs(x[at(velocity)]));
+  for (const int velocity : layout_.velocities) speed = std::max(speed, std::abs(x[at(velocity)]));
   return speed;
 }
 
@@ -90,7 +90,7 @@ ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vecto
     const double wanted = std::sqrt(x[at(contacts_[at(i)].speeds)]);
     for (int k = 0; k < 2; ++k) {
       const int row = point.tangent_row(i, k);
-      const double terms = terms_of(values_.rows, row, system_.velocities, x), slope = values_.rows.row(row).sum_abs();
+      const double terms = terms_of(values_.rows, row, layout_.velocities, x), slope = values_.rows.row(row).sum_abs();
       parts.rtol = std::min(parts.rtol, part_of_slip * wanted / (moment.tolerances.rtol * terms));
       parts.atol = std::min(parts.atol, part_of_slip * wanted / (moment.tolerances.atol * slope));
     }

@@ -74,8 +74,8 @@ bool Contacts::correct_positions(const std::vector<int>& touching, std::vector<d
   for (std::size_t k = 0; k < rows.size(); ++k) projection_.change(index(k)) = values_.gap(rows[k]);
   const Vector& moved = least_change(rows, projection_.change);
   bool changed = false;
-  for (std::size_t k = 0; k < system_.positions.size(); ++k) {
-    double& position = x[at(system_.positions[k])];
+  for (std::size_t k = 0; k < layout_.positions.size(); ++k) {
+    double& position = x[at(layout_.positions[k])];
     const double next = position - moved(static_cast<linalg::Index>(k));
     changed = changed || next != position;
     position = next;
@@ -85,8 +85,8 @@ bool Contacts::correct_positions(const std::vector<int>& touching, std::vector<d
 
 void Contacts::change_velocities(const std::vector<int>& rows, const Vector& change, std::vector<double>& x) {
   const Vector& velocities = least_change(rows, change);
-  for (std::size_t k = 0; k < system_.velocities.size(); ++k) {
-    x[at(system_.velocities[k])] += velocities(static_cast<linalg::Index>(k));
+  for (std::size_t k = 0; k < layout_.velocities.size(); ++k) {
+    x[at(layout_.velocities[k])] += velocities(static_cast<linalg::Index>(k));
   }
 }
 
@@ -117,7 +117,7 @@ void Contacts::drop_own_roundings(const std::vector<int>& rows, const std::vecto
     const auto row = values_.rows.row(r);
     if (row.nonzeros() != 1) continue;
     const linalg::Index only = row.abs().index_of_max();
-    const auto k = at(system_.velocities[static_cast<std::size_t>(only)]);
+    const auto k = at(layout_.velocities[static_cast<std::size_t>(only)]);
     const double own = row(only) * before[k], moving = values_.velocity(r) - own;
     if (std::abs(moving) <= 4.0 * rounding_unit * std::abs(own)) x[k] = 0.0;
   }

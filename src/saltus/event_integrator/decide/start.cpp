@@ -42,14 +42,14 @@ void read_discrete(const SwitchingContext& s, double t, const double* x, int j, 
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   const double psi = values[at(j)];
   state.mode[at(j)] = 0;
-  state.alpha[at(j)] = psi > 0.0 ? 1.0 : psi < 0.0 ? 0.0 : s.system.switching[at(j)].alpha_at_zero;
+  state.alpha[at(j)] = psi > 0.0 ? 1.0 : psi < 0.0 ? 0.0 : s.layout.surfaces[at(j)].alpha_at_zero;
 }
 
 /// Whether psi_j, exactly 0 here, is 0 whatever moves: n x while the discrete state n is 0. Such a function is decided
 /// as written until a jump changes that.
 bool vanishes_until_a_jump(const SwitchingContext& s, double t, const double* x, int j, const ModeState& state) {
-  const auto& discrete = s.system.discrete_states;
-  if (s.system.switching[at(j)].alpha_at_zero == 0.5) return false;
+  const auto& discrete = s.layout.discrete_states;
+  if (s.layout.surfaces[at(j)].alpha_at_zero == 0.5) return false;
   std::vector<double> row(discrete.size());
   double rate = 0.0;
   s.kernel.gradient(j, t, x, state.alpha.data(), row.data(), &rate);
@@ -104,16 +104,16 @@ void read_signs(const SwitchingContext& s, double t, const double* x, const Proj
   std::vector<double> values(at(s.kernel.event_functions()));
   s.kernel.functions(t, x, state.alpha.data(), values.data());
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
-    if (s.system.switching[at(j)].role == model::SwitchingRole::region) continue;
+    if (s.layout.surfaces[at(j)].role == model::SwitchingRole::region) continue;
     if (std::binary_search(state.resting.begin(), state.resting.end(), j)) continue;
-    if (s.system.switching[at(j)].role == model::SwitchingRole::discrete) {
+    if (s.layout.surfaces[at(j)].role == model::SwitchingRole::discrete) {
       read_discrete(s, t, x, j, state);
       continue;
     }
     const double psi =
         s.kernel.inner(j).empty() ? values[at(j)] : value_in_a_region(s, t, x, state, j, fields.noise(j));
     if (psi == 0.0 && vanishes_until_a_jump(s, t, x, j, state)) {
-      const double alpha = s.system.switching[at(j)].alpha_at_zero;
+      const double alpha = s.layout.surfaces[at(j)].alpha_at_zero;
       set_surface(state, j, alpha > 0.5 ? 1 : -1, alpha);
       continue;
     }
@@ -140,7 +140,7 @@ bool finite_at_start(const SwitchingContext& s, double t, const double* x, const
     transition.message = fmt::format(
         "the switching function '{}' is not finite at the start t = {}; change the initial "
         "values or its expression",
-        s.system.switching[at(j)].name, t);
+        s.layout.surfaces[at(j)].name, t);
     return false;
   }
   return true;
@@ -223,7 +223,7 @@ bool signs_say_it_all(const SwitchingContext& s, const SwitchingPoint& switching
 using GivenModes = std::vector<std::pair<int, int>>;
 
 bool is_of_region(const SwitchingContext& s, int j) {
-  return s.system.switching[at(j)].role == model::SwitchingRole::region;
+  return s.layout.surfaces[at(j)].role == model::SwitchingRole::region;
 }
 
 /// Why modes that are given contradict the signs at the start; nothing where they do not.
@@ -234,7 +234,7 @@ std::optional<std::string> contradiction(const SwitchingContext& s, const ModeSt
     const bool is_zero = contains(at_zero, surface);
     if (is_zero || mode == state.mode[at(surface)]) continue;
     return fmt::format("initial_mode {} = {} contradicts the sign of the switching function at the start",
-                       s.system.switching[at(surface)].name, mode);
+                       s.layout.surfaces[at(surface)].name, mode);
   }
   return std::nullopt;
 }
@@ -351,7 +351,7 @@ std::vector<double> selections_at(const SwitchingContext& s, double t, const dou
   s.kernel.scales(t, x, alpha.data(), noise.data(), slope.data());
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     s.kernel.functions(t, x, alpha.data(), values.data());
-    const auto& function = s.system.switching[at(j)];
+    const auto& function = s.layout.surfaces[at(j)];
     if (function.role == model::SwitchingRole::region) continue;
     const double psi = values[at(j)];
     const bool discrete = function.role == model::SwitchingRole::discrete;

@@ -12,9 +12,9 @@
 
 namespace saltus::event_integrator {
 
-void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
+void append_reason(const model::Layout& layout, int surface, const switching::SurfaceDecision& decision,
                    const ModeState& before, const SwitchingPoint& switching_point, std::string& reason) {
-  const auto& function = system.switching[at(surface)];
+  const auto& function = layout.surfaces[at(surface)];
   if (function.role != model::SwitchingRole::listed && function.role != model::SwitchingRole::region) return;
   if (decision.mode == before.mode[at(surface)] && !switching_point.start) return;
   if (!reason.empty()) reason += "; ";
@@ -31,11 +31,11 @@ void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason
   reason += ")";
 }
 
-void append_meeting(const model::System& system, const std::array<int, 2>& surfaces, switching::Leaf leaf,
+void append_meeting(const model::Layout& layout, const std::array<int, 2>& surfaces, switching::Leaf leaf,
                     std::string_view why, std::string& reason) {
-  reason += system.switching[at(surfaces[0])].name;
+  reason += layout.surfaces[at(surfaces[0])].name;
   reason += ", ";
-  reason += system.switching[at(surfaces[1])].name;
+  reason += layout.surfaces[at(surfaces[1])].name;
   append_leaf(leaf, why, reason);
 }
 
@@ -97,7 +97,7 @@ Transition Decider::run() {
   for (const auto& [surface, decision] : decisions_) {
     if (contains(standing_, surface)) continue;
     if (!decision.reason.empty()) {
-      append_reason(s_.system, surface, decision, before_, switching_point_, transition_.reason);
+      append_reason(s_.layout, surface, decision, before_, switching_point_, transition_.reason);
     }
     for (const int other : decision.other_modes) {
       transition_.unique = false;
@@ -131,7 +131,7 @@ Transition undecided(const SwitchingContext& s, const ModeState& before, const S
   transition.state = before;
   transition.termination = result::Termination::outside_class;
   transition.message = fmt::format("at t = {} the surfaces {} meet, whose gradients depend on each other: {}",
-                                   switching_point.t, names(s.system, switching_point.at_zero), problem);
+                                   switching_point.t, names(s.layout, switching_point.at_zero), problem);
   return transition;
 }
 
@@ -223,7 +223,7 @@ void refuse_same_indicators(const Question& q, Transition& transition) {
   transition.message = fmt::format(
       "the regions '{}' and '{}' have the same indicator, and both are active at t = {}: nothing says which "
       "of them the solution is in; make one region of them",
-      q.s.system.switching[at(same->first)].name, q.s.system.switching[at(same->second)].name, q.point.t);
+      q.s.layout.surfaces[at(same->first)].name, q.s.layout.surfaces[at(same->second)].name, q.point.t);
 }
 
 }  // namespace

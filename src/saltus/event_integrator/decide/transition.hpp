@@ -12,7 +12,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout.hpp"
 #include "saltus/result/result.hpp"
 #include "saltus/switching/plane/intersection.hpp"
 #include "saltus/switching/table/group_decision.hpp"
@@ -82,23 +82,23 @@ struct Transition {
   }
 };
 
-/// Says what the switching needs to know of the system besides its functions.
+/// Says what the switching needs to know of the model besides its functions.
 struct SwitchingContext {
   evaluation::ModelKernel& kernel;
-  const model::System& system;
   bool affine_in_alpha = true;
   switching::SelectionPolicy policy = switching::SelectionPolicy::active_dominant;
   std::vector<double> scaling;  ///< n_psi factors of the hidden dynamics under SelectionPolicy::scaled; empty = ones
+  const model::Layout& layout = kernel.layout();
 };
 
 /// Adds what decided about a surface, unless its mode stays, or it is not one that the result lists (a kink, a time).
-void append_reason(const model::System& system, int surface, const switching::SurfaceDecision& decision,
+void append_reason(const model::Layout& layout, int surface, const switching::SurfaceDecision& decision,
                    const ModeState& before, const SwitchingPoint& switching_point, std::string& reason);
 
 /// Appends, behind the names of two surfaces, what a tree decided about them, and why.
 void append_leaf(switching::Leaf leaf, std::string_view why, std::string& reason);
 /// Does the same with their names.
-void append_meeting(const model::System& system, const std::array<int, 2>& surfaces, switching::Leaf leaf,
+void append_meeting(const model::Layout& layout, const std::array<int, 2>& surfaces, switching::Leaf leaf,
                     std::string_view why, std::string& reason);
 
 /// Makes of `transition`, whose storage is used again, the only one there is, with the mode as it was before: what is

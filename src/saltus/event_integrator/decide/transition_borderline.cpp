@@ -59,7 +59,7 @@ std::optional<Transition> borderline_mode(const SwitchingContext& s, const ModeS
   }
   if (found) {
     found->reason = fmt::format("{}: fields are tangent to several surfaces at once; the mode's own field leads on",
-                                names(s.system, surfaces));
+                                names(s.layout, surfaces));
   }
   return found;
 }

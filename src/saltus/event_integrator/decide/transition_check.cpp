@@ -11,9 +11,9 @@
 
 namespace saltus::event_integrator {
 
-std::string names(const model::System& system, const std::vector<int>& surfaces) {
+std::string names(const model::Layout& layout, const std::vector<int>& surfaces) {
   std::string text;
-  for (const int j : surfaces) text += (text.empty() ? "" : ", ") + system.switching[at(j)].name;
+  for (const int j : surfaces) text += (text.empty() ? "" : ", ") + layout.surfaces[at(j)].name;
   return text;
 }
 
@@ -24,9 +24,9 @@ std::string two_fold_at(const std::string& surface, double t) {
 }
 
 /// Why the motion on a surface is not determined.
-std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
+std::string undetermined_at(const ProjectedFields& fields, const model::Layout& layout,
                             const std::vector<double>& alpha, int surface, double t) {
-  const auto& name = system.switching[at(surface)].name;
+  const auto& name = layout.surfaces[at(surface)].name;
   if (!fields.gradient_vanishes(alpha, surface)) return two_fold_at(name, t);
   return fmt::format(
       "the gradient of '{}' vanishes where '{}' is 0, at t = {} (a square or another power?): the motion on that "
@@ -59,7 +59,7 @@ bool Decider::set_corners() {
       if (!contains(state.sliding, j) && alpha[at(j)] != state.alpha[at(j)]) {
         return fail(result::Termination::outside_class,
                     fmt::format("at t = {} the sign of '{}' depends on the selections of several sliding surfaces ({})",
-                                switching_point_.t, s_.system.switching[at(j)].name, names(s_.system, state.sliding)));
+                                switching_point_.t, s_.layout.surfaces[at(j)].name, names(s_.layout, state.sliding)));
       }
     }
   }
@@ -82,11 +82,11 @@ bool Decider::check_field(ModeField& field, std::vector<double>& xdot) {
     for (const int j : state.sliding) {
       if (!fields_.gradient_vanishes(state.alpha, j) && !fields_.nearly_two_fold(state.alpha, j)) continue;
       return fail(result::Termination::outside_class,
-                  undetermined_at(fields_, s_.system, state.alpha, j, switching_point_.t));
+                  undetermined_at(fields_, s_.layout, state.alpha, j, switching_point_.t));
     }
     if (!state.sliding.empty()) {
       return fail(result::Termination::evaluation_failed,
-                  fmt::format("the sliding field on {} is not finite at t = {}", names(s_.system, state.sliding),
+                  fmt::format("the sliding field on {} is not finite at t = {}", names(s_.layout, state.sliding),
                               switching_point_.t));
     }
   }
@@ -99,12 +99,12 @@ bool Decider::take_selections(const ModeField& field) {
   for (const int j : state.sliding) {
     const double selection = field.alpha()[at(j)];
     if (!is_within_bounds(selection)) {
-      const auto& name = s_.system.switching[at(j)].name;
+      const auto& name = s_.layout.surfaces[at(j)].name;
       // Behind an exit located on one field the selection is at its bound, unless the other field vanishes with it.
       const bool at_exit = contains(switching_point_.exit_below, j) || contains(switching_point_.exit_above, j);
       if (at_exit || fields_.nearly_two_fold(state.alpha, j)) {
         return fail(result::Termination::outside_class,
-                    undetermined_at(fields_, s_.system, state.alpha, j, switching_point_.t));
+                    undetermined_at(fields_, s_.layout, state.alpha, j, switching_point_.t));
       }
       return fail(
           result::Termination::no_admissible_mode,
@@ -156,7 +156,7 @@ bool Decider::check_side(int j, ModeField& field, const std::vector<double>& xdo
     return true;
   }
   const Motion motion = motion_from(j, field, xdot);
-  const bool is_kink = s_.system.switching[at(j)].role == model::SwitchingRole::kink;
+  const bool is_kink = s_.layout.surfaces[at(j)].role == model::SwitchingRole::kink;
   if (is_kink && motion.side.drift == switching::Drift::stays) {
     // A state at rest there: both sides are the same.
     transition_.zero_order[at(j)] = 2;
@@ -198,12 +198,12 @@ bool Decider::fail_where_surfaces_touch(const std::vector<int>& surfaces) {
       fmt::format("the surfaces {} touch at t = {}: their gradients depend on each other there, so that sliding "
                   "on all of them does not determine the selections; state surfaces that coincide by one "
                   "switching function",
-                  names(s_.system, surfaces), switching_point_.t));
+                  names(s_.layout, surfaces), switching_point_.t));
 }
 
 /// Whether the new field has an infinite derivative on a surface, which it leaves all the same: no derivative says so.
 bool Decider::leaves_by_root(int j) {
-  if (transition_.rooted >= 0 || s_.system.switching[at(j)].role != model::SwitchingRole::listed) return false;
+  if (transition_.rooted >= 0 || s_.layout.surfaces[at(j)].role != model::SwitchingRole::listed) return false;
   const std::vector<double> x(switching_point_.x, switching_point_.x + s_.kernel.states());
   RootedExit exit(s_.kernel, s_.affine_in_alpha, transition_.state, j);
   if (!exit.has_root(switching_point_.t, x) ||
@@ -216,7 +216,7 @@ bool Decider::leaves_by_root(int j) {
 /// The field of the new mode does not move psi_j to where the mode says: why not.
 bool Decider::fail_at_tangency(int j, int mode, const Motion& motion) {
   const auto& state = transition_.state;
-  const auto& function = s_.system.switching[at(j)];
+  const auto& function = s_.layout.surfaces[at(j)];
   const auto& name = function.name;
   if (motion.side.drift == switching::Drift::stays && function.role == model::SwitchingRole::region &&
       state.sliding.size() > 1) {
@@ -293,7 +293,7 @@ std::optional<std::string> lost_selections(const SwitchingContext& switching_con
       "the selections of sliding on {} have no limit at t = {:.17g}: det G, of the derivatives of the velocities of "
       "these functions with respect to them, vanishes there (the fields that hold the solution are parallel, or two "
       "roots meet), so that they do not determine what follows; end the simulation before, or perturb a parameter",
-      names(switching_context.system, state.sliding), t);
+      names(switching_context.layout, state.sliding), t);
 }
 
 std::optional<std::string> two_fold_message(const SwitchingContext& switching_context, const ModeState& state, double t,
@@ -306,7 +306,7 @@ std::optional<std::string> two_fold_message(const SwitchingContext& switching_co
   const ProjectedFields fields(switching_context.kernel, switching_point);
   for (const int j : state.sliding) {
     if (fields.nearly_two_fold(state.alpha, j) || fields.gradient_vanishes(state.alpha, j)) {
-      return undetermined_at(fields, switching_context.system, state.alpha, j, t);
+      return undetermined_at(fields, switching_context.layout, state.alpha, j, t);
     }
   }
   return std::nullopt;

@@ -40,10 +40,10 @@ void subtract(const switching::MultiAffine& ahead, double time, switching::Multi
 }
 
 /// A kink that rests beside a surface decides nothing: no other solution is known.
-std::optional<bool> unique_if_unstable(const model::System& system, const std::vector<int>& group,
+std::optional<bool> unique_if_unstable(const model::Layout& layout, const std::vector<int>& group,
                                        std::optional<bool> unique) {
   const bool beside_kink =
-      std::any_of(group.begin(), group.end(), [&](int j) { return system.switching[at(j)].is_kink(); });
+      std::any_of(group.begin(), group.end(), [&](int j) { return layout.surfaces[at(j)].is_kink; });
   return beside_kink && unique == true ? std::nullopt : std::optional<bool>(false);
 }
 
@@ -82,7 +82,7 @@ std::optional<PlaneDecision> Decider::ask_tree(const std::vector<int>& group,
                                                const switching::CornerTable& table) const {
   if (switching_point_.start || group.size() != 2 || !s_.affine_in_alpha) return std::nullopt;
   for (const int j : group) {
-    const auto role = s_.system.switching[at(j)].role;
+    const auto role = s_.layout.surfaces[at(j)].role;
     if (role != model::SwitchingRole::listed && role != model::SwitchingRole::region) return std::nullopt;
   }
   const PlaneTable plane = switching::plane_table(table);
@@ -135,7 +135,7 @@ void Decider::take(const std::vector<int>& group, const std::vector<int>& mode, 
 bool Decider::is_same_motion(const std::vector<int>& group, const auto& mode) const {
   const auto taken = decisions_.end() - static_cast<std::ptrdiff_t>(group.size());
   for (std::size_t k = 0; k < group.size(); ++k) {
-    if (s_.system.switching[at(group[k])].is_kink()) continue;
+    if (s_.layout.surfaces[at(group[k])].is_kink) continue;
     const auto& decision = taken[static_cast<std::ptrdiff_t>(k)].second;
     if (mode.mode[k] != decision.mode || std::abs(mode.alpha[k] - decision.alpha) > 1e-6) return false;
   }
@@ -177,7 +177,7 @@ bool Decider::accept(const std::vector<int>& group, const PlaneDecision& decisio
   take(group, {chosen.mode[0], chosen.mode[1]}, {chosen.alpha[0], chosen.alpha[1]});
   for (const auto& other : decision.others) note_other(group, other);
   if (decision.ambiguous || decision.spirals_out) transition_.unique = false;
-  group_reasons_.push_back(names(s_.system, group));
+  group_reasons_.push_back(names(s_.layout, group));
   append_leaf(decision.leaf, decision.reason, group_reasons_.back());
   return true;
 }
@@ -279,7 +279,7 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
     return fail(result::Termination::outside_class,
                 fmt::format("the surfaces {} meet at t = {} and influence each other: no mode could be found that "
                             "continues the solution ({}); start beside them or perturb a parameter",
-                            names(s_.system, group), switching_point_.t,
+                            names(s_.layout, group), switching_point_.t,
                             hidden.reason.empty() ? "the fields are not finite" : hidden.reason));
   }
   take(group, hidden.mode, hidden.alpha);
@@ -290,13 +290,13 @@ bool Decider::resolve(const std::vector<int>& group, const switching::CornerTabl
   } else if (transition_.unique == true) {
     transition_.unique = std::nullopt;
   }
-  if (hidden.structurally_unstable) transition_.unique = unique_if_unstable(s_.system, group, transition_.unique);
+  if (hidden.structurally_unstable) transition_.unique = unique_if_unstable(s_.layout, group, transition_.unique);
   for (const auto& mode : hidden.other_modes) {
     std::vector<GivenMode> choice;
     for (std::size_t k = 0; k < group.size(); ++k) choice.push_back({group[k], mode[k], not_a_number});
     if (!plane) transition_.other_choices.push_back(std::move(choice));
   }
-  group_reasons_.push_back(fmt::format("{}: {}", names(s_.system, group), hidden.reason));
+  group_reasons_.push_back(fmt::format("{}: {}", names(s_.layout, group), hidden.reason));
   return true;
 }
 

@@ -77,7 +77,7 @@ bool Decider::passes_kink(const std::vector<int>& group, const switching::GroupD
   const int j = group.front();
   const int arrived = before_.mode[at(j)];
   if (group.size() > 1 || arrived == 0 || switching_point_.start) return false;
-  if (!s_.system.switching[at(j)].is_kink()) return false;
+  if (!s_.layout.surfaces[at(j)].is_kink) return false;
   const auto& surface = decision.surfaces.front();
   if (decision.verdict == Verdict::decided && surface.mode != 0 && surface.other_modes.empty()) return false;
   decisions_.emplace_back(j,
@@ -139,7 +139,7 @@ bool Decider::slides_past_exit(const std::vector<int>& group, const switching::G
 bool Decider::decide(const std::vector<int>& group) {
   if (regions_meet(group)) return decide_regions(group);
   if (const int j = lost_at_exit(group); j >= 0) {
-    return fail(result::Termination::outside_class, two_fold_at(s_.system.switching[at(j)].name, switching_point_.t));
+    return fail(result::Termination::outside_class, two_fold_at(s_.layout.surfaces[at(j)].name, switching_point_.t));
   }
   if (const auto large = decide_large(group)) return *large;
   if (group.size() > largest_group && s_.affine_in_alpha) {
@@ -154,7 +154,7 @@ bool Decider::decide(const std::vector<int>& group) {
     return fail(result::Termination::outside_class,
                 fmt::format("{} surfaces that influence each other meet at t = {}: {}; covered are up to {} with every "
                             "selection entering affinely",
-                            group.size(), switching_point_.t, names(s_.system, group), largest_group));
+                            group.size(), switching_point_.t, names(s_.layout, group), largest_group));
   }
   const auto table = fields_.table(base_, group);
   note_scales(group, table);
@@ -178,19 +178,19 @@ bool Decider::take_separate(const std::vector<int>& group, const switching::Grou
   const int culprit = group[at(std::max(decision.culprit, 0))];
   if (decision.verdict == Verdict::two_fold) {
     return fail(result::Termination::outside_class,
-                undetermined_at(fields_, s_.system, base_.alpha, culprit, switching_point_.t));
+                undetermined_at(fields_, s_.layout, base_.alpha, culprit, switching_point_.t));
   }
   // Where a surface stands nothing depends on the selection: any side continues the same solution.
   if (decision.verdict == Verdict::stands && !standing_fields_agree(group, decision)) {
     return fail(result::Termination::outside_class,
                 fmt::format("'{}' does not leave 0 at t = {} under either field, which differ there (boundary "
                             "equilibrium or higher-order contact); start beside the surface or perturb a parameter",
-                            s_.system.switching[at(culprit)].name, switching_point_.t));
+                            s_.layout.surfaces[at(culprit)].name, switching_point_.t));
   }
   // The solution can go on there and leave at any later time.
   if (group.size() == 1 && slides_past_exit(group, decision)) {
     return fail(result::Termination::outside_class,
-                two_fold_at(s_.system.switching[at(group.front())].name, switching_point_.t));
+                two_fold_at(s_.layout.surfaces[at(group.front())].name, switching_point_.t));
   }
   for (std::size_t k = 0; k < group.size(); ++k) {
     SurfaceDecision surface = decision.surfaces[k];

@@ -27,12 +27,12 @@ namespace saltus::event_integrator {
 inline constexpr double marginal_part = 1e-7;
 
 /// Returns names like "a, b".
-std::string names(const model::System& system, const std::vector<int>& surfaces);
+std::string names(const model::Layout& layout, const std::vector<int>& surfaces);
 
 std::string two_fold_at(const std::string& surface, double t);
 
 /// Says why the motion on a surface is not determined.
-std::string undetermined_at(const ProjectedFields& fields, const model::System& system,
+std::string undetermined_at(const ProjectedFields& fields, const model::Layout& layout,
                             const std::vector<double>& alpha, int surface, double t);
 
 /// Holds all surfaces at zero there where no rule decides, together with their derivatives that no selection enters, if

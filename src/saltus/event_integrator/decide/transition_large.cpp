@@ -79,7 +79,7 @@ class PartDecider {
     const auto table = fields_.table(base_, {surface});
     scale = std::max(std::abs(table.side(0, 0).velocity), std::abs(table.side(0, 1).velocity));
     auto decision = switching::decide_surface({table.side(0, 0), table.side(0, 1), table.arrival[0]});
-    const auto& name = s_.system.switching[at(surface)].name;
+    const auto& name = s_.layout.surfaces[at(surface)].name;
     if (decision.verdict != Verdict::decided) {
       problem_ = fmt::format("the fields beside '{}' are tangent to it", name);
       return std::nullopt;
@@ -116,7 +116,7 @@ class PartDecider {
     }
     problem_ = fmt::format(
         "{} of them depend on each other, more than themselves or tangent to one: {}", surfaces.size(),
-        names(s_.system, {surfaces.begin(), surfaces.begin() + std::min<std::ptrdiff_t>(3, std::ssize(surfaces))}) +
+        names(s_.layout, {surfaces.begin(), surfaces.begin() + std::min<std::ptrdiff_t>(3, std::ssize(surfaces))}) +
             ", …");
     return std::nullopt;
   }

@@ -5,14 +5,9 @@
 #include <limits>
 
 #include "saltus/event_integrator/mode/small_internal.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/switching/table/surface_decision.hpp"
 
 namespace saltus::event_integrator {
-
-bool is_affine_in_selections(const model::System& system) {
-  return system.inclusion == model::Inclusion::filippov || system.multi_affine;
-}
 
 ModeField::ModeField(const evaluation::ModelKernel& kernel, bool affine_in_alpha)
     : kernel_(kernel),

@@ -43,9 +43,6 @@ struct ExitValues {
 
 enum class Region { below, above };
 
-/// Returns whether f is affine in each selection of a system.
-[[nodiscard]] bool is_affine_in_selections(const model::System& system);
-
 /// Evaluates the right-hand side of the index-2 DAE of a mode turned into an ODE ([guglielmi2022], section 6):
 ///   xdot = f(t, x, alpha) - J^+ (J f + d psi_I/dt),  J = grad psi_I,
 /// with alpha_I from the m equations J f + d psi_I/dt = 0. The correction is of rounding size; for a surface that is a

@@ -24,8 +24,8 @@ std::vector<HeldGuard> HeldGuards::all() const {
   return both;
 }
 
-Holding::Holding(evaluation::ModelKernel& kernel, const model::System& system)
-    : kernel_(kernel), system_(system), values_(at(kernel.event_functions())), row_(at(kernel.states())) {}
+Holding::Holding(evaluation::ModelKernel& kernel)
+    : kernel_(kernel), layout_(kernel.layout()), values_(at(kernel.event_functions())), row_(at(kernel.states())) {}
 
 Holding::~Holding() { release_all(); }
 
@@ -47,7 +47,7 @@ std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vec
   basis_.clear();
   for (const auto* list : {&guards, &loose}) {
     for (const auto& guard : *list) {
-      const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+      const auto& targets = layout_.jumps[at(guard.hold.jump)].targets;
       absorbing_.insert(absorbing_.end(), targets.begin(), targets.end());
       pressing_ = std::max(pressing_, std::abs(second_derivative(guard, t, alpha, x)));
     }
@@ -150,15 +150,15 @@ std::optional<std::string> Holding::set(double t, const std::vector<double>& alp
 std::optional<std::string> Holding::moves_what_is_compared(double t, const std::vector<double>& alpha,
                                                            std::vector<double>& x) {
   for (const auto& guard : held_.guards) {
-    static_cast<void>(find_rate_row(guard.hold, system_.jumps[at(guard.hold.jump)].targets, t, alpha, x));
+    static_cast<void>(find_rate_row(guard.hold, layout_.jumps[at(guard.hold.jump)].targets, t, alpha, x));
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      if (row_[i] == 0.0 || !system_.discrete_states[i]) continue;
-      const auto compared = compared_at_jumps_only(kernel_, system_, static_cast<int>(i));
+      if (row_[i] == 0.0 || !layout_.discrete_states[i]) continue;
+      const auto compared = compared_at_jumps_only(layout_, static_cast<int>(i));
       if (!compared) continue;
       return fmt::format(
           "the state '{}' would have to move to hold the guard of '{}' at 0, but its right-hand side is 0, so '{}' is "
           "read at jumps only: give the state a parameter of value 0 as its right-hand side",
-          system_.state_names[i], system_.jumps[at(guard.hold.jump)].name, *compared);
+          layout_.state_names[i], layout_.jumps[at(guard.hold.jump)].name, *compared);
     }
   }
   return std::nullopt;
@@ -185,7 +185,7 @@ double Holding::find_rate_row(const evaluation::Hold& hold, const std::vector<in
 bool Holding::can_rest(const HeldGuard& guard, double t, const std::vector<double>& alpha,
                        const std::vector<double>& x) {
   std::vector<double> point = x;
-  const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+  const auto& targets = layout_.jumps[at(guard.hold.jump)].targets;
   const double square = find_rate_row(guard.hold, targets, t, alpha, point);
   return square > 0.0 && std::isfinite(square) && !lets_go_on(guard, square, t, alpha, std::move(point));
 }
@@ -193,7 +193,7 @@ bool Holding::can_rest(const HeldGuard& guard, double t, const std::vector<doubl
 /// Whether a motion inward, as slow as the differences in row_ resolve, goes on behind the jump.
 bool Holding::lets_go_on(const HeldGuard& guard, double square, double t, const std::vector<double>& alpha,
                          std::vector<double> point) const {
-  const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+  const auto& targets = layout_.jumps[at(guard.hold.jump)].targets;
   const auto rate_of = [&] { return kernel_.lie_derivative(guard.hold.function, 1, t, point.data(), alpha.data()); };
   double size = 1.0;
   for (const int target : targets) size = std::max(size, std::abs(point[at(target)]));
@@ -222,7 +222,7 @@ bool Holding::find_positions(double t, const std::vector<double>& alpha, const s
     double rate = 0.0;
     kernel_.gradient(held_.guards[k].hold.function, t, x.data(), alpha.data(), row_.data(), &rate);
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      rows_(static_cast<linalg::Index>(k), static_cast<linalg::Index>(i)) = system_.discrete_states[i] ? 0.0 : row_[i];
+      rows_(static_cast<linalg::Index>(k), static_cast<linalg::Index>(i)) = layout_.discrete_states[i] ? 0.0 : row_[i];
     }
   }
   return true;
@@ -238,7 +238,7 @@ bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector
   }
   if (!away) return false;
   for (std::size_t k = 0; k < held_.guards.size(); ++k) {
-    const auto& targets = system_.jumps[at(held_.guards[k].hold.jump)].targets;
+    const auto& targets = layout_.jumps[at(held_.guards[k].hold.jump)].targets;
     static_cast<void>(find_rate_row(held_.guards[k].hold, targets, t, alpha, x));
     for (std::size_t i = 0; i < row_.size(); ++i) {
       rows_(static_cast<linalg::Index>(k), static_cast<linalg::Index>(i)) = row_[i];
@@ -292,7 +292,7 @@ double Holding::largest_rate(double t, const std::vector<double>& alpha, const s
   };
   for (const auto& guard : held_.all()) {
     note(guard.hold.function, x);
-    const auto& targets = system_.jumps[at(guard.hold.jump)].targets;
+    const auto& targets = layout_.jumps[at(guard.hold.jump)].targets;
     std::vector<double> behind = x, values(targets.size());
     kernel_.jump_values(guard.hold.jump, t, x.data(), alpha.data(), values.data());
     for (std::size_t i = 0; i < targets.size(); ++i) behind[at(targets[i])] = values[i];

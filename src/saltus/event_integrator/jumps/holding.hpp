@@ -9,7 +9,7 @@
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/linalg/factors.hpp"
 #include "saltus/linalg/matrix.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout.hpp"
 
 namespace saltus::event_integrator {
 
@@ -36,7 +36,7 @@ struct HeldGuards {
 /// counts impacts beside the one that reflects) an independent part is held by the kernel; the others follow.
 class Holding {
  public:
-  Holding(evaluation::ModelKernel& kernel, const model::System& system);
+  explicit Holding(evaluation::ModelKernel& kernel);
   Holding(const Holding&) = delete;
   Holding& operator=(const Holding&) = delete;
   ~Holding();  ///< the kernel is as it was
@@ -84,7 +84,7 @@ class Holding {
   bool correct(std::vector<double>& x);
 
   evaluation::ModelKernel& kernel_;
-  const model::System& system_;
+  const model::Layout& layout_;
   Contacts* contacts_ = nullptr;
   HeldGuards held_;
   double pressing_ = 0.0;       ///< the largest |d^2 g/dt^2| without a hold that was met: what counts as none

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/base/symbolic_lock.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -19,35 +19,28 @@ constexpr double never = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-std::optional<std::string> compared_at_jumps_only(const evaluation::ModelKernel& kernel, const model::System& system,
-                                                  int state) {
-  const SymbolicLock lock;
-  const casadi::SX symbol = system.x(state);
-  for (const auto& function : system.switching) {
-    if (function.role == model::SwitchingRole::discrete && casadi::SX::depends_on(function.psi, symbol)) {
-      return function.name;
-    }
+std::optional<std::string> compared_at_jumps_only(const model::Layout& layout, int state) {
+  for (const auto& surface : layout.surfaces) {
+    if (surface.role == model::SwitchingRole::discrete && contains(surface.states, state)) return surface.name;
   }
-  for (std::size_t k = 0; k < system.jumps.size(); ++k) {
-    const auto& jump = system.jumps[k];
-    for (int g = 0; g < static_cast<int>(jump.guards.numel()); ++g) {
-      const bool is_discrete = kernel.is_discrete_guard(kernel.jump_guard(static_cast<int>(k), g));
-      if (is_discrete && casadi::SX::depends_on(jump.guards(g), symbol)) return jump.name;
+  for (const auto& jump : layout.jumps) {
+    for (const auto& guard : jump.guards) {
+      if (guard.discrete && contains(guard.states, state)) return jump.name;
     }
   }
   return std::nullopt;
 }
 
-Jumps::Jumps(const evaluation::ModelKernel& kernel, const model::System& system, double from)
+Jumps::Jumps(const evaluation::ModelKernel& kernel, double from)
     : kernel_(kernel),
-      system_(system),
+      layout_(kernel.layout()),
       from_(from),
-      truth_(system.jumps.size(), 0U),
-      times_passed_(system.jumps.size(), 0),
+      truth_(layout_.jumps.size(), 0U),
+      times_passed_(layout_.jumps.size(), 0),
       values_(at(kernel.event_functions())),
       next_time_(never) {
-  for (std::size_t k = 0; k < system.jumps.size(); ++k) {
-    const auto& times = system.jumps[k].times;
+  for (std::size_t k = 0; k < layout_.jumps.size(); ++k) {
+    const auto& times = layout_.jumps[k].times;
     times_passed_[k] = std::lower_bound(times.begin(), times.end(), from) - times.begin();
   }
 }
@@ -55,9 +48,9 @@ Jumps::Jumps(const evaluation::ModelKernel& kernel, const model::System& system,
 bool Jumps::is_discrete_guard(int function) const { return kernel_.is_discrete_guard(function); }
 
 bool Jumps::is_compared(int function) const {
-  for (std::size_t k = 0; k < system_.jumps.size(); ++k) {
-    if (system_.jumps[k].trigger != JumpTrigger::condition) continue;
-    for (int g = 0; g < static_cast<int>(system_.jumps[k].guards.numel()); ++g) {
+  for (std::size_t k = 0; k < layout_.jumps.size(); ++k) {
+    if (layout_.jumps[k].trigger != JumpTrigger::condition) continue;
+    for (int g = 0; g < static_cast<int>(layout_.jumps[k].guards.size()); ++g) {
       if (kernel_.jump_guard(static_cast<int>(k), g) == function) return true;
     }
   }
@@ -66,7 +59,7 @@ bool Jumps::is_compared(int function) const {
 
 /// The next time of a jump with given times.
 double Jumps::time_of(int jump) const {
-  const auto& entry = system_.jumps[at(jump)];
+  const auto& entry = layout_.jumps[at(jump)];
   if (entry.trigger != JumpTrigger::times) return never;
   const long passed = times_passed_[at(jump)];
   // A multiple of the period, not a sum of periods: nothing accumulates.
@@ -76,7 +69,7 @@ double Jumps::time_of(int jump) const {
 
 void Jumps::find_next_time() {
   next_time_ = never;
-  for (std::size_t k = 0; k < system_.jumps.size(); ++k) {
+  for (std::size_t k = 0; k < layout_.jumps.size(); ++k) {
     next_time_ = std::min(next_time_, time_of(static_cast<int>(k)));
   }
   for (const auto& execution : queue_) next_time_ = std::min(next_time_, execution.t);
@@ -91,17 +84,17 @@ int Jumps::guard_sign(int function, const JumpPoint& point) const {
 
 /// step of each guard; values_ are those of the point.
 std::vector<double> Jumps::steps(int jump, const JumpPoint& point) const {
-  const auto& entry = system_.jumps[at(jump)];
+  const auto& entry = layout_.jumps[at(jump)];
   std::vector<double> result;
-  for (std::size_t g = 0; g < static_cast<std::size_t>(entry.guards.numel()); ++g) {
+  for (std::size_t g = 0; g < entry.guards.size(); ++g) {
     const int sign = guard_sign(kernel_.jump_guard(jump, static_cast<int>(g)), point);
-    result.push_back(sign > 0 || (sign == 0 && entry.true_at_equality[g]) ? 1.0 : 0.0);
+    result.push_back(sign > 0 || (sign == 0 && entry.guards[g].true_at_equality) ? 1.0 : 0.0);
   }
   return result;
 }
 
 unsigned Jumps::truth(int jump, const JumpPoint& point) const {
-  const auto trigger = system_.jumps[at(jump)].trigger;
+  const auto trigger = layout_.jumps[at(jump)].trigger;
   if (trigger == JumpTrigger::times) return 0U;
   if (trigger == JumpTrigger::condition) {
     return kernel_.jump_condition(jump, point.t, point.x.data(), point.alpha.data(), steps(jump, point).data()) ? 1U
@@ -114,7 +107,7 @@ unsigned Jumps::truth(int jump, const JumpPoint& point) const {
 }
 
 void Jumps::begin(const JumpPoint& point) {
-  for (std::size_t k = 0; k < truth_.size(); ++k) truth_[k] = system_.jumps[k].at_start ? 0U : ~0U;
+  for (std::size_t k = 0; k < truth_.size(); ++k) truth_[k] = layout_.jumps[k].at_start ? 0U : ~0U;
   update(point);
 }
 
@@ -131,7 +124,7 @@ void Jumps::update(const JumpPoint& point) {
       ++times_passed_[k];
       trigger(jump, point);
     }
-    if (!system_.jumps[k].persistent && now == 0U && system_.jumps[k].trigger != JumpTrigger::times) {
+    if (!layout_.jumps[k].persistent && now == 0U && layout_.jumps[k].trigger != JumpTrigger::times) {
       std::erase_if(queue_, [jump](const Execution& execution) { return execution.jump == jump; });
     }
   }
@@ -147,12 +140,12 @@ void Jumps::trigger(int jump, const JumpPoint& point) {
   const double delay = kernel_.jump_delay(jump, point.t, point.x.data(), point.alpha.data());
   if (!(delay >= 0.0 && std::isfinite(delay))) {
     problem_ = fmt::format("the delay of the jump '{}' is {} at t = {:.17g}; it must be a finite number >= 0",
-                           system_.jumps[at(jump)].name, delay, point.t);
+                           layout_.jumps[at(jump)].name, delay, point.t);
     return;
   }
   Execution execution{jump, point.t + delay, {}};
-  if (system_.jumps[at(jump)].evaluated == model::JumpValues::at_trigger) {
-    execution.values.resize(system_.jumps[at(jump)].targets.size());
+  if (layout_.jumps[at(jump)].evaluated == model::JumpValues::at_trigger) {
+    execution.values.resize(layout_.jumps[at(jump)].targets.size());
     kernel_.jump_values(jump, point.t, point.x.data(), point.alpha.data(), execution.values.data());
   }
   queue_.push_back(std::move(execution));
@@ -170,7 +163,7 @@ int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
     const double priority = kernel_.jump_priority(entry->jump, point.t, point.x.data(), point.alpha.data());
     if (std::isnan(priority)) {
       problem_ = fmt::format("the priority of the jump '{}' is not a number at t = {:.17g}",
-                             system_.jumps[at(entry->jump)].name, point.t);
+                             layout_.jumps[at(entry->jump)].name, point.t);
     }
     const bool first = chosen == queue_.end();
     if (first || priority > largest || (priority == largest && entry->jump < chosen->jump)) {
@@ -179,7 +172,7 @@ int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
     }
   }
   const int jump = chosen->jump;
-  const auto& entry = system_.jumps[at(jump)];
+  const auto& entry = layout_.jumps[at(jump)];
   std::vector<double> values = std::move(chosen->values);
   queue_.erase(chosen);
   if (entry.evaluated == model::JumpValues::at_execution) {
@@ -189,7 +182,7 @@ int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) {
       problem_ = fmt::format("the jump '{}' sets {} to {} at t = {:.17g}; guard its expression with if(…)", entry.name,
-                             system_.state_names[at(entry.targets[i])], values[i], point.t);
+                             layout_.state_names[at(entry.targets[i])], values[i], point.t);
       return jump;
     }
   }
@@ -199,7 +192,7 @@ int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
 }
 
 int Jumps::trigger_sign(int jump, int guard, const JumpPoint& point, int inward) const {
-  switch (system_.jumps[at(jump)].trigger) {
+  switch (layout_.jumps[at(jump)].trigger) {
     case JumpTrigger::times:
       return 0;
     case JumpTrigger::guard_down:

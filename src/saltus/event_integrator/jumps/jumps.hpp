@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout.hpp"
 
 namespace saltus::event_integrator {
 
@@ -20,16 +20,15 @@ struct JumpPoint {
 
 /// Returns a switching function or a jump that a discrete state decides, so that it is read at jumps only; nothing
 /// without.
-[[nodiscard]] std::optional<std::string> compared_at_jumps_only(const evaluation::ModelKernel& kernel,
-                                                                const model::System& system, int state);
+[[nodiscard]] std::optional<std::string> compared_at_jumps_only(const model::Layout& layout, int state);
 
 /// Follows the truth of all conditions and the queue of executions (rules 1 to 5 of the model file's [[jumps]]). Knows
 /// no modes and takes no steps; it is asked at events only.
 class Jumps {
  public:
-  Jumps(const evaluation::ModelKernel& kernel, const model::System& system, double from);
+  Jumps(const evaluation::ModelKernel& kernel, double from);
 
-  [[nodiscard]] bool none() const { return system_.jumps.empty(); }
+  [[nodiscard]] bool none() const { return layout_.jumps.empty(); }
   /// Begins at the start: every condition counts as true before it, with at_start as false.
   void begin(const JumpPoint& point);
   /// Reads all conditions and times anew: what became true, and times that have come, are triggered; waiting executions
@@ -74,7 +73,7 @@ class Jumps {
   void find_next_time();
 
   const evaluation::ModelKernel& kernel_;
-  const model::System& system_;
+  const model::Layout& layout_;
   double from_;
   std::vector<unsigned> truth_;
   std::vector<long> times_passed_;  ///< of every jump with given times

@@ -13,7 +13,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-std::string_view why_executed(const model::Jump& jump) {
+std::string_view why_executed(const model::Layout::Jump& jump) {
   switch (jump.trigger) {
     case model::JumpTrigger::times:
       return "a given time";
@@ -56,8 +56,8 @@ result::EventKind kind_of(const ModeChange& change) {
 
 }  // namespace
 
-Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& system)
-    : kernel_(kernel), system_(system), listed_columns_(system.switching.size()) {
+Recorder::Recorder(const evaluation::ModelKernel& kernel)
+    : kernel_(kernel), layout_(kernel.layout()), listed_columns_(layout_.surfaces.size()) {
   recording_.n_x = at(kernel.states());
   recording_.n_u = at(kernel.controls());
   recording_.n_y = at(kernel.outputs());
@@ -71,9 +71,9 @@ Recorder::Recorder(const evaluation::ModelKernel& kernel, const model::System& s
   recording_.row_modes.reserve(2 * first_events);
   recording_.row_states.reserve(2 * first_events * recording_.n_x);
   recording_.modes.reserve(2 * first_events);
-  for (std::size_t c = 0; c < system.columns.size(); ++c) {
-    const auto j = at(system.columns[c].function);
-    if (system.switching[j].role == model::SwitchingRole::listed) listed_columns_[j].push_back(c);
+  for (std::size_t c = 0; c < layout_.columns.size(); ++c) {
+    const auto j = at(layout_.columns[c].function);
+    if (layout_.surfaces[j].role == model::SwitchingRole::listed) listed_columns_[j].push_back(c);
   }
 }
 
@@ -217,7 +217,7 @@ void Recorder::note_changed_regions(const ModeState& before, const ModeState& af
 /// Surfaces that are slid on before and after, while a kink inside them begins or ends to be held with them.
 void Recorder::note_held_kinks(const ModeState& before, const ModeState& after) {
   for (const std::size_t i : changed_) {
-    if (!system_.switching[i].is_kink() || (before.mode[i] == 0) == (after.mode[i] == 0)) continue;
+    if (!layout_.surfaces[i].is_kink || (before.mode[i] == 0) == (after.mode[i] == 0)) continue;
     for (std::size_t j = 0; j < before.mode.size(); ++j) {
       if (before.mode[j] != 0 || after.mode[j] != 0 ||
           !contains(kernel_.inner(static_cast<int>(j)), static_cast<int>(i)))
@@ -295,9 +295,9 @@ Recording::Range Recorder::reason_of(const ModeChange& change) {
   auto& text = recording_.text;
   known = {change.surface, slid, change.reason, {text.size(), text.size()}};
   if (change.slid != nullptr) {
-    append_meeting(system_, change.slid->meeting.surfaces, change.slid->leaf, change.reason, text);
+    append_meeting(layout_, change.slid->meeting.surfaces, change.slid->leaf, change.reason, text);
   } else {
-    text += system_.switching[at(change.surface)].name;
+    text += layout_.surfaces[at(change.surface)].name;
     text += ": ";
     text += change.reason;
   }
@@ -308,13 +308,13 @@ Recording::Range Recorder::reason_of(const ModeChange& change) {
 bool Recorder::started(double t, const std::vector<double>& x, const Transition& transition,
                        const std::vector<int>& surfaces) {
   columns_.clear();
-  for (std::size_t c = 0; c < system_.columns.size(); ++c) {
-    const int function = system_.columns[c].function;
+  for (std::size_t c = 0; c < layout_.columns.size(); ++c) {
+    const int function = layout_.columns[c].function;
     const bool at_zero = contains(surfaces, function);
-    if (at_zero && system_.switching[at(function)].role == model::SwitchingRole::listed) columns_.push_back(c);
+    if (at_zero && layout_.surfaces[at(function)].role == model::SwitchingRole::listed) columns_.push_back(c);
   }
   for (const int j : surfaces) {
-    if (system_.switching[at(j)].role == model::SwitchingRole::region) columns_.push_back(surface_of_region(j));
+    if (layout_.surfaces[at(j)].role == model::SwitchingRole::region) columns_.push_back(surface_of_region(j));
   }
   std::sort(columns_.begin(), columns_.end());
   if (columns_.empty()) return false;
@@ -329,7 +329,7 @@ void Recorder::user(double t, const Passage& passage, int event) {
   auto& entry = begin(t, result::EventKind::user);
   entry.entry = at(event);
   set_passage(entry, passage);
-  const bool condition = system_.events[at(event)].guards.numel() > 0;
+  const bool condition = layout_.events[at(event)].is_condition();
   add_reason(entry, condition ? "edge of a condition of [[events]]" : "zero of an expression of [[events]]");
   if (passage.x == passage.x_after) return;
   recording_.text += ", by a jump";
@@ -345,7 +345,7 @@ void Recorder::jumped(double t, std::span<const ExecutedJump> jumps, const ModeS
     add_surface(entry, entry.entry);
     set_states(entry, jumps[k].x, jumps[k].x_after);
     const std::string& open = jumps[k].why_open;
-    add_reason(entry, open.empty() ? why_executed(system_.jumps[entry.entry]) : std::string_view(open));
+    add_reason(entry, open.empty() ? why_executed(layout_.jumps[entry.entry]) : std::string_view(open));
     if (k == 0 && before != nullptr) entry.mode = number(*before);
     if (k + 1 == jumps.size()) add_transition(entry, transition);
     if (!open.empty()) entry.unique = false;
@@ -406,8 +406,8 @@ bool Recorder::switched_lately(int function, long events) const {
 void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passage& passage,
                          const Transition& transition, std::string_view why) {
   auto& entry = begin(t, result::EventKind::accumulation);
-  for (std::size_t c = 0; c < system_.columns.size(); ++c) {
-    const int function = system_.columns[c].function;
+  for (std::size_t c = 0; c < layout_.columns.size(); ++c) {
+    const int function = layout_.columns[c].function;
     const bool takes_part = contains(surfaces, function);
     if (takes_part && passage.before.mode[at(function)] != transition.state.mode[at(function)]) add_surface(entry, c);
   }

@@ -16,7 +16,7 @@
 #include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/event_integrator/record/recording.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout.hpp"
 #include "saltus/ode/straight_lines.hpp"
 
 namespace saltus::event_integrator {
@@ -38,7 +38,7 @@ struct ExecutedJump {
 
 class Recorder {
  public:
-  Recorder(const evaluation::ModelKernel& kernel, const model::System& system);
+  explicit Recorder(const evaluation::ModelKernel& kernel);
 
   /// Lets every row from now on widen these: states, inputs, outputs (of which the last `selections` are cut to [0,
   /// 1]), selections by switching function. They must outlive this.
@@ -115,7 +115,7 @@ class Recorder {
   void add_surface(Recording::Event& event, std::size_t surface);
   /// The place of a region of a group by `indicator` in the list of surfaces.
   [[nodiscard]] std::size_t surface_of_region(int function) const {
-    return system_.columns.size() + static_cast<std::size_t>(function);
+    return layout_.columns.size() + static_cast<std::size_t>(function);
   }
   void switched_single(double t, const std::vector<double>& x, const ModeChange& change);
   Recording::Range reason_of(const ModeChange& change);
@@ -149,7 +149,7 @@ class Recorder {
   };
 
   const evaluation::ModelKernel& kernel_;
-  const model::System& system_;
+  const model::Layout& layout_;
   Recording recording_;
   Past past_;
   ode::ColumnRanges* ranges_ = nullptr;  ///< nullptr: nobody asks for them

@@ -14,10 +14,10 @@ namespace {
 /// Modes and selections of functions as columns.
 class Columns {
  public:
-  explicit Columns(const model::System& system) : system_(system), of_function_(system.switching.size()) {
-    for (std::size_t c = 0; c < system.columns.size(); ++c) of_function_[at(system.columns[c].function)].push_back(c);
-    mode_.resize(system.columns.size());
-    alpha_.resize(system.columns.size());
+  explicit Columns(const model::Layout& layout) : layout_(layout), of_function_(layout.surfaces.size()) {
+    for (std::size_t c = 0; c < layout.columns.size(); ++c) of_function_[at(layout.columns[c].function)].push_back(c);
+    mode_.resize(layout.columns.size());
+    alpha_.resize(layout.columns.size());
   }
 
   void set(const std::vector<int>& mode, const std::vector<double>& alpha) {
@@ -25,10 +25,10 @@ class Columns {
   }
   void set_function(std::size_t j, int function_mode, double function_alpha) {
     // Functions of discrete states are in no mode: their sign is that of their selection.
-    const bool discrete = system_.switching[j].role == model::SwitchingRole::discrete;
+    const bool discrete = layout_.surfaces[j].role == model::SwitchingRole::discrete;
     const int sign = discrete ? (function_alpha > 0.5 ? 1 : function_alpha < 0.5 ? -1 : 0) : function_mode;
     for (const std::size_t c : of_function_[j]) {
-      const int orientation = system_.columns[c].orientation;
+      const int orientation = layout_.columns[c].orientation;
       mode_[c] = orientation * sign;
       alpha_[c] = orientation > 0 ? function_alpha : 1.0 - function_alpha;
     }
@@ -38,7 +38,7 @@ class Columns {
   [[nodiscard]] const std::vector<double>& alpha() const { return alpha_; }
 
  private:
-  const model::System& system_;
+  const model::Layout& layout_;
   std::vector<std::vector<std::size_t>> of_function_;
   result::Mode mode_;
   std::vector<double> alpha_;
@@ -47,8 +47,8 @@ class Columns {
 /// The columns of one mode of a log after the other: what changes from each to the next is turned into columns.
 class ColumnsInTime {
  public:
-  ColumnsInTime(const model::System& system, const ModeLog& modes)
-      : reader_(modes), columns_(system), listed_(system.columns.size(), false) {}
+  ColumnsInTime(const model::Layout& layout, const ModeLog& modes)
+      : reader_(modes), columns_(layout), listed_(layout.columns.size(), false) {}
 
   void seek(std::size_t number) {
     reader_.seek(number, [&](std::size_t j) {
@@ -77,9 +77,9 @@ class ColumnsInTime {
 };
 
 /// Names of the active modes of every group by `indicator`.
-result::Regions active_regions(const model::System& system, const std::vector<int>& mode) {
+result::Regions active_regions(const model::Layout& layout, const std::vector<int>& mode) {
   result::Regions active;
-  for (const auto& group : system.mode_groups) {
+  for (const auto& group : layout.groups) {
     if (group.first < 0) continue;
     active.emplace_back();
     for (int i = 0; i < group.regions; ++i) {
@@ -90,10 +90,10 @@ result::Regions active_regions(const model::System& system, const std::vector<in
 }
 
 /// Weights of all modes by `indicator`: those of the inactive ones are exactly 0.
-std::vector<double> region_weights(const model::System& system, const std::vector<int>& mode,
+std::vector<double> region_weights(const model::Layout& layout, const std::vector<int>& mode,
                                    const std::vector<double>& alpha) {
   std::vector<double> theta;
-  for (const auto& group : system.mode_groups) {
+  for (const auto& group : layout.groups) {
     for (int j = group.first; group.first >= 0 && j < group.first + group.regions; ++j) {
       theta.push_back(mode[at(j)] == 0 ? alpha[at(j)] : 0.0);
     }
@@ -107,14 +107,14 @@ std::span<const double> part(const std::vector<double>& list, std::size_t begin,
 }
 
 /// Two columns of the result with their orientations; nullopt if one of the surfaces is in none.
-std::optional<result::Intersection> intersection(const model::System& system, const Meeting& meeting,
+std::optional<result::Intersection> intersection(const model::Layout& layout, const Meeting& meeting,
                                                  const std::vector<double>& alpha_after) {
   result::Intersection shown;
   std::array<int, 2> orientation{};
   for (std::size_t k = 0; k < 2; ++k) {
-    const auto column = std::find_if(system.columns.begin(), system.columns.end(),
+    const auto column = std::find_if(layout.columns.begin(), layout.columns.end(),
                                      [&](const auto& c) { return c.function == meeting.surfaces[k]; });
-    if (column == system.columns.end()) return std::nullopt;
+    if (column == layout.columns.end()) return std::nullopt;
     shown.surfaces[k] = column->name;
     orientation[k] = column->orientation;
   }
@@ -156,29 +156,29 @@ void Recording::drop(std::size_t events, std::size_t rows) {
   }
 }
 
-result::Events Recording::events(const model::System& system) const {
-  ColumnsInTime columns(system, modes);
-  Columns of_alternatives(system);
+result::Events Recording::events(const model::Layout& layout) const {
+  ColumnsInTime columns(layout, modes);
+  Columns of_alternatives(layout);
   result::Events named;
   for (const Event& event : event_list) {
     result::Event entry;
     entry.t = event.t;
     entry.kind = event.kind;
-    if (event.kind == result::EventKind::jump) entry.name = system.jumps[event.entry].name;
-    if (event.kind == result::EventKind::user) entry.name = system.events[event.entry].name;
+    if (event.kind == result::EventKind::jump) entry.name = layout.jumps[event.entry].name;
+    if (event.kind == result::EventKind::user) entry.name = layout.events[event.entry].name;
     for (std::size_t k = event.surfaces.begin; k < event.surfaces.end; ++k) {
       const std::size_t surface = surfaces[k];
-      const bool column = surface < system.columns.size();
-      entry.surfaces.push_back(event.of_jumps ? system.jumps[surface].name
-                               : column       ? system.columns[surface].name
-                                              : system.switching[surface - system.columns.size()].name);
+      const bool column = surface < layout.columns.size();
+      entry.surfaces.push_back(event.of_jumps ? layout.jumps[surface].name
+                               : column       ? layout.columns[surface].name
+                                              : layout.surfaces[surface - layout.columns.size()].name);
     }
     entry.unique = event.unique;
     for (std::size_t k = event.alternatives.begin; k < event.alternatives.end; ++k) {
       const auto& other = alternatives[k];
       of_alternatives.set(other.mode, other.alpha);
       entry.alternatives.push_back(
-          {of_alternatives.mode(), of_alternatives.alpha(), active_regions(system, other.mode)});
+          {of_alternatives.mode(), of_alternatives.alpha(), active_regions(layout, other.mode)});
     }
     entry.reason = text.substr(event.reason.begin, event.reason.end - event.reason.begin);
     const auto add_side = [&](std::size_t number, auto& regions) {
@@ -187,13 +187,13 @@ result::Events Recording::events(const model::System& system) const {
       const auto changes = columns.changes();
       named.add_side(&changes);
       columns.forget();
-      if (auto active = active_regions(system, columns.functions().mode()); !active.empty())
+      if (auto active = active_regions(layout, columns.functions().mode()); !active.empty())
         regions = std::move(active);
     };
     add_side(event.mode, entry.regions_before);
     add_side(event.mode_after, entry.regions_after);
     if (event.meeting != none)
-      entry.intersection = intersection(system, meetings[event.meeting], columns.functions().alpha());
+      entry.intersection = intersection(layout, meetings[event.meeting], columns.functions().alpha());
     named.push_back(std::move(entry), part(states, event.x, n_x), part(states, event.x_after, n_x));
   }
   return named;
@@ -205,8 +205,8 @@ std::vector<long> Recording::family_numbers() const {
   return numbers;
 }
 
-std::vector<result::Family> Recording::listed_families(const model::System& system) const {
-  Columns columns(system);
+std::vector<result::Family> Recording::listed_families(const model::Layout& layout) const {
+  Columns columns(layout);
   std::vector<result::Family> listed;
   for (const Family& family : families) {
     columns.set(family.mode, family.alpha);
@@ -214,22 +214,22 @@ std::vector<result::Family> Recording::listed_families(const model::System& syst
                       family.event,
                       family.from,
                       family.until,
-                      {columns.mode(), columns.alpha(), active_regions(system, family.mode)},
+                      {columns.mode(), columns.alpha(), active_regions(layout, family.mode)},
                       family.lap_ratio});
   }
   return listed;
 }
 
-result::Trajectory Recording::trajectory(const model::System& system) && {
-  ColumnsInTime columns(system, modes);
+result::Trajectory Recording::trajectory(const model::Layout& layout) && {
+  ColumnsInTime columns(layout, modes);
   result::Trajectory rows;
   const std::size_t count = row_times.size();
   rows.t = std::move(row_times);
   rows.x = {count, n_x, std::move(row_states)};
   rows.u = {count, n_u, std::move(row_inputs)};
   rows.outputs = {count, n_y, std::move(row_outputs)};
-  const bool has_regions = std::any_of(system.mode_groups.begin(), system.mode_groups.end(),
-                                       [](const auto& group) { return group.first >= 0; });
+  const bool has_regions =
+      std::any_of(layout.groups.begin(), layout.groups.end(), [](const auto& group) { return group.first >= 0; });
   for (std::size_t k = 0; k < count; ++k) {
     if (k > 0 && row_modes[k] == row_modes[k - 1]) {
       rows.alpha.repeat();
@@ -244,16 +244,16 @@ result::Trajectory Recording::trajectory(const model::System& system) && {
     columns.forget();
     if (!has_regions) continue;
     const auto& functions = columns.functions();
-    rows.regions.push_back(active_regions(system, functions.mode()));
-    rows.theta.push_back(region_weights(system, functions.mode(), functions.alpha()));
+    rows.regions.push_back(active_regions(layout, functions.mode()));
+    rows.theta.push_back(region_weights(layout, functions.mode(), functions.alpha()));
   }
   return rows;
 }
 
-result::Final Recording::last(const model::System& system) const {
+result::Final Recording::last(const model::Layout& layout) const {
   SALTUS_ASSERT(!row_times.empty());
   ModeLog::Reader reader(modes);
-  Columns columns(system);
+  Columns columns(layout);
   reader.seek(row_modes.back());
   columns.set(reader.mode(), reader.alpha());
   const auto x = part(row_states, row_states.size() - n_x, n_x);
@@ -263,8 +263,8 @@ result::Final Recording::last(const model::System& system) const {
           columns.mode(),
           columns.alpha(),
           {outputs.begin(), outputs.end()},
-          active_regions(system, reader.mode()),
-          region_weights(system, reader.mode(), reader.alpha())};
+          active_regions(layout, reader.mode()),
+          region_weights(layout, reader.mode(), reader.alpha())};
 }
 
 }  // namespace saltus::event_integrator

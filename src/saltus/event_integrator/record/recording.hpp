@@ -12,7 +12,7 @@
 #include "saltus/event_integrator/choices.hpp"
 #include "saltus/event_integrator/decide/transition.hpp"
 #include "saltus/event_integrator/mode/mode_log.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::event_integrator {
@@ -77,13 +77,13 @@ struct Recording {
   /// Takes away the first events and rows; families that are left belong to the first event that is.
   void drop(std::size_t events, std::size_t rows);
   /// Returns events and rows as the result has them. Cost: O(n_psi) for each.
-  [[nodiscard]] result::Events events(const model::System& system) const;
+  [[nodiscard]] result::Events events(const model::Layout& layout) const;
   /// Takes the numbers of the rows away.
-  [[nodiscard]] result::Trajectory trajectory(const model::System& system) &&;
+  [[nodiscard]] result::Trajectory trajectory(const model::Layout& layout) &&;
   [[nodiscard]] std::vector<long> family_numbers() const;
-  [[nodiscard]] std::vector<result::Family> listed_families(const model::System& system) const;
+  [[nodiscard]] std::vector<result::Family> listed_families(const model::Layout& layout) const;
   /// Returns the last row; there must be one.
-  [[nodiscard]] result::Final last(const model::System& system) const;
+  [[nodiscard]] result::Final last(const model::Layout& layout) const;
 };
 
 using TakeRecording = std::function<void(Recording)>;

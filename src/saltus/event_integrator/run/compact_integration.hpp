@@ -7,7 +7,6 @@
 #include "saltus/event_integrator/options.hpp"
 #include "saltus/event_integrator/record/pieces.hpp"
 #include "saltus/event_integrator/record/recording.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::event_integrator {
@@ -23,8 +22,7 @@ struct CompactIntegration {
 
 /// Does what integrate() does before it expands events and rows, which costs O(n_psi) for each of them: an event here
 /// costs what it changes.
-[[nodiscard]] CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const model::System& system,
-                                                   const IntegrationOptions& options,
+[[nodiscard]] CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const IntegrationOptions& options,
                                                    const StepObserver& observer = {});
 
 }  // namespace saltus::event_integrator

@@ -15,14 +15,14 @@ namespace saltus::event_integrator {
 
 using result::Termination;
 
-Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options, Way way)
+Run::Run(evaluation::ModelKernel& kernel, const IntegrationOptions& options, Way way)
     : kernel_(kernel),
       options_(options),
-      switching_context_{kernel, system, is_affine_in_selections(system), options.selection, options.scaling},
+      switching_context_{kernel, kernel.layout().affine_in_selections, options.selection, options.scaling},
       field_(kernel, switching_context_.affine_in_alpha),
-      here_(options.from, system.initial_state),
+      here_(options.from, kernel.initial_state()),
       tolerances_(options.tolerances),
-      steps_(options, system, field_, here_, tolerances_),
+      steps_(options, kernel.layout(), field_, here_, tolerances_),
       cells_(kernel),
       search_(kernel, field_, options.method, tolerances_.step()),
       zeros_(switching_context_, here_, field_, search_),
@@ -30,13 +30,13 @@ Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const Int
       switches_(switching_context_, here_, options.until - options.from, tolerances_),
       locator_(kernel.states(), steps_.stepper(), field_, search_, tolerances_.step()),
       fast_(switching_context_, options, tolerances_),
-      user_events_(kernel, system),
-      jumps_(kernel, system, options.from),
-      contacts_(kernel, system),
-      holding_(kernel, system),
+      user_events_(kernel),
+      jumps_(kernel, options.from),
+      contacts_(kernel),
+      holding_(kernel),
       cascade_(switching_context_, here_, field_, search_, jumps_, contacts_, holding_),
       jump_accumulation_(switching_context_, here_),
-      recorder_(kernel, system),
+      recorder_(kernel),
       rows_(kernel, options, here_, field_, holding_, recorder_),
       choices_(switching_context_, options, here_, recorder_),
       outcome_{.evaluations_before = kernel.field_evaluations()} {
@@ -47,15 +47,14 @@ Run::Run(evaluation::ModelKernel& kernel, const model::System& system, const Int
 std::string Run::where() const {
   std::string text;
   for (const int j : here_.state.sliding) {
-    text += (text.empty() ? "" : ", ") + switching_context_.system.switching[at(j)].name;
+    text += (text.empty() ? "" : ", ") + switching_context_.layout.surfaces[at(j)].name;
   }
   return fmt::format("t = {:.17g}{}", here_.t, text.empty() ? "" : " while sliding on " + text);
 }
 
 std::span<const double> Run::shown_state() const {
-  const auto& contacts = switching_context_.system.contacts;
   const std::span<const double> all(here_.x);
-  return contacts.empty() ? all : all.first(at(contacts.first_hidden));
+  return all.first(at(switching_context_.layout.shown_states));
 }
 
 void Run::fail(Termination termination, std::string message) {
@@ -109,7 +108,7 @@ bool Run::enter(const Transition& transition) {
         Termination::evaluation_failed,
         fmt::format("the right-hand side of {} is not finite at {}; change the initial values, or guard the expression "
                     "with if(…)",
-                    undefined_states(switching_context_.system, here_.slope), where()));
+                    undefined_states(switching_context_.layout, here_.slope), where()));
     return false;
   }
   if (const int moved = state_moved_from(met); moved >= 0) {
@@ -118,7 +117,7 @@ bool Run::enter(const Transition& transition) {
         Termination::outside_class,
         fmt::format("sliding on from {} would need {} to jump from {:.6g} to {:.6g}: a switching function that is slid "
                     "on jumps there, and the continuation is not decided",
-                    where(), switching_context_.system.state_names[at(moved)], met[at(moved)], there));
+                    where(), switching_context_.layout.state_names[at(moved)], met[at(moved)], there));
     return false;
   }
   search_.begin(change, here_);
@@ -164,7 +163,7 @@ bool Run::begin() {
   here_.time_scale = 1e-3 * span();
   if (!is_finite(here_.x)) {
     fail(Termination::evaluation_failed,
-         fmt::format("the initial value of {} is not finite", undefined_states(switching_context_.system, here_.x)));
+         fmt::format("the initial value of {} is not finite", undefined_states(switching_context_.layout, here_.x)));
     return false;
   }
   if (!cells_.empty())

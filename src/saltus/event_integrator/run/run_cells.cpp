@@ -59,7 +59,7 @@ bool Run::jump_with_cells() {
   if (transition.termination == Termination::completed && transition.state.mode != before.mode) {
     transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the " +
                         (event_.cell_change == CellChange::jump ? "jump of " : "kink of ") +
-                        cells_.moved_names(switching_context_.system);
+                        cells_.moved_names(switching_context_.layout);
   }
   search_.forget_user_zeros();
   return go_on();

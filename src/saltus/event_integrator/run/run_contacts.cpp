@@ -80,7 +80,7 @@ bool Run::contacts_jump() {
   if (cascade_.executed().empty()) {
     ExecutedJump& executed = cascade_.executed().append();
     executed.x = x_before;
-    executed.jump = switching_context_.system.contacts.contacts.front().jump;
+    executed.jump = switching_context_.layout.contacts.front().jump;
     executed.x_after = here_.x;
     executed.why_open = contacts_.why_open();
   }

@@ -15,12 +15,12 @@ namespace saltus::event_integrator {
 /// Whether nothing but switching functions that hold no selections depends on modes, and nobody has asked for more
 /// than one solution.
 bool Run::has_ordinary_switches() const {
-  const auto& system = switching_context_.system;
+  const auto& layout = switching_context_.layout;
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
     if (!kernel_.inner(j).empty()) return false;
   }
   return switching_context_.affine_in_alpha && kernel_.event_functions() == kernel_.switching_functions() &&
-         kernel_.region_groups().empty() && system.events.empty() && jumps_.none() && options_.choices.empty() &&
+         kernel_.region_groups().empty() && layout.events.empty() && jumps_.none() && options_.choices.empty() &&
          options_.layers.empty();
 }
 

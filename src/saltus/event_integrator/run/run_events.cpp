@@ -7,13 +7,13 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/evaluation/explanations.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 #include "saltus/event_integrator/sequences/contracting_cycles.hpp"
-#include "saltus/model/vanishing_norm.hpp"
 
 namespace saltus::event_integrator {
 
@@ -27,13 +27,13 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
   auto fired = user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs());
   std::erase_if(fired, [&](std::size_t event) {
     const bool again = contains(before_jumps, event);
-    return again && !model::rule_of(switching_context_.system.events[event]).condition;
+    return again && !switching_context_.layout.events[event].is_condition();
   });
   for (const std::size_t event : fired) {
     recorder_.user(here_.t, {x_before, here_.x, before, here_.state}, static_cast<int>(event));
     if (user_events_.stops(event) && outcome_.running) {
       fail(Termination::stopped_by_event,
-           fmt::format("stopped by the event '{}'", switching_context_.system.events[event].name));
+           fmt::format("stopped by the event '{}'", switching_context_.layout.events[event].name));
     }
   }
   return fired;
@@ -41,7 +41,7 @@ std::vector<std::size_t> Run::fire_user_events(const std::vector<double>& x_befo
 
 /// What may help where all steps are used up.
 std::string Run::advice_on_steps() {
-  std::string norm = model::vanishing_norm(switching_context_.system, here_.t, here_.x);
+  std::string norm = evaluation::vanishing_norm(kernel_, here_.t, here_.x);
   if (!norm.empty()) return norm;
   const std::string cycles = ContractingCycles(switching_context_, here_, recorder_).describe();
   const std::string raise = "; raise simulate.max_steps if they are meant";
@@ -57,8 +57,8 @@ bool Run::too_many_events() {
     constexpr long last_events = 64;
     constexpr std::size_t most_names = 3;
     std::vector<std::string> names;
-    for (std::size_t j = 0; j < switching_context_.system.switching.size() && names.size() < most_names; ++j) {
-      const auto& name = switching_context_.system.switching[j].name;
+    for (std::size_t j = 0; j < switching_context_.layout.surfaces.size() && names.size() < most_names; ++j) {
+      const auto& name = switching_context_.layout.surfaces[j].name;
       if (recorder_.switched_lately(static_cast<int>(j), last_events)) names.push_back(fmt::format("'{}'", name));
     }
     const std::string advice = names.empty() ? "see what happens in the last events"
@@ -92,7 +92,7 @@ bool Run::jumps_while_sliding(int surface) {
                         here_.time_scale)) {
     return false;
   }
-  const auto name = [&](int j) { return switching_context_.system.switching[at(j)].name; };
+  const auto name = [&](int j) { return switching_context_.layout.surfaces[at(j)].name; };
   fail(Termination::outside_class,
        fmt::format("'{}' jumps across the surface of '{}', on which the solution slides, and reaches 0 on one side of "
                    "it at t = {:.17g}: rewrite the nested term with named switching functions",
@@ -307,7 +307,7 @@ void Run::follow_change_of_mode() {
 /// Whether a selection is another one than before that is no kink: one of time only, which makes no event.
 bool Run::selections_jumped() const {
   for (std::size_t j = 0; j < here_.state.mode.size() && j < event_.before.mode.size(); ++j) {
-    if (here_.state.mode[j] != event_.before.mode[j] && !switching_context_.system.switching[j].is_kink()) return true;
+    if (here_.state.mode[j] != event_.before.mode[j] && !switching_context_.layout.surfaces[j].is_kink) return true;
   }
   return false;
 }

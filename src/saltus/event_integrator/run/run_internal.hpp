@@ -62,8 +62,7 @@ class Run {
   /// everything.
   enum class Way { fast_where_ordinary, full };
 
-  Run(evaluation::ModelKernel& kernel, const model::System& system, const IntegrationOptions& options,
-      Way way = Way::fast_where_ordinary);
+  Run(evaluation::ModelKernel& kernel, const IntegrationOptions& options, Way way = Way::fast_where_ordinary);
 
   /// Runs to the end, or until the observer, which is called behind every step, asks to stop.
   /// @param take  gets rows and events when there are many; the result has the last ones. May be empty.

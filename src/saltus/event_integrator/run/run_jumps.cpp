@@ -23,7 +23,7 @@ constexpr std::size_t most_rounds = 10000;
 std::string Run::jump_names(const std::vector<int>& jumps) const {
   std::string text;
   for (const int jump : jumps)
-    text += (text.empty() ? "'" : ", '") + switching_context_.system.jumps[at(jump)].name + "'";
+    text += (text.empty() ? "'" : ", '") + switching_context_.layout.jumps[at(jump)].name + "'";
   return text;
 }
 

@@ -57,7 +57,7 @@ bool Run::change_nothing(const std::vector<int>& jumps) {
   kernel_.field(here_.t, here_.x.data(), here_.state.alpha.data(), slope.data());
   std::vector<bool> vanish = search_.user_zeros();
   for (const int jump : jumps) {
-    const auto& targets = switching_context_.system.jumps[at(jump)].targets;
+    const auto& targets = switching_context_.layout.jumps[at(jump)].targets;
     std::vector<double> values(targets.size());
     kernel_.jump_values(jump, here_.t, here_.x.data(), here_.state.alpha.data(), values.data());
     for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -66,7 +66,7 @@ bool Run::change_nothing(const std::vector<int>& jumps) {
       slope[at(targets[i])] = 0.0;
     }
     bool comes_true = false;
-    for (int g = 0; g < static_cast<int>(switching_context_.system.jumps[at(jump)].guards.numel()); ++g) {
+    for (int g = 0; g < static_cast<int>(switching_context_.layout.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       const Rate rate = rates.along(function, slope);
       const double resolved = tolerances_.step().atol * rate.slope + tolerances_.step().rtol * rate.magnitude;

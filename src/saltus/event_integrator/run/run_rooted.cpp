@@ -52,7 +52,7 @@ void Run::note_time_scale(double h) {
 /// A state at rest on a kink is on either side of it; the root says into which one it goes. False where the run ends.
 bool Run::take_side_of_root() {
   const auto j = at(event_.rooted);
-  if (switching_context_.system.switching[j].role != model::SwitchingRole::kink) return true;
+  if (switching_context_.layout.surfaces[j].role != model::SwitchingRole::kink) return true;
   const auto leads_away = [&](const ModeState& state) {
     return RootedExit(kernel_, switching_context_.affine_in_alpha, state, event_.rooted)
         .leads_away(here_.t, here_.x, root_step());

@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "saltus/evaluation/explanations.hpp"
 #include "saltus/event_integrator/decide/sets/without_limit.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/undefined.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
-#include "saltus/model/decisions.hpp"
 
 namespace saltus::event_integrator {
 
@@ -59,7 +59,7 @@ bool Run::stopped_by_mass() {
   std::vector<double> x = here_.x;
   for (double h = here_.smallest_step(); h <= 1e6 * here_.smallest_step(); h *= 4.0) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = here_.x[i] + h * here_.slope[i];
-    const auto row = model::find_indefinite_mass(switching_context_.system, x);
+    const auto row = evaluation::find_indefinite_mass(kernel_, x);
     if (!row) continue;
     fail(Termination::outside_class,
          fmt::format("the mass matrix is not positive definite beyond {}: {}; every velocity needs a positive mass or "
@@ -89,7 +89,7 @@ std::string Run::undefined_beyond() {
   for (double h = here_.smallest_step(); h <= 1e6 * here_.smallest_step(); h *= 4.0) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = here_.x[i] + h * here_.slope[i];
     field_(here_.t + h, x.data(), slope.data());
-    if (!is_finite(slope)) return undefined_states(switching_context_.system, slope);
+    if (!is_finite(slope)) return undefined_states(switching_context_.layout, slope);
   }
   return {};
 }
@@ -104,9 +104,9 @@ std::string Run::undefined_function_beyond() {
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto& function = search_.functions()[i];
       if (std::isfinite(values[i]) || is_cell_end(function.kind)) continue;
-      const bool named = at(function.index) < switching_context_.system.switching.size();
+      const bool named = at(function.index) < switching_context_.layout.surfaces.size();
       return named ? fmt::format("the switching function '{}'",
-                                 switching_context_.system.switching[at(function.index)].name)
+                                 switching_context_.layout.surfaces[at(function.index)].name)
                    : std::string("an expression of [[events]] or [[jumps]]");
     }
   }

@@ -104,11 +104,11 @@ bool Cells::moved_in(int function) const {
   return false;
 }
 
-std::string Cells::moved_names(const model::System& system) const {
+std::string Cells::moved_names(const model::Layout& layout) const {
   std::string text;
   for (std::size_t c = 0; c < moved_.size(); ++c) {
     if (!moved_[c] || kernel_.cell_table(static_cast<int>(c)).change != model::CellTable::Change::jump) continue;
-    text += (text.empty() ? "" : ", ") + system.cells[c].name;
+    text += (text.empty() ? "" : ", ") + layout.cell_names[c];
   }
   return text;
 }

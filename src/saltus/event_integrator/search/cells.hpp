@@ -44,7 +44,7 @@ class Cells {
   /// Returns whether a function holds constants of a cell that moved last.
   [[nodiscard]] bool moved_in(int function) const;
   /// Returns the names of the cells that moved last and jump, joined by commas.
-  [[nodiscard]] std::string moved_names(const model::System& system) const;
+  [[nodiscard]] std::string moved_names(const model::Layout& layout) const;
 
  private:
   CellChange place(int cell, double t, const double* x, const std::vector<double>& alpha);

@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/model/layout.hpp"
 #include "saltus/model/statement/event_rules.hpp"
-#include "saltus/model/system.hpp"
 
 namespace saltus::event_integrator {
 
 /// Follows the signs of the user functions and the truth of the conditions from event to event.
 class UserEvents {
  public:
-  UserEvents(const evaluation::ModelKernel& kernel, const model::System& system);
+  explicit UserEvents(const evaluation::ModelKernel& kernel);
 
   /// Takes the signs (-1, 0, 1) of all user functions in force from now on, in the kernel's order, and returns which
   /// entries of [[events]] fire. The first call only sets up.
@@ -25,7 +25,7 @@ class UserEvents {
 
  private:
   const evaluation::ModelKernel& kernel_;
-  const model::System& system_;
+  const model::Layout& layout_;
   model::EventStates states_;
 };
 

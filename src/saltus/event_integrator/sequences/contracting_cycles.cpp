@@ -94,7 +94,7 @@ std::string ContractingCycles::describe() {
   double farthest = 0.0, rounding = 0.0;
   bool smoothed = false;  // the surfaces are edges of layers
   for (int j = 0; j < kernel_.switching_functions(); ++j) {
-    const auto& function = switching_context_.system.switching[at(j)];
+    const auto& function = switching_context_.layout.surfaces[at(j)];
     if (function.role != model::SwitchingRole::listed || here_.state.mode[at(j)] == 0) continue;
     if (!recorder_.switched_lately(j, longest_cycle) || !has_one_rate(j)) continue;
     smoothed = smoothed || function.continuous;

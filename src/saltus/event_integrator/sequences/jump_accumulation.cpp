@@ -14,12 +14,12 @@ constexpr double unresolved = 800.0 * rounding_of(1.0);
 }  // namespace
 
 JumpAccumulation::JumpAccumulation(const SwitchingContext& switching_context, const Position& here)
-    : system_(switching_context.system),
+    : layout_(switching_context.layout),
       kernel_(switching_context.kernel),
       here_(here),
-      last_guard_(system_.jumps.size()),
-      last_rate_(system_.jumps.size(), 0.0),
-      shortest_cycle_(system_.jumps.size(), 0.0),
+      last_guard_(layout_.jumps.size()),
+      last_rate_(layout_.jumps.size(), 0.0),
+      shortest_cycle_(layout_.jumps.size(), 0.0),
       magnitude_(at(kernel_.event_functions())),
       slope_(magnitude_.size()) {}
 
@@ -30,7 +30,7 @@ void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps, cons
   executed_.clear();
   for (const auto& executed : cascade.executed().items()) executed_.push_back(executed.jump);
   for (const int jump : executed_) {
-    for (int g = 0; g < static_cast<int>(system_.jumps[at(jump)].guards.numel()); ++g) {
+    for (int g = 0; g < static_cast<int>(layout_.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
       if (!contains(cascade.zeros(), function) || jumps.is_discrete_guard(function)) continue;
       const int inward = jumps.trigger_sign(jump, g, point, -user_signs[at(function - kernel_.switching_functions())]);

@@ -30,7 +30,7 @@ class JumpAccumulation {
  private:
   void note_bounces(const JumpCascade& cascade);
 
-  const model::System& system_;
+  const model::Layout& layout_;
   const evaluation::ModelKernel& kernel_;
   const Position& here_;
   EventSeries series_;

@@ -19,7 +19,7 @@ SwitchAccumulation::SwitchAccumulation(const SwitchingContext& switching_context
       tolerances_(tolerances),
       rates_(kernel_, here),
       series_(span),
-      shortest_(3 * switching_context.system.switching.size(), 0.0),
+      shortest_(3 * switching_context.layout.surfaces.size(), 0.0),
       slope_(here.x.size()) {}
 
 void SwitchAccumulation::note(const ModeChange& change) {
@@ -44,7 +44,7 @@ bool SwitchAccumulation::find_labels(const ModeState& before) {
   labels_.clear();
   bool holds = true;
   for_each_difference(before.mode, here_.state.mode, [&](std::size_t j) {
-    const auto role = switching_context_.system.switching[j].role;
+    const auto role = switching_context_.layout.surfaces[j].role;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
     labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));
   });

@@ -6,7 +6,7 @@
 
 namespace saltus::event_integrator {
 
-StepAttempt::StepAttempt(const IntegrationOptions& options, const model::System& system, ModeField& field,
+StepAttempt::StepAttempt(const IntegrationOptions& options, const model::Layout& layout, ModeField& field,
                          const Position& here, const StepTolerances& tolerances)
     : options_(options),
       field_(field),
@@ -19,7 +19,7 @@ StepAttempt::StepAttempt(const IntegrationOptions& options, const model::System&
       slope_(x_.size()),
       dense_slope_(x_.size()) {
   for (std::size_t i = 0; i < x_.size(); ++i) {
-    if (i >= system.discrete_states.size() || !system.discrete_states[i]) continuous_.push_back(i);
+    if (i >= layout.discrete_states.size() || !layout.discrete_states[i]) continuous_.push_back(i);
   }
   if (!continuous_.empty()) {
     error_share_ = std::sqrt(static_cast<double>(x_.size()) / static_cast<double>(continuous_.size()));

@@ -9,7 +9,7 @@
 #include "saltus/event_integrator/options.hpp"
 #include "saltus/event_integrator/steps/step_memory.hpp"
 #include "saltus/event_integrator/steps/step_tolerances.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout.hpp"
 #include "saltus/ode/step_control.hpp"
 #include "saltus/ode/stepper.hpp"
 
@@ -19,7 +19,7 @@ namespace saltus::event_integrator {
 /// take no part in errors.
 class StepAttempt {
  public:
-  StepAttempt(const IntegrationOptions& options, const model::System& system, ModeField& field, const Position& here,
+  StepAttempt(const IntegrationOptions& options, const model::Layout& layout, ModeField& field, const Position& here,
               const StepTolerances& tolerances);
 
   [[nodiscard]] ode::Stepper& stepper() { return stepper_; }

@@ -12,7 +12,7 @@
 #include "saltus/base/enum_names.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/check/jump_words_internal.hpp"
-#include "saltus/model/switched_rates.hpp"
+#include "saltus/model/summary.hpp"
 
 namespace saltus::io {
 namespace {
@@ -62,29 +62,29 @@ std::string contact_text(const model::ContactDescription& contact) {
   return text + fmt::format(", restitution {}", contact.restitution ? to_spaced_text(*contact.restitution) : "0");
 }
 
-std::string remark_of(const model::System& system, std::size_t state) {
-  if (!system.discrete_states[state]) return "";
-  for (const auto& jump : system.jumps) {
+std::string remark_of(const model::Layout& layout, std::size_t state) {
+  if (!layout.discrete_states[state]) return "";
+  for (const auto& jump : layout.jumps) {
     const auto target = std::find(jump.targets.begin(), jump.targets.end(), static_cast<int>(state));
     if (target != jump.targets.end()) return "discrete: changed by jumps only";
   }
   return "constant: its right-hand side is 0 and no jump sets it";
 }
 
-void take_quantities(const model::System& system, const result::Captions& captions, ModelOverview& overview) {
-  const auto states = system.contacts.empty() ? system.state_names.size() : at(system.contacts.first_hidden);
-  for (std::size_t i = 0; i < states; ++i) {
-    overview.states.push_back({system.state_names[i], system.initial_state[i], system.state_lower[i],
-                               system.state_upper[i], caption_of(captions, system.state_names[i]),
-                               remark_of(system, i)});
+void take_quantities(const model::Summary& system, const result::Captions& captions, ModelOverview& overview) {
+  const auto& layout = system.layout;
+  for (std::size_t i = 0; i < at(layout.shown_states); ++i) {
+    overview.states.push_back({layout.state_names[i], system.initial_state[i], system.state_lower[i],
+                               system.state_upper[i], caption_of(captions, layout.state_names[i]),
+                               remark_of(layout, i)});
   }
-  for (std::size_t i = 0; i < system.parameter_names.size(); ++i) {
-    overview.parameters.push_back({system.parameter_names[i], system.parameter_values[i], -INFINITY, INFINITY,
-                                   caption_of(captions, system.parameter_names[i])});
+  for (std::size_t i = 0; i < layout.parameter_names.size(); ++i) {
+    overview.parameters.push_back({layout.parameter_names[i], system.parameter_values[i], -INFINITY, INFINITY,
+                                   caption_of(captions, layout.parameter_names[i])});
   }
-  for (std::size_t i = 0; i < system.control_names.size(); ++i) {
-    overview.controls.push_back({system.control_names[i], system.control_initial[i], system.control_lower[i],
-                                 system.control_upper[i], caption_of(captions, system.control_names[i])});
+  for (std::size_t i = 0; i < layout.control_names.size(); ++i) {
+    overview.controls.push_back({layout.control_names[i], system.control_initial[i], system.control_lower[i],
+                                 system.control_upper[i], caption_of(captions, layout.control_names[i])});
   }
 }
 
@@ -104,7 +104,7 @@ std::vector<OverviewMode> modes_of(const model::Description& description) {
 constexpr EnumNames<model::SwitchingRole::region> roles("listed", "kink", "time event", "discrete", "region");
 
 /// What happens on a surface, in words.
-std::string meaning_of(const model::SwitchingFunction& function, const std::vector<std::string>& rates) {
+std::string meaning_of(const model::Layout::Surface& function, const std::vector<std::string>& rates) {
   const std::string who = rates.empty() ? "nothing" : fmt::format("{}'", fmt::join(rates, "', "));
   switch (function.role) {
     case model::SwitchingRole::listed:
@@ -140,23 +140,23 @@ class NamedFunctions {
   std::unordered_map<std::string, const expression::Node*> expressions_;
 };
 
-std::vector<OverviewSurface> surfaces_of(const model::Description& description, const model::System& system) {
-  const auto switched = model::switched_rates(system);
+std::vector<OverviewSurface> surfaces_of(const model::Description& description, const model::Summary& system) {
+  const auto& layout = system.layout;
   const NamedFunctions functions(description);
   std::vector<OverviewSurface> all;
-  for (std::size_t j = 0; j < system.switching.size(); ++j) {
-    const auto& function = system.switching[j];
+  for (std::size_t j = 0; j < layout.surfaces.size(); ++j) {
+    const auto& function = layout.surfaces[j];
     OverviewSurface surface{
         function.name, functions.expression_of(function.name), std::string(roles(function.role)), "", {}, {}, "",
         false};
-    for (const int state : switched[j]) surface.rates.push_back(system.state_names[at(state)]);
-    for (const int index : function.inner) surface.inner.push_back(system.switching[at(index)].name);
+    for (const int state : system.switched_rates[j]) surface.rates.push_back(layout.state_names[at(state)]);
+    for (const int index : system.inner[j]) surface.inner.push_back(layout.surfaces[at(index)].name);
     surface.meaning = meaning_of(function, surface.rates);
     all.push_back(std::move(surface));
   }
   std::vector<OverviewSurface> ordered;
   std::vector<bool> shown(all.size(), false);
-  for (const auto& column : system.columns) {
+  for (const auto& column : layout.columns) {
     const auto& function = all[at(column.function)];
     ordered.push_back(function);
     if (column.name != function.name) {
@@ -173,19 +173,20 @@ std::vector<OverviewSurface> surfaces_of(const model::Description& description, 
   return ordered;
 }
 
-std::string cell_text(const model::Cell& cell) {
-  if (cell.table->kind == model::CellTable::Breaks::integers) return "jumps at whole numbers of its argument";
-  const auto breaks = cell.table->breaks.size();
-  return fmt::format("{} at {} break{}", cell.table->change == model::CellTable::Change::jump ? "jumps" : "kinks",
-                     breaks, breaks == 1 ? "" : "s");
+std::string cell_text(const model::CellTable& table) {
+  if (table.kind == model::CellTable::Breaks::integers) return "jumps at whole numbers of its argument";
+  const auto breaks = table.breaks.size();
+  return fmt::format("{} at {} break{}", table.change == model::CellTable::Change::jump ? "jumps" : "kinks", breaks,
+                     breaks == 1 ? "" : "s");
 }
 
 }  // namespace
 
-ModelOverview overview_of(const model::Description& description, const model::System& system,
+ModelOverview overview_of(const model::Description& description, const model::Summary& system,
                           const result::Captions& captions) {
+  const auto& layout = system.layout;
   ModelOverview overview;
-  overview.name = system.name;
+  overview.name = layout.name;
   overview.description = system.description;
   take_quantities(system, captions, overview);
   overview.equations = equations_of(description.dynamics);
@@ -197,14 +198,16 @@ ModelOverview overview_of(const model::Description& description, const model::Sy
   overview.definitions = equations_of(description.definitions, captions);
   overview.outputs = equations_of(description.outputs, captions);
   overview.surfaces = surfaces_of(description, system);
-  for (const auto& cell : system.cells) overview.cells.push_back({cell.name, cell_text(cell)});
-  for (std::size_t i = 0; i < system.events.size(); ++i) {
-    overview.events.push_back({system.events[i].name, to_spaced_text(*description.events[i].when),
-                               system.events[i].action == model::AtEvent::stop});
+  for (std::size_t i = 0; i < layout.cell_names.size(); ++i) {
+    overview.cells.push_back({layout.cell_names[i], cell_text(*system.cell_tables[i])});
+  }
+  for (std::size_t i = 0; i < layout.events.size(); ++i) {
+    overview.events.push_back({layout.events[i].name, to_spaced_text(*description.events[i].when),
+                               layout.events[i].action == model::AtEvent::stop});
   }
   for (std::size_t i = 0; i < description.jumps.size(); ++i) {
     overview.jumps.push_back(
-        {system.jumps[i].name, when_text(description.jumps[i]), equations_of(description.jumps[i].set)});
+        {layout.jumps[i].name, when_text(description.jumps[i]), equations_of(description.jumps[i].set)});
   }
   for (const auto& entry : description.hysteresis) {
     overview.jumps.push_back({entry.name,
@@ -212,8 +215,8 @@ ModelOverview overview_of(const model::Description& description, const model::Sy
                                           to_spaced_text(*entry.on), to_spaced_text(*entry.off)),
                               {{entry.name, fmt::format("1 - {}", entry.name), {}}}});
   }
-  overview.inclusion = system.inclusion == model::Inclusion::filippov ? "filippov" : "aizerman_pyatnitskii";
-  overview.multi_affine = system.multi_affine;
+  overview.inclusion = layout.inclusion == model::Inclusion::filippov ? "filippov" : "aizerman_pyatnitskii";
+  overview.multi_affine = layout.multi_affine;
   overview.inclusion_differences = system.inclusion_differences;
   overview.warnings = system.warnings;
   return overview;

@@ -5,9 +5,12 @@
 #include <vector>
 
 #include "saltus/model/description.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/result/caption.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct Summary;
+}
 
 namespace saltus::io {
 
@@ -92,8 +95,8 @@ enum class Notation { text, latex };
                                                                    Notation notation = Notation::text);
 
 /// Reads the two, computes nothing.
-/// @param system  of this description, by model::build
-[[nodiscard]] ModelOverview overview_of(const model::Description& description, const model::System& system,
+/// @param system  of this description, by model::summary_of
+[[nodiscard]] ModelOverview overview_of(const model::Description& description, const model::Summary& system,
                                         const result::Captions& captions = {});
 
 }  // namespace saltus::io

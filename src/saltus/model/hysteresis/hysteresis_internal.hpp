@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "saltus/model/description.hpp"
 #include "saltus/model/statement/model_scope_internal.hpp"
 
 namespace saltus::model {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saltus/model/description.hpp"
 #include "saltus/model/mechanics/mechanics_internal.hpp"
 #include "saltus/model/mechanics/symbolic_ldl_internal.hpp"
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "saltus/model/description.hpp"
 #include "saltus/model/statement/model_scope_internal.hpp"
 
 namespace saltus::model {

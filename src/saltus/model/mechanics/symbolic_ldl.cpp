@@ -1,3 +1,5 @@
+#include <casadi/core/sx_elem.hpp>
+
 #include "saltus/model/mechanics/symbolic_ldl_internal.hpp"
 
 namespace saltus::model {

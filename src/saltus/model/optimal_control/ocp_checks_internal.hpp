@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "saltus/model/description.hpp"
 #include "saltus/model/ocp.hpp"
 
 namespace saltus::model {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saltus/linalg/matrix.hpp"
+#include "saltus/model/description.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/model/statement/build_internal.hpp"
 

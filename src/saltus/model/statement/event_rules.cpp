@@ -20,6 +20,12 @@ EventRule rule_of(const UserEvent& event) {
   return {event.guards.numel() > 0, event.true_at_equality, event.direction};
 }
 
+EventRule rule_of(const Layout::Event& event) {
+  EventRule rule{event.is_condition(), {}, event.direction};
+  for (const auto& guard : event.guards) rule.true_at_equality.push_back(guard.true_at_equality);
+  return rule;
+}
+
 EventStates::EventStates(std::vector<EventRule> rules, Order order)
     : rules_(std::move(rules)), first_(rules_.size()), state_(rules_.size(), 0) {
   std::size_t next = 0;

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "saltus/base/function_ref.hpp"
-#include "saltus/model/description.hpp"
+#include "saltus/model/layout.hpp"
+#include "saltus/model/roles.hpp"
 
 namespace saltus::model {
 
@@ -19,6 +20,7 @@ struct EventRule {
 };
 
 [[nodiscard]] EventRule rule_of(const UserEvent& event);
+[[nodiscard]] EventRule rule_of(const Layout::Event& event);
 
 /// Follows signs of expressions and truths of conditions, and says which entries fire where they change: an expression
 /// whose sign has changed in its direction, a condition whose truth has.

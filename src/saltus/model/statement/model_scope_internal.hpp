@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "saltus/model/description.hpp"
 #include "saltus/model/statement/names_internal.hpp"
 #include "saltus/model/statement/statement_internal.hpp"
 #include "saltus/model/statement/translation_internal.hpp"

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "saltus/model/description.hpp"
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
 #include "saltus/model/mechanics/contacts_internal.hpp"
 #include "saltus/model/statement/model_scope_internal.hpp"

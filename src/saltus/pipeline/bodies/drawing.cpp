@@ -5,6 +5,7 @@
 
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/graph/model_function.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::pipeline {
 
@@ -31,6 +32,10 @@ std::optional<result::Drawing> drawing_of(const model::System& system, const std
     function(std::array{from, parameters.data()}, std::array{values.data()});
   }
   return drawing;
+}
+
+std::optional<result::Drawing> drawing_of(const model::System& system, const result::Trajectory& trajectory) {
+  return drawing_of(system, system.parameter_values, trajectory);
 }
 
 }  // namespace saltus::pipeline

@@ -4,8 +4,11 @@
 #include <optional>
 #include <vector>
 
-#include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 
@@ -13,6 +16,10 @@ namespace saltus::pipeline {
 /// @param parameters  values of System::p
 [[nodiscard]] std::optional<result::Drawing> drawing_of(const model::System& system,
                                                         const std::vector<double>& parameters,
+                                                        const result::Trajectory& trajectory);
+
+/// Does this with the values of the system.
+[[nodiscard]] std::optional<result::Drawing> drawing_of(const model::System& system,
                                                         const result::Trajectory& trajectory);
 
 }  // namespace saltus::pipeline

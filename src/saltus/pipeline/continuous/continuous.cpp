@@ -4,17 +4,18 @@
 
 #include "saltus/event_integrator/solution.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
+#include "saltus/pipeline/simulate.hpp"
+#include "saltus/pipeline/simulate/dropped_under_lock_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
 
-/// Another kernel of what is compiled, with the parameters of a system.
+/// Another kernel of what is compiled, with the values of a system.
 Expected<evaluation::ModelKernel> kernel_of(const std::shared_ptr<evaluation::CompiledModel>& compiled,
                                             const EventRun& run) {
-  const auto& system = run.integrand->system();
   auto kernel = evaluation::ModelKernel::of(compiled, run.native);
-  if (!kernel || kernel->set_parameters(system.parameter_values)) return kernel;
-  return evaluation::ModelKernel::compile(system, run.native);
+  if (!kernel || kernel->set_values(*run.system)) return kernel;
+  return evaluation::ModelKernel::compile(*run.system, run.native);
 }
 
 /// Stops the steps behind a time: a shorter span would have another last step.
@@ -35,9 +36,9 @@ class EventInterior final : public result::Interior {
     if (!solution_) {
       auto kernel = kernel_of(compiled_, run_);
       if (!kernel) return {};
-      solution_.emplace(pieces_, std::move(*kernel), run_.integrand->system());
+      solution_.emplace(pieces_, std::move(*kernel));
     }
-    return run_.integrand->restated(solution_->rows(times));
+    return restated(solution_->rows(times));
   }
 
   Expected<result::Trajectory> again(const std::vector<double>& times, const result::StepObserver& observer) override {
@@ -45,11 +46,16 @@ class EventInterior final : public result::Interior {
     if (!kernel) return tl::unexpected(kernel.error());
     auto options = run_.options;
     options.output = {event_integrator::OutputTimes::Rows::at_times, times};
-    auto again = event_integrator::integrate(*kernel, run_.integrand->system(), options, until(times.back(), observer));
-    return run_.integrand->restated(std::move(again.trajectory));
+    auto again = event_integrator::integrate(*kernel, options, until(times.back(), observer));
+    return restated(std::move(again.trajectory));
   }
 
  private:
+  [[nodiscard]] result::Trajectory restated(result::Trajectory rows) const {
+    if (run_.restate) run_.restate(rows);
+    return rows;
+  }
+
   EventRun run_;
   std::shared_ptr<evaluation::CompiledModel> compiled_;
   std::shared_ptr<const event_integrator::Pieces> pieces_;

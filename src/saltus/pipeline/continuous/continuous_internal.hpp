@@ -8,8 +8,8 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
 #include "saltus/fesd_integrator/solution.hpp"
-#include "saltus/pipeline/integrand_internal.hpp"
-#include "saltus/pipeline/simulate.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/result/continuous.hpp"
 
 namespace saltus::pipeline {
@@ -17,9 +17,9 @@ namespace saltus::pipeline {
 /// Holds what the event engine has run, with what keeps it alive.
 struct EventRun {
   std::shared_ptr<const model::System> system;
-  std::shared_ptr<const Integrand> integrand;
   event_integrator::IntegrationOptions options;  ///< with the choices of a branch
   evaluation::NativeCode native = evaluation::NativeCode::off;
+  std::function<void(result::Trajectory&)> restate{};  ///< rows, if they are those of a regularisation
 };
 
 /// Makes the solution between rows from the steps of a run.

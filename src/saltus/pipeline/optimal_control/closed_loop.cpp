@@ -124,7 +124,7 @@ Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, cons
     auto kept = kernels.take(system, evaluation::NativeCode::automatic);
     if (!kept) return tl::unexpected(kept.error());
     Integration run =
-        event_integrator::integrate(kept->kernel, system, resimulation_options(one.t, until, rows_between), observer);
+        event_integrator::integrate(kept->kernel, resimulation_options(one.t, until, rows_between), observer);
     kernels.give_back(std::move(*kept));
     auto& rows = whole.run.trajectory;
     for (std::size_t i = 0; i < run.trajectory.t.size(); ++i) {

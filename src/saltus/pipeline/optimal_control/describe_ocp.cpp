@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/model/optimal_control/ocp_influence.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/mpcc/chain.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 #include "saltus/pipeline/optimal_control/point_values_internal.hpp"

@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/options/optimize_options.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::pipeline {
 

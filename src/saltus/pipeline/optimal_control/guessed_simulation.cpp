@@ -84,7 +84,7 @@ Expected<GuessedSimulation> simulate_guess(const model::System& system, PointVal
   controlled = model::with_controls(std::move(controlled), starts, controls);
   auto kernel = evaluation::ModelKernel::compile(controlled);
   if (!kernel) return tl::unexpected(kernel.error());
-  const Integration run = event_integrator::integrate(*kernel, controlled, guess_options(starts.front(), until, times));
+  const Integration run = event_integrator::integrate(*kernel, guess_options(starts.front(), until, times));
 
   GuessedSimulation simulation;
   simulation.time_reached = starts.front();

@@ -11,9 +11,8 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
-#include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/optimal_control/ocp_guess.hpp"
-#include "saltus/pipeline/simulate_elements_internal.hpp"
+#include "saltus/pipeline/options/element_choices_internal.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::pipeline {

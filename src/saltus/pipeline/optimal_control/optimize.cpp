@@ -12,110 +12,23 @@
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/decisions.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
-#include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
-#include "saltus/pipeline/element_choices_internal.hpp"
 #include "saltus/pipeline/optimal_control/advice_internal.hpp"
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
+#include "saltus/pipeline/optimal_control/optimum_result_internal.hpp"
 #include "saltus/pipeline/optimal_control/solve_ocp_internal.hpp"
 #include "saltus/pipeline/optimal_control/verify.hpp"
+#include "saltus/pipeline/options/element_choices_internal.hpp"
 #include "saltus/pipeline/options/number_list_internal.hpp"
-#include "saltus/pipeline/options/optimize_fields.hpp"
 #include "saltus/pipeline/time_freezing/physical_path_internal.hpp"
-#include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 #include "saltus/solver/feedback.hpp"
 
 namespace saltus::pipeline {
 namespace {
 
 using result::Termination;
-
-/// What does not depend on how the solution went.
-result::Result result_frame(const model::Ocp& ocp, const OptimizeOptions& options) {
-  const auto& system = ocp.system;
-  result::Result result;
-  result.command = "optimize";
-  result.method = "fesd";
-  result.model.name = system.name;
-  result.model.description = system.description;
-  result.states = system.state_names;
-  if (system.freezing) result.states.resize(at(system.freezing->first_hidden));
-  if (system.freezing) {
-    for (const auto& contact : system.freezing->contacts) result.contacts.push_back(contact.name);
-  }
-  result.controls.assign(system.control_names.begin(), system.control_names.begin() + ocp.user_controls);
-  for (const std::size_t column : shown_outputs(ocp)) result.outputs.push_back(system.output_names[column]);
-  for (const auto& column : system.columns) result.switching_functions.push_back(column.name);
-  for (const auto& group : system.mode_groups) {
-    const bool is_shown = group.name.find('.') == std::string::npos;  // else freezing has made it
-    if (group.first >= 0 && is_shown) result.region_groups.push_back({group.name, group.mode_names});
-  }
-  result.options = option_record(options);
-  return result;
-}
-
-void take_bounds(const model::Ocp& ocp, result::Optimization& found) {
-  const auto& system = ocp.system;
-  found.state_lower = system.state_lower;
-  found.state_upper = system.state_upper;
-  if (system.freezing) {
-    found.state_lower.resize(at(system.freezing->first_hidden));
-    found.state_upper.resize(at(system.freezing->first_hidden));
-  }
-  const auto n = ocp.user_controls;
-  found.control_lower.assign(system.control_lower.begin(), system.control_lower.begin() + n);
-  found.control_upper.assign(system.control_upper.begin(), system.control_upper.begin() + n);
-}
-
-void take_solution(const model::Ocp& ocp, const discretization::OcpSolution& solution, result::Optimization& found) {
-  found.horizon = solution.horizon;
-  for (std::size_t i = 0; i < solution.parameters.size(); ++i) {
-    if (ocp.free_parameters[i]) found.parameters.emplace_back(ocp.system.parameter_names[i], solution.parameters[i]);
-  }
-  const std::size_t intervals = solution.controls.size();
-  for (std::size_t k = 0; k <= intervals; ++k) {
-    found.grid.push_back(ocp.from + solution.horizon * static_cast<double>(k) / static_cast<double>(intervals));
-  }
-  found.nodes.push_back(solution.initial_state);
-  for (std::size_t k = 0; k < intervals; ++k) {
-    const auto& u = solution.controls[k];
-    found.u.emplace_back(u.begin(), u.begin() + ocp.user_controls);
-    auto& lengths = found.h.emplace_back();
-    for (const auto& element : solution.elements[k]) lengths.push_back(element.h);
-    found.nodes.push_back(list_of(solution.elements[k].back().end));
-  }
-  if (ocp.system.freezing) {
-    for (auto& node : found.nodes) node = shown_states(ocp.system, node);
-  }
-  if (ocp.clock) found.speed_of_time = solution.speed_of_time;
-}
-
-/// The point that the solver left, in the quantities of the result.
-void take_point(discretization::OcpProblem& problem, const solver::Solution& solution, result::Optimization& found) {
-  found.objective = solution.objective;
-  found.terms = problem.objective_terms(solution.w);
-  found.homotopy = solution.homotopy;
-  found.certificate = solution.certificate;
-  const auto& multipliers = solution.multipliers;
-  if (multipliers.rows.size() == problem.constraints()) {
-    const linalg::Vector bounds = multipliers.upper.size() == problem.variables()
-                                      ? linalg::Vector(multipliers.upper - multipliers.lower)
-                                      : linalg::Vector();
-    found.multipliers = problem.constraint_multipliers(solution.w, multipliers.rows, bounds);
-  }
-  found.primal = list_of(solution.w);
-  found.dual_rows = list_of(multipliers.rows);
-  found.dual_lower = list_of(multipliers.lower);
-  found.dual_upper = list_of(multipliers.upper);
-  auto& statistics = found.statistics;
-  statistics.iterations = solution.iterations;
-  statistics.variables = problem.variables();
-  statistics.equations = problem.constraints();
-  statistics.pairs = problem.pairs();
-  statistics.evaluation_seconds = solution.evaluation_seconds;
-  statistics.linear_algebra_seconds = solution.solver_seconds;
-}
 
 /// States by the range that they have in the plan, controls by the width of their bounds; what does not move, or has
 /// none, may be off by anything.
@@ -168,27 +81,6 @@ OptimizeObservers noting(const OptimizeObservers& observers, result::Status& sta
   return noted;
 }
 
-void take_parameters(const model::Ocp& ocp, const discretization::OcpSolution& read, result::Result& result) {
-  const int stabilisation = ocp.system.freezing ? ocp.system.freezing->stabilisation : -1;
-  for (std::size_t i = 0; i < read.parameters.size(); ++i) {
-    if (static_cast<int>(i) == stabilisation) continue;  // not one of the model
-    result.model.parameters.emplace_back(ocp.system.parameter_names[i], read.parameters[i]);
-  }
-}
-
-/// All of it but its path.
-void take_run(const model::Ocp& ocp, OptimizedRun& run, result::Result& result) {
-  result.trajectory = std::move(run.trajectory);
-  for (std::size_t i = 0; i < result.states.size() && !result.trajectory.x.empty(); ++i) {
-    result.model.initial_state.emplace_back(result.states[i], result.trajectory.x.front()[i]);
-  }
-  result.continuous = std::move(run.continuous);
-  result.events = std::move(run.events);
-  result.final = std::move(run.final);
-  result.elements = std::move(run.elements);
-  if (ocp.system.freezing) result.switching_functions = std::move(run.switching_functions);
-}
-
 /// A result is started from with the elements that it has.
 void keep_added_elements(const std::vector<int>& elements, const OptimizeObservers& observers,
                          OptimizeOptions& options) {
@@ -211,22 +103,11 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   const auto& solution = solved->solution;
   OptimizeOptions options = asked;
   if (solved->has_more_elements) keep_added_elements(solved->stated.elements, observers, options);
-  result::Result result = result_frame(ocp, options);
-  auto& found = result.optimization.emplace();
-  take_bounds(ocp, found);
-  take_point(problem, solution, found);
-  found.statistics.build_seconds = solved->build_seconds;
-  result.status.termination = solution.termination;
-  result.status.message = solution.message + advice_on_bounces(ocp, options, solution.termination);
 
   const auto read = problem.read(solution.w);
-  take_solution(ocp, read, found);
-  take_parameters(ocp, read, result);
-  result.status.time_reached = found.grid.back();
   auto run = optimized_run(ocp, read, reformulation_options(options.element), solved->stated.tableau);
   if (!run) return tl::unexpected(run.error());
-  take_run(ocp, *run, result);
-  result.drawing = drawing_of(ocp.system, read.parameters, result.trajectory);
+  auto result = optimum_result(ocp, options, *solved, read, *run);
   std::unique_ptr<PhysicalBodies> bodies;
   if (ocp.physical) {
     auto made = PhysicalBodies::make(ocp, run->path.parameters);
@@ -248,10 +129,9 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     judge(*verification, options, result.status);
     warn_of_path_violations(ocp, *verification, options, observers);
     if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);
-    found.verification = std::move(*verification);
+    result.optimization->verification = std::move(*verification);
   }
-  found.statistics.wall_seconds = whole.seconds();
-  result.statistics.wall_seconds = found.statistics.wall_seconds;
+  result.statistics.wall_seconds = result.optimization->statistics.wall_seconds = whole.seconds();
   return result;
 }
 

@@ -5,9 +5,12 @@
 #include <string>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/options/optimize_options.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::pipeline {
 

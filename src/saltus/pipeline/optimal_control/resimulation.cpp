@@ -84,13 +84,13 @@ Integration Resimulation::run(const IntegrationOptions& options, const std::func
   const auto observer = [&](const result::Progress&) {
     return is_interrupted && is_interrupted() ? result::Continue::no : result::Continue::yes;
   };
-  auto run = event_integrator::integrate(kernel_, system_, options, observer);
+  auto run = event_integrator::integrate(kernel_, options, observer);
   if (run.status.termination != Termination::iteration_limit || run.statistics.steps < options.max_steps / 2) {
     return run;
   }
   auto stiff = options;
   stiff.method = ode::Method::radau5;
-  return event_integrator::integrate(kernel_, system_, stiff, observer);
+  return event_integrator::integrate(kernel_, stiff, observer);
 }
 
 std::vector<std::pair<int, int>> Resimulation::wanted_mode(const Integration& run, std::size_t k) const {

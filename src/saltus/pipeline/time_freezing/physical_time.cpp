@@ -7,6 +7,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
 #include "saltus/base/rounding_unit.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 

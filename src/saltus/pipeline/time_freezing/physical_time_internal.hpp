@@ -4,8 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 

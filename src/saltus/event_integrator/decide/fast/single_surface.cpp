@@ -66,7 +66,7 @@ bool SingleSurface::applies(const ModeState& before, const SwitchingPoint& switc
   const auto interferes = [&](int k) { return k != j && (is_inner_[at(k)] || same_group(kernel, j, k)); };
   if (std::any_of(kernel.neighbours(j).begin(), kernel.neighbours(j).end(), slides)) return false;
   if (!between_.empty() && std::any_of(before.sliding.begin(), before.sliding.end(), interferes)) return false;
-  if (is_inner_[at(j)] || switching_context_.system.switching[at(j)].role == model::SwitchingRole::discrete)
+  if (is_inner_[at(j)] || switching_context_.layout.surfaces[at(j)].role == model::SwitchingRole::discrete)
     return false;
   const auto exits = switching_point.exit_below.size() + switching_point.exit_above.size();
   if (arrives) return exits == 0;
@@ -244,7 +244,7 @@ std::optional<switching::SurfaceDecision> SingleSurface::decide(std::vector<doub
   auto decision = switching::decide_surface(situation);
   if (!is_plain(decision, mode) || (place.exit != 0 && decision.mode != place.exit)) return std::nullopt;
   // Nothing slides on a kink: velocities that say so are rounding.
-  if (decision.mode == 0 && switching_context_.system.switching[at(place.surface)].is_kink()) return std::nullopt;
+  if (decision.mode == 0 && switching_context_.layout.surfaces[at(place.surface)].is_kink) return std::nullopt;
   return decision;
 }
 
@@ -273,7 +273,7 @@ void SingleSurface::fill(const ModeState& before, const SwitchingPoint& switchin
   if (decision.mode != 0) transition.zero_order[at(j)] = before.mode[at(j)] == 0 ? 2 : 1;
   rebase(switching_context_.kernel, state, transition.zero_order);
   complete_weights(switching_context_.kernel, state);
-  append_reason(switching_context_.system, j, decision, before, switching_point, transition.reason);
+  append_reason(switching_context_.layout, j, decision, before, switching_point, transition.reason);
 }
 
 }  // namespace saltus::event_integrator

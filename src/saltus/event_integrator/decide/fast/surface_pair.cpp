@@ -46,7 +46,7 @@ bool SurfacePair::applies(const ModeState& before, const SwitchingPoint& switchi
   const int i = switching_point.at_zero[0];
   const int j = switching_point.at_zero[1];
   for (const int surface : {i, j}) {
-    if (switching_context_.system.switching[at(surface)].role != model::SwitchingRole::listed) return false;
+    if (switching_context_.layout.surfaces[at(surface)].role != model::SwitchingRole::listed) return false;
   }
   return switching_context_.kernel.depends(i, j) || switching_context_.kernel.depends(j, i);
 }
@@ -193,7 +193,7 @@ bool SurfacePair::conclude(const ModeState& before, const SwitchingPoint& switch
   set_corner_alpha(state);
   if (!moves_there(switching_point, state)) return false;
   transition.meeting = meeting(before, switching_point);
-  append_meeting(switching_context_.system, transition.meeting->surfaces, decision.leaf, decision.reason,
+  append_meeting(switching_context_.layout, transition.meeting->surfaces, decision.leaf, decision.reason,
                  transition.reason);
   return true;
 }

@@ -122,7 +122,7 @@ class OnSurface {
 }  // namespace
 
 bool Decider::decide_regions_on(int surface, const evaluation::RegionRange& range, std::vector<int> candidates) {
-  const std::string all = names(s_.system, candidates) + ", " + s_.system.switching[at(surface)].name;
+  const std::string all = names(s_.layout, candidates) + ", " + s_.layout.surfaces[at(surface)].name;
   std::vector<int> together(candidates.begin() + 1, candidates.end());
   together.push_back(surface);
   if (fields_.gradients_depend(base_.alpha, together)) {
@@ -158,7 +158,7 @@ bool Decider::decide_regions_on(int surface, const evaluation::RegionRange& rang
   std::vector<int> active;
   for (const auto& region : choice.sets.front()) active.push_back(region.region);
   const auto& [chosen, mode, alpha] = choice.surfaces.front();
-  choice.reason = fmt::format("{}: {} by Stewart's complementarity system, {}", all, names(s_.system, active),
+  choice.reason = fmt::format("{}: {} by Stewart's complementarity system, {}", all, names(s_.layout, active),
                               mode == 0  ? "sliding on the surface"
                               : mode > 0 ? "above the surface"
                                          : "below the surface");

@@ -97,7 +97,7 @@ std::vector<switching::RegionSet> Decider::sets_that_go_on(const MeetingRegions&
 
 /// A kink, or a time, that is passed where regions meet: nothing slides on it.
 bool Decider::passes(int surface) const {
-  const auto role = s_.system.switching[at(surface)].role;
+  const auto role = s_.layout.surfaces[at(surface)].role;
   const bool is_beside = role == model::SwitchingRole::kink || role == model::SwitchingRole::time_event;
   return is_beside && !switching_point_.start && before_.mode[at(surface)] != 0;
 }
@@ -150,14 +150,14 @@ bool Decider::decide_regions_with(const std::vector<int>& others, const evaluati
     return decide_parts(parts);
   }
   const bool on_one = others.size() == 1 && regions.size() < most_meeting && s_.affine_in_alpha &&
-                      s_.system.switching[at(others[0])].role == model::SwitchingRole::listed;
+                      s_.layout.surfaces[at(others[0])].role == model::SwitchingRole::listed;
   if (on_one) return decide_regions_on(others[0], range, with_reference(before_, range, regions));
   return fail(
       result::Termination::outside_class,
       fmt::format("at t = {} three or more regions by `indicator` meet on several other surfaces that influence "
                   "them ({}), or more than {} regions meet: that decision is not available; perturb a "
                   "parameter",
-                  switching_point_.t, names(s_.system, group), most_meeting));
+                  switching_point_.t, names(s_.layout, group), most_meeting));
 }
 
 /// Regions that meet, and no other surface: one of the sets that continue the solution.
@@ -170,12 +170,12 @@ bool Decider::decide_regions_alone(const MeetingRegions& meeting, const evaluati
     return fail(result::Termination::outside_class,
                 fmt::format("the regions {} meet at t = {}: some weights keep their indicators equal, but those that "
                             "follow the indicators come to rest nowhere, so that the weights are not determined",
-                            names(s_.system, candidates), switching_point_.t));
+                            names(s_.layout, candidates), switching_point_.t));
   }
   if (sets.empty()) {
     return fail(result::Termination::no_admissible_mode,
                 fmt::format("the regions {} meet at t = {}, and no set of them continues the solution",
-                            names(s_.system, candidates), switching_point_.t));
+                            names(s_.layout, candidates), switching_point_.t));
   }
   const auto best = preferred_set(meeting, sets);
   RegionChoice choice{range, {active_of(candidates, sets[best])}, {}};
@@ -183,8 +183,8 @@ bool Decider::decide_regions_alone(const MeetingRegions& meeting, const evaluati
   for (const auto& region : choice.sets.front()) active.push_back(region.region);
   const bool one_way = !meeting.basis || moves_in_one_way(meeting, sets[best]);
   choice.reason =
-      fmt::format("{}: {} by Stewart's complementarity system{}", names(s_.system, candidates),
-                  names(s_.system, active), one_way ? "" : ", which leaves weights open: those of soft minima");
+      fmt::format("{}: {} by Stewart's complementarity system{}", names(s_.layout, candidates),
+                  names(s_.layout, active), one_way ? "" : ", which leaves weights open: those of soft minima");
   for (std::size_t k = 0; k < sets.size(); ++k) {
     if (k != best) choice.sets.push_back(active_of(candidates, sets[k]));
   }

@@ -131,7 +131,7 @@ bool Decider::spiral_out(const MeetingRegions& meeting, const evaluation::Region
   transition_.beyond_spiral = std::move(start);
   transition_.unique = false;
   RegionChoice choice{range, {{{first, 1.0}}}, {}};
-  choice.reason = fmt::format("{}: no set of them goes on, the solution spirals out", names(s_.system, candidates));
+  choice.reason = fmt::format("{}: no set of them goes on, the solution spirals out", names(s_.layout, candidates));
   group_reasons_.push_back(choice.reason);
   region_choices_.push_back(std::move(choice));
   return true;

@@ -241,7 +241,7 @@ bool are_plain_surfaces(const SwitchingContext& s, const std::vector<int>& surfa
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
     const auto& inner = s.kernel.inner(j);
     const bool own = contains(surfaces, j);
-    if (own && (s.system.switching[at(j)].role != model::SwitchingRole::listed || !inner.empty())) return false;
+    if (own && (s.layout.surfaces[at(j)].role != model::SwitchingRole::listed || !inner.empty())) return false;
     if (std::any_of(inner.begin(), inner.end(), [&](int i) { return contains(surfaces, i); })) return false;
   }
   return true;

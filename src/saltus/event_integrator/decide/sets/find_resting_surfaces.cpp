@@ -32,7 +32,7 @@ std::vector<NearPoint> points_near(const SwitchingContext& s, double t, const st
     constexpr double step = 0x1p-10;
     NearPoint point{t + step * (1.0 + std::abs(t)), x};
     for (std::size_t i = 0; i < x.size(); ++i) {
-      if (!s.system.discrete_states[i]) point.x[i] += displacement(i, x[i], step, pattern);
+      if (!s.layout.discrete_states[i]) point.x[i] += displacement(i, x[i], step, pattern);
     }
     project(point.t, point.x);
     points.push_back(std::move(point));
@@ -171,7 +171,7 @@ class RestingSearch {
     found_.problem = fmt::format(
         "the selection of '{}', which the guards keep at zero, {}: what follows is not "
         "determined by each of them alone",
-        s_.system.switching[at(j)].name, why);
+        s_.layout.surfaces[at(j)].name, why);
   }
 
   const SwitchingContext& s_;
@@ -222,7 +222,7 @@ void add_kept_by_contacts(const SwitchingContext& s, Contacts& contacts, double 
   const SizedValues here = sized_values(s, t, x, alpha);
   std::vector<NearPoint> points;
   for (int j = 0; j < s.kernel.switching_functions(); ++j) {
-    const bool kink = s.system.switching[at(j)].is_kink();
+    const bool kink = s.layout.surfaces[at(j)].is_kink;
     const auto place = std::lower_bound(resting.surfaces.begin(), resting.surfaces.end(), j);
     if (place != resting.surfaces.end() && *place == j) continue;
     if (kink ? !s.kernel.inner(j).empty() : !are_plain_surfaces(s, {j})) continue;

@@ -292,7 +292,7 @@ std::string find_obstacle(const SwitchingContext& s, const ModeState& state, dou
     inside.insert(inside.end(), held.begin(), held.end());
   }
   for (const int j : state.sliding) {
-    const auto role = s.system.switching[at(j)].role;
+    const auto role = s.layout.surfaces[at(j)].role;
     const bool is_held_kink = role == model::SwitchingRole::kink && contains(inside, j);
     if (role != model::SwitchingRole::listed && !is_held_kink) return "a kink";
   }

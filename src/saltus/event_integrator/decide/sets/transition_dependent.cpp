@@ -117,7 +117,7 @@ std::vector<int> acting_surfaces(const SwitchingContext& s, const ModeState& sta
   std::vector<int> acting;
   std::vector<double> alpha = state.alpha, below(at(s.kernel.states())), above(below.size());
   for (const int j : switching_point.at_zero) {
-    if (s.system.switching[at(j)].role == model::SwitchingRole::kink) continue;
+    if (s.layout.surfaces[at(j)].role == model::SwitchingRole::kink) continue;
     double& own = alpha[at(j)];
     const double before = std::exchange(own, 0.0);
     s.kernel.field(switching_point.t, switching_point.x, alpha.data(), below.data());
@@ -162,8 +162,8 @@ std::optional<Transition> decide_dependent(const SwitchingContext& s, const Mode
     if (next->zero_order[at(j)] != 0 && contains(before.sliding, j)) next->zero_order[at(j)] = 2;
   }
   if (next->reason.empty()) {
-    next->reason = fmt::format("{}: their gradients depend on each other; slides on {}", names(s.system, meeting),
-                               next->state.sliding.empty() ? "none" : names(s.system, next->state.sliding));
+    next->reason = fmt::format("{}: their gradients depend on each other; slides on {}", names(s.layout, meeting),
+                               next->state.sliding.empty() ? "none" : names(s.layout, next->state.sliding));
   }
   // Else there may be others: not decided.
   next->unique = solution.unique_velocity ? std::optional<bool>(true) : std::nullopt;

@@ -69,7 +69,7 @@ Transition failed(const SwitchingPoint& switching_point, const ModeState& before
   transition.state = before;
   transition.termination = result::Termination::outside_class;
   transition.message = fmt::format("sliding on {} at t = {} ends, and what follows is not determined: {}",
-                                   names(s.system, before.sliding), switching_point.t, why);
+                                   names(s.layout, before.sliding), switching_point.t, why);
   return transition;
 }
 
@@ -113,7 +113,7 @@ std::optional<Transition> leave(const SwitchingContext& s, const ModeState& befo
     left = leave_to(s, state, switching_point, x, leaving.surfaces, leaving.corner);
   }
   if (left)
-    left->reason = fmt::format("{}: no selection holds {} any more", names(s.system, leaving.surfaces),
+    left->reason = fmt::format("{}: no selection holds {} any more", names(s.layout, leaving.surfaces),
                                leaves_derivative(before) ? "a derivative at 0" : "them");
   return left;
 }
@@ -263,7 +263,7 @@ Transition meet(const SwitchingContext& s, const ModeState& before, const Switch
   if (auto crossed = hold(s, behind, switching_point, point, problem)) {
     if (leads_into_its_region(s, crossed->state, switching_point, point, {surface})) {
       crossed->zero_order[at(surface)] = 1;
-      crossed->reason = fmt::format("{}: crossed in higher-order sliding", s.system.switching[at(surface)].name);
+      crossed->reason = fmt::format("{}: crossed in higher-order sliding", s.layout.surfaces[at(surface)].name);
       return std::move(*crossed);
     }
   }
@@ -306,7 +306,7 @@ std::optional<Transition> hold(const SwitchingContext& s, ModeState state, const
   for (const int j : state.sliding) state.alpha[at(j)] = std::clamp(field.alpha()[at(j)], 0.0, 1.0);
   Transition transition = transition_to(std::move(state));
   transition.reason = fmt::format(
-      "{}: {}", names(s.system, transition.state.sliding),
+      "{}: {}", names(s.layout, transition.state.sliding),
       dependent
           ? "some selections in [0, 1] hold all of them, which depend on each other"
           : "some selections in [0, 1] hold what is at zero together with its derivatives (higher-order sliding)");
@@ -350,7 +350,7 @@ std::optional<Transition> leave_where_nested_meet(const SwitchingContext& s, con
     if (!left) continue;
     if (left->rooted < 0) left->rooted = surface_around_root(s, surfaces);
     left->reason =
-        fmt::format("{}: no selection holds them; the field of these regions leads away", names(s.system, surfaces));
+        fmt::format("{}: no selection holds them; the field of these regions leads away", names(s.layout, surfaces));
     if (found) {
       found->unique = false;
       found->alternatives.push_back(std::move(*left));

@@ -89,7 +89,7 @@ bool Decider::read_nested_anew() {
 
 /// The mode behind a crossing where function `jumping` gets away from zero: given, only its consequences are looked at.
 Transition Decider::run_crossing(int jumping) {
-  const std::string& name = s_.system.switching[at(jumping)].name;
+  const std::string& name = s_.layout.surfaces[at(jumping)].name;
   read_nested_anew();
   if (set_corners()) check();
   if (transition_.termination == result::Termination::no_admissible_mode) {
@@ -133,7 +133,7 @@ std::optional<Transition> cross_kinks(const SwitchingContext& s, const ModeState
   SwitchingPoint rest = switching_point;
   rest.touched.clear();
   for (const int i : switching_point.touched) {
-    if (s.system.switching[at(i)].role != model::SwitchingRole::kink || before.mode[at(i)] == 0) return std::nullopt;
+    if (s.layout.surfaces[at(i)].role != model::SwitchingRole::kink || before.mode[at(i)] == 0) return std::nullopt;
     set_surface(behind, i, -before.mode[at(i)], before.mode[at(i)] > 0 ? 0.0 : 1.0);
     std::erase(rest.at_zero, i);
     for (const int j : before.sliding) {

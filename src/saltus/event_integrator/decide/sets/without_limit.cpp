@@ -51,7 +51,7 @@ class Around {
     if (!is_finite(f_)) return;
     std::vector<double> listed;
     for (std::size_t j = 0; j < alpha.size(); ++j) {
-      if (s_.system.switching[j].role == model::SwitchingRole::listed) listed.push_back(alpha[j]);
+      if (s_.layout.surfaces[j].role == model::SwitchingRole::listed) listed.push_back(alpha[j]);
     }
     const auto [known, first] = ranges_.try_emplace(std::move(listed));
     for (std::size_t i = 0; i < f_.size(); ++i) {
@@ -89,7 +89,7 @@ std::optional<std::string> without_limit(const SwitchingContext& s, double t, co
       "0), so that it does not say what follows; end the simulation before, or add a small number, such as 1e-3, to "
       "the "
       "denominator (the model is stiff then: integrator = \"radau5\")",
-      s.system.state_names[near.state], t, near.low, near.high, 1e-3 * distance, distance);
+      s.layout.state_names[near.state], t, near.low, near.high, 1e-3 * distance, distance);
 }
 
 }  // namespace saltus::event_integrator
