@@ -26,7 +26,7 @@ struct Row {
   ReformulationOptions options;
 };
 
-const Row rows[] = {
+const Row fact_rows[] = {
     {"step", {.reformulation = Form::step, .lifting = std::nullopt}},
     {"step, lifted", {}},
     {"stewart", {.reformulation = Form::stewart}},
@@ -80,7 +80,7 @@ std::vector<FormSizes> sizes_by_form(const model::System& system) {
   for (const Row& row : rows) options.push_back(row.options);
   auto all = reformulation::sizes_of_all(of_elements(system), options);
   std::vector<FormSizes> forms;
-  for (const Row& row : rows) {
+  for (const Row& row : fact_rows) {
     auto& sizes = all[static_cast<std::size_t>(&row - rows)];
     if (sizes && sizes->groups.empty()) return {};
     if (sizes && &row == &rows[1] && sizes->total.beta == 0) continue;

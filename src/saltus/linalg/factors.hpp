@@ -25,8 +25,8 @@ class Hidden {
   std::unique_ptr<Part> part_;
 };
 
-/// P A = L U of a square matrix, with pivots by columns. A singular one gives solutions that are not finite. Allocates
-/// nothing where a matrix of at most 4 x 4, or one no larger than the last, comes. Cost: n^3 / 3.
+/// P A = L U of a square matrix, with pivots by columns. A singular one gives solutions that are not finite. One that
+/// is kept allocates nothing where a matrix comes that is no larger than the last. Cost: n^3 / 3.
 class Lu {
  public:
   Lu() = default;

@@ -30,6 +30,8 @@ Eigen::Map<const EigenSparse<double>> eigen(const SparseColumns& a) {
   return eigen_sparse(a.rows(), a.start(), a.inner(), a.values().data());
 }
 
+}  // namespace
+
 /// Eigen's factors, whose pivots are not public.
 template <class Scalar>
 class Factors : public Eigen::SparseLU<EigenSparse<Scalar>> {
@@ -42,8 +44,6 @@ class Factors : public Eigen::SparseLU<EigenSparse<Scalar>> {
     return Scalar(0.0);
   }
 };
-
-}  // namespace
 
 /// Eigen's factors cannot be copied: a copy begins without.
 template <class Scalar>

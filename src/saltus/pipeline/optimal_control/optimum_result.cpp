@@ -3,9 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/optimal_control/advice_internal.hpp"
