@@ -3,7 +3,6 @@
 # public and installed. HEAVY_HEADERS: they include CasADi, so the check that each header compiles alone leaves them out.
 # FACE: only the headers at the module's root are installed, those in its rooms are its own.
 # COLD: no run spends its time there, so SALTUS_COLD_OPTIONS may make its compilation fast. HOT: runs spend it there.
-# LINKS linalg: Eigen's factorizations are taken from there, by a header that the compiler includes first.
 # A module inside a folder of modules (adapters/ipopt) is called by its last name: saltus_ipopt, saltus::ipopt.
 function(saltus_module folder)
   cmake_parse_arguments(arg "HEAVY_HEADERS;FACE;COLD;HOT" "" "LINKS;PUBLIC_LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
@@ -28,13 +27,10 @@ function(saltus_module folder)
       set(options ${SALTUS_HOT_OPTIONS})
     endif()
     target_compile_options(saltus_${name} PRIVATE ${options})
-    if(arg_HEAVY_HEADERS)
+    if(arg_HEAVY_HEADERS AND NOT arg_HOT)
       saltus_share_headers(saltus_${name} SYMBOLIC ${options})
-    else()
+    elseif(NOT arg_HEAVY_HEADERS)
       saltus_share_headers(saltus_${name} PLAIN ${options})
-    endif()
-    if("linalg" IN_LIST arg_LINKS)
-      target_compile_options(saltus_${name} PRIVATE -include ${PROJECT_SOURCE_DIR}/src/saltus/linalg/compiled_internal.hpp)
     endif()
   else()
     add_library(saltus_${name} INTERFACE)
@@ -43,7 +39,7 @@ function(saltus_module folder)
   target_sources(saltus_${name} ${visibility} FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/src FILES ${headers})
   target_compile_features(saltus_${name} ${visibility} cxx_std_20)
   list(TRANSFORM arg_LINKS PREPEND saltus_)
-  target_link_libraries(saltus_${name} ${visibility} ${arg_LINKS} ${arg_PUBLIC_LIBRARIES} tl::expected Eigen3::Eigen)
+  target_link_libraries(saltus_${name} ${visibility} ${arg_LINKS} ${arg_PUBLIC_LIBRARIES} tl::expected)
   set_target_properties(saltus_${name} PROPERTIES EXPORT_NAME ${name})
   if(SALTUS_DEVELOPER AND NOT arg_HEAVY_HEADERS)
     set_target_properties(saltus_${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)

@@ -3,7 +3,7 @@
 # saltus_share_headers(TARGET PLAIN|SYMBOLIC|TESTS options of TARGET…): SYMBOLIC has CasADi's, too, TESTS GoogleTest's and CasADi's.
 set(SALTUS_PLAIN_HEADERS <algorithm> <array> <cmath> <cstddef> <cstdint> <functional> <limits> <map> <memory> <optional> <set> <span>
   <string> <string_view> <tuple> <type_traits> <utility> <variant> <vector> <fmt/format.h> <tl/expected.hpp>)
-set(SALTUS_SYMBOLIC_HEADERS ${SALTUS_PLAIN_HEADERS} <casadi/core/calculus.hpp> <casadi/core/function.hpp> <casadi/core/sx.hpp>
+set(SALTUS_SYMBOLIC_HEADERS ${SALTUS_PLAIN_HEADERS} <casadi/core/function.hpp> <casadi/core/sx.hpp>
   <casadi/core/sx_elem.hpp>)
 set(SALTUS_TESTS_HEADERS ${SALTUS_SYMBOLIC_HEADERS} <gtest/gtest.h>)
 

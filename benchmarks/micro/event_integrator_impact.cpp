@@ -12,32 +12,30 @@
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::Index;
+using linalg::Index;
 
 /// Contacts of a body with 6 velocities (mass 1, moments of inertia 0.1) at points under it, 0.5 below its centre.
 /// @param tangents  of each contact
 ContactPoint body(int contacts, int tangents, double friction) {
   const int rows = contacts * (1 + std::max(tangents, 1));  // those of missing tangents are 0
-  Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(rows, 6);
+  linalg::Matrix directions = linalg::Matrix::zero(rows, 6);
   for (int i = 0; i < contacts; ++i) {
     const double angle = 0.3 + 1.5707963267948966 * i;
     const double x = 0.4 * std::cos(angle), y = 0.4 * std::sin(angle), z = -0.5;
     const auto set = [&](int row, double nx, double ny, double nz) {
-      directions.row(row) << nx, ny, nz, y * nz - z * ny, z * nx - x * nz, x * ny - y * nx;
+      directions.row(row) = {nx, ny, nz, y * nz - z * ny, z * nx - x * nz, x * ny - y * nx};
     };
     set(i, 0, 0, 1);
     if (tangents > 0) set(contacts + i, 1, 0, 0);
     if (tangents > 1) set(2 * contacts + i, 0, 1, 0);
   }
-  Eigen::VectorXd inverse_mass(6), velocity(6);
-  inverse_mass << 1, 1, 1, 10, 10, 10;
-  velocity << 1.0, 0.2, -2.0, 0.3, -0.2, 0.1;
+  const linalg::Vector inverse_mass{1.0, 1.0, 1.0, 10.0, 10.0, 10.0}, velocity{1.0, 0.2, -2.0, 0.3, -0.2, 0.1};
   const auto m = static_cast<std::size_t>(contacts);
   ContactPoint point;
-  point.influence = directions * inverse_mass.asDiagonal() * directions.transpose();
+  point.influence = linalg::scaled_cols(directions, inverse_mass) * directions.transpose();
   point.velocity = directions * velocity;
-  point.acceleration = Eigen::VectorXd::Zero(rows);
-  point.acceleration.head(contacts).setConstant(-9.81);
+  point.acceleration = linalg::Vector::zero(rows);
+  point.acceleration.head(contacts).set_constant(-9.81);
   point.terms = 9.81;
   point.friction.assign(m, friction);
   point.restitution.assign(m, 0.3);

@@ -47,8 +47,8 @@ void evaluate(benchmark::State& state) {
   const auto problem = cart_pole(state.range(0));
   const auto stated = *pipeline::state_problem(problem.ocp, problem.options);
   auto& one = *stated.problem;
-  const Eigen::VectorXd w = one.start(), y = Eigen::VectorXd::Ones(one.rows());
-  Eigen::VectorXd gradient(one.variables()), c(one.rows()), jacobian(one.jacobian_pattern().entries()),
+  const linalg::Vector w = one.start(), y = linalg::Vector::ones(one.rows());
+  linalg::Vector gradient(one.variables()), c(one.rows()), jacobian(one.jacobian_pattern().entries()),
       hessian(one.hessian_pattern().entries());
   for (auto _ : state) {
     benchmark::DoNotOptimize(one.objective(w));

@@ -4,8 +4,10 @@
 #include <limits>
 #include <saltus/adapters/highs/highs_lpcc.hpp>
 #include <saltus/adapters/ipopt/ipopt_solver.hpp>
+#include <saltus/linalg/matrix.hpp>
 #include <saltus/solver/solve.hpp>
 
+namespace linalg = saltus::linalg;
 namespace mpcc = saltus::mpcc;
 
 class Corner final : public mpcc::Problem {
@@ -23,23 +25,23 @@ class Corner final : public mpcc::Problem {
   const mpcc::Bounds& constraint_bounds() const override { return no_rows_; }
   const std::vector<mpcc::Sign>& signs() const override { return signs_; }
 
-  double objective(mpcc::ConstVectorView w) override { return (w - target_).squaredNorm(); }
+  double objective(mpcc::ConstVectorView w) override { return (w - target_).squared_norm(); }
   void objective_gradient(mpcc::ConstVectorView w, mpcc::VectorView gradient) override {
     gradient = 2.0 * (w - target_);
   }
   void functions(mpcc::ConstVectorView w, mpcc::VectorView c) override { c = w; }
-  void jacobian(mpcc::ConstVectorView, mpcc::VectorView values) override { values.setOnes(); }
+  void jacobian(mpcc::ConstVectorView, mpcc::VectorView values) override { values.set_constant(1.0); }
   void hessian(mpcc::ConstVectorView, double factor, mpcc::ConstVectorView, mpcc::VectorView values) override {
-    values.setConstant(2.0 * factor);
+    values.set_constant(2.0 * factor);
   }
   const mpcc::Pattern& jacobian_pattern() const override { return jacobian_; }
   const mpcc::Pattern& hessian_pattern() const override { return hessian_; }
 
  private:
-  const Eigen::Vector2d target_{2.0, 1.0};
-  const mpcc::Bounds bounds_{Eigen::Vector2d::Zero(),
-                             Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity())};
-  const mpcc::Bounds no_rows_{Eigen::VectorXd(0), Eigen::VectorXd(0)};
+  const linalg::Vector target_{2.0, 1.0};
+  const mpcc::Bounds bounds_{linalg::Vector::zero(2),
+                             linalg::Vector::constant(2, std::numeric_limits<double>::infinity())};
+  const mpcc::Bounds no_rows_{linalg::Vector(0), linalg::Vector(0)};
   const std::vector<mpcc::Sign> signs_{mpcc::Sign::implied, mpcc::Sign::implied};  // by the bounds
   mpcc::Pattern jacobian_, hessian_;
 };

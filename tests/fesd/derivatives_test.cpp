@@ -11,8 +11,8 @@ namespace saltus::discretization {
 namespace {
 
 /// A point inside of all bounds that is nothing special.
-Eigen::VectorXd some_point(const FesdProblem& problem) {
-  Eigen::VectorXd w(problem.variables());
+linalg::Vector some_point(const FesdProblem& problem) {
+  linalg::Vector w(problem.variables());
   for (int i = 0; i < w.size(); ++i) w[i] = 0.5 + 0.35 * std::sin(1.7 * i + 0.3);
   return w;
 }

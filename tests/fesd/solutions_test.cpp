@@ -1,13 +1,14 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
 #include "../unit/mpcc/derivative_check.hpp"
 #include "fesd_models.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/spectra.hpp"
 #include "saltus/solver/active_set/polish.hpp"
 #include "saltus/solver/homotopy/follow_path.hpp"
 
@@ -117,7 +118,7 @@ TEST(FesdSolution, PrintedIndicatorLeavesSlidingUndetermined) {
     FesdProblem problem(kernel_of(system, Form::step, scheme_with(CrossComplementarity::fe_stage, equilibration)), 2);
     problem.set_step(step);
     // Written down, not solved for: x = 0, lambda = 0, alpha = (1 + 0.2 sin 5t) / 2 at every stage.
-    Eigen::VectorXd w = Eigen::VectorXd::Zero(problem.variables());
+    linalg::Vector w = linalg::Vector::zero(problem.variables());
     const auto& layout = problem.layout();
     const auto tableau = *butcher_tableau(TableauFamily::radau_iia, 2);
     double t = 0.0;
@@ -153,15 +154,16 @@ Freedom freedom(const Solved& solved) {
   const auto system = solver::active_set::active_system(*solved.problem, solved.path.point.w, sides, 1e-9);
   // Entries are of order 1e-2 to 1; what is singular is so exactly, at a point that is exact to 1e-11.
   constexpr double zero = 1e-8;
-  Eigen::FullPivLU<Eigen::MatrixXd> factors(system.jacobian);
-  factors.setThreshold(zero);
-  if (factors.dimensionOfKernel() == 0) return {};
-  const Eigen::MatrixXd kernel = factors.kernel();
+  linalg::FullLu factors(system.jacobian);
+  factors.set_threshold(zero);
+  if (factors.dimension_of_kernel() == 0) return {};
+  const linalg::Matrix kernel = factors.kernel();
   const auto& layout = solved.problem->layout();
-  Eigen::MatrixXd lengths(layout.elements, kernel.cols());
+  linalg::Matrix lengths(layout.elements, kernel.cols());
   for (int n = 0; n < layout.elements; ++n) lengths.row(n) = kernel.row(layout.first_of_element(n) + layout.element.h);
   // Entries of the kernel are of order 1.
-  const auto moving = (Eigen::JacobiSVD<Eigen::MatrixXd>(lengths).singularValues().array() > zero).count();
+  const auto moving =
+      std::ranges::count_if(linalg::singular_values(lengths).values, [](double value) { return value > zero; });
   return {static_cast<int>(moving), static_cast<int>(kernel.cols())};
 }
 

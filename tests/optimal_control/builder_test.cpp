@@ -168,7 +168,7 @@ TEST(OcpBuilder, KeepsTheFirstMistake) {
   Car car;
   OcpBuilder squares(std::move(car.builder));
   squares.horizon(1);
-  squares.least_squares({car.q, car.v}, {}, Eigen::MatrixXd::Identity(3, 3));
+  squares.least_squares({car.q, car.v}, {}, linalg::Matrix::identity(3, 3));
   EXPECT_NE(message(std::move(squares)).find("3 x 3 for 2 expressions"), std::string::npos);
 }
 

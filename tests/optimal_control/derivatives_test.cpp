@@ -64,7 +64,7 @@ void check(const std::string& numbers) {
   auto& mpcc = *made->problem;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> step(0.05, 0.15);
-  Eigen::VectorXd w = mpcc.start();
+  linalg::Vector w = mpcc.start();
   for (double& value : w) value += step(random);
   mpcc.with_method_terms(w);
   mpcc::expect_correct_derivatives(mpcc, w, 2e-6);

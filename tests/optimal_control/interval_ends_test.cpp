@@ -4,11 +4,11 @@
 #include <numbers>
 #include <string>
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::ocp_tests {
 namespace {
@@ -223,15 +223,14 @@ terminal_constraints = ["q == 1.06", "v == 0"]
   constexpr double length = 0.3;
   constexpr int intervals = 9;
   const double omega = std::sqrt(0.49), turned = omega * length, cosine = std::cos(turned), sine = std::sin(turned);
-  Eigen::Matrix2d step;
-  step << cosine, sine / omega, -omega * sine, cosine;
-  const Eigen::Vector2d push((1.0 - cosine) / (omega * omega), sine / omega);
-  Eigen::Matrix2Xd reach(2, intervals);
-  Eigen::Vector2d free(0.0, -1.62), column = push;
+  const linalg::Matrix step{{cosine, sine / omega}, {-omega * sine, cosine}};
+  const linalg::Vector push{(1.0 - cosine) / (omega * omega), sine / omega};
+  linalg::Matrix reach(2, intervals);
+  linalg::Vector free{0.0, -1.62}, column = push;
   for (int k = intervals - 1; k >= 0; --k, column = step * column) reach.col(k) = column;
   for (int k = 0; k < intervals; ++k) free = step * free;
-  const Eigen::Vector2d wanted = Eigen::Vector2d(1.06, 0.0) - free;
-  const double least = length * wanted.dot((reach * reach.transpose()).inverse() * wanted);
+  const linalg::Vector wanted = linalg::Vector{1.06, 0.0} - free;
+  const double least = length * wanted.dot(linalg::Lu(reach * reach.transpose()).solve(wanted));
   EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_NEAR(result.optimization->objective, least, 1e-6);
 }

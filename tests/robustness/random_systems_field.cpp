@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <Eigen/LU>
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::robustness {
 namespace {
@@ -120,40 +120,40 @@ FieldValue OwnField::slide_on_one(double t, const std::vector<double>& x, std::v
 }
 
 FieldValue OwnField::slide_on_several(double t, const std::vector<double>& x, std::vector<double> alpha) const {
-  const auto m = static_cast<Eigen::Index>(sliding_.size());
+  const auto m = static_cast<linalg::Index>(sliding_.size());
   const auto velocities = [&](const std::vector<double>& selections) {
     const auto all = psi_rates(t, x, at_selections(t, x, selections));
-    Eigen::VectorXd own(m);
-    for (Eigen::Index i = 0; i < m; ++i) own[i] = all[sliding_[static_cast<std::size_t>(i)]];
+    linalg::Vector own(m);
+    for (linalg::Index i = 0; i < m; ++i) own[i] = all[sliding_[static_cast<std::size_t>(i)]];
     return own;
   };
   // d psi_I/dt at selections, and its derivatives: differences between the faces of the cube.
   const auto linearise = [&](const std::vector<double>& selections) {
-    Eigen::MatrixXd matrix(m, m);
-    for (Eigen::Index column = 0; column < m; ++column) {
+    linalg::Matrix matrix(m, m);
+    for (linalg::Index column = 0; column < m; ++column) {
       auto corner = selections;
       double& selection = corner[sliding_[static_cast<std::size_t>(column)]];
       selection = 1.0;
-      const Eigen::VectorXd upper = velocities(corner);
+      const linalg::Vector upper = velocities(corner);
       selection = 0.0;
       matrix.col(column) = upper - velocities(corner);
     }
     return matrix;
   };
-  const Eigen::MatrixXd guessed = linearise(alpha);
-  const double imbalance =
-      (velocities(alpha).array().abs() / (1e-6 + guessed.array().abs().rowwise().sum())).maxCoeff();
+  const linalg::Matrix guessed = linearise(alpha);
+  const double imbalance = velocities(alpha).abs().over_each(guessed.abs().row_sums().add_to_all(1e-6)).max();
   for (int iteration = 0; iteration < 4; ++iteration) {
-    const Eigen::VectorXd change = linearise(alpha).fullPivLu().solve(velocities(alpha));
-    for (Eigen::Index i = 0; i < m; ++i) alpha[sliding_[static_cast<std::size_t>(i)]] -= change[i];
-    if (change.cwiseAbs().maxCoeff() < 1e-13) break;
+    const linalg::Vector change = linalg::FullLu(linearise(alpha)).solve(velocities(alpha));
+    for (linalg::Index i = 0; i < m; ++i) alpha[sliding_[static_cast<std::size_t>(i)]] -= change[i];
+    if (change.max_abs() < 1e-13) break;
   }
   FieldValue value = at_selections(t, x, alpha);
   value.imbalance = imbalance;
-  value.pivot = std::abs(guessed.fullPivLu().matrixLU()(m - 1, m - 1));
+  value.pivot = linalg::FullLu(guessed).last_pivot();
   // A surface that no selection moves has a row of zeros.
-  const double lengths = guessed.rowwise().norm().prod();
-  value.determinant = lengths > 0.0 ? (-guessed).determinant() / lengths : 0.0;
+  double lengths = 1.0;
+  for (const double length : guessed.row_norms()) lengths *= length;
+  value.determinant = lengths > 0.0 ? linalg::determinant(-guessed) / lengths : 0.0;
   return value;
 }
 

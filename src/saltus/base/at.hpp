@@ -14,7 +14,7 @@ template <std::signed_integral Integer>
 }
 
 /// Returns the number i that a matrix counts with, of the place i in a container: matrix.row(index(i)); an
-/// Eigen::Index. Not checked.
+/// linalg::Index. Not checked.
 [[nodiscard]] constexpr std::ptrdiff_t index(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
 
 }  // namespace saltus

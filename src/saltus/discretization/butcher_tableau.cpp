@@ -28,12 +28,12 @@ const FamilyFacts& facts(TableauFamily family) { return families[static_cast<std
 
 using Nodes = std::vector<long double>;
 
-Eigen::Index index(int i) { return static_cast<Eigen::Index>(i); }
+linalg::Index index(int i) { return static_cast<linalg::Index>(i); }
 
 /// a_ij = integral of the j-th Lagrange polynomial from 0 to c_i, b_j to 1.
 ButcherTableau collocation(const Nodes& nodes) {
-  const auto s = static_cast<Eigen::Index>(nodes.size());
-  ButcherTableau tableau{.A = Eigen::MatrixXd(s, s), .b = Eigen::VectorXd(s), .c = Eigen::VectorXd(s)};
+  const auto s = static_cast<linalg::Index>(nodes.size());
+  ButcherTableau tableau{.A = linalg::Matrix(s, s), .b = linalg::Vector(s), .c = linalg::Vector(s)};
   for (int j = 0; j < static_cast<int>(s); ++j) {
     const auto integral = [&](long double x) { return static_cast<double>(integral_of_lagrange(nodes, j, x)); };
     for (int i = 0; i < static_cast<int>(s); ++i) {
@@ -64,27 +64,27 @@ ButcherTableau lobatto_iiic(int stages) {
 }
 
 ButcherTableau explicit_rk(int stages) {
-  const Eigen::Index s = stages;
-  ButcherTableau tableau{.A = Eigen::MatrixXd::Zero(s, s), .b = Eigen::VectorXd(s), .c = Eigen::VectorXd(s)};
+  const linalg::Index s = stages;
+  ButcherTableau tableau{.A = linalg::Matrix::zero(s, s), .b = linalg::Vector(s), .c = linalg::Vector(s)};
   switch (stages) {
     case 1:
-      tableau.b << 1.0;
+      tableau.b = linalg::Vector{1.0};
       break;
     case 2:
       tableau.A(1, 0) = 0.5;
-      tableau.b << 0.0, 1.0;
+      tableau.b = linalg::Vector{0.0, 1.0};
       break;
     case 3:
       tableau.A(1, 0) = 0.5;
-      tableau.A.row(2) << -1.0, 2.0, 0.0;
-      tableau.b << 1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0;
+      tableau.A.row(2) = linalg::Vector{-1.0, 2.0, 0.0};
+      tableau.b = linalg::Vector{1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0};
       break;
     default:
       tableau.A(1, 0) = tableau.A(2, 1) = 0.5;
       tableau.A(3, 2) = 1.0;
-      tableau.b << 1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0;
+      tableau.b = linalg::Vector{1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0};
   }
-  tableau.c = tableau.A.rowwise().sum();
+  tableau.c = tableau.A.row_sums();
   return tableau;
 }
 
@@ -93,7 +93,7 @@ ButcherTableau explicit_rk(int stages) {
 std::string_view name(TableauFamily family) { return facts(family).name; }
 
 bool ButcherTableau::ends_at_last_stage() const {
-  const Eigen::Index last = b.size() - 1;
+  const linalg::Index last = b.size() - 1;
   return c[last] == 1.0 && A.row(last).transpose() == b;
 }
 

@@ -3,10 +3,9 @@
 
 #include <string_view>
 
-#include <Eigen/Core>
-
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/fesd_options.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::discretization {
 
@@ -17,9 +16,9 @@ namespace saltus::discretization {
 struct ButcherTableau {
   TableauFamily family = TableauFamily::radau_iia;
   int order = 0;
-  Eigen::MatrixXd A;  ///< s x s
-  Eigen::VectorXd b;  ///< s
-  Eigen::VectorXd c;  ///< s, ascending
+  linalg::Matrix A;  ///< s x s
+  linalg::Vector b;  ///< s
+  linalg::Vector c;  ///< s, ascending
 
   [[nodiscard]] int stages() const { return static_cast<int>(b.size()); }
   /// Returns whether the method is stiffly accurate: the last stage is the end of the step, c_s = 1 and a_sj = b_j.

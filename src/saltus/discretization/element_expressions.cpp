@@ -1,12 +1,12 @@
 #include <string>
 #include <utility>
 
-#include <Eigen/LU>
 #include <casadi/core/function.hpp>
 
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/dcs_expressions_internal.hpp"
 #include "saltus/discretization/element_expressions_internal.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::discretization {
 namespace {
@@ -132,7 +132,8 @@ class ElementBuilder {
   [[nodiscard]] SX column(const SX& matrix, int m) const { return matrix(casadi::Slice(), m); }
 
   void add_runge_kutta_equations() {
-    const bool invertible = Eigen::FullPivLU<Eigen::MatrixXd>(tableau_.A).isInvertible();
+    const bool invertible = linalg::FullLu(tableau_.A).is_invertible();
+    const linalg::Matrix inverse = invertible ? linalg::inverse(tableau_.A) : linalg::Matrix();
     const SX& h = h_;
     std::vector<SX> increments;  // x_m - x_left
     std::vector<SX> slopes;
@@ -153,7 +154,7 @@ class ElementBuilder {
         result_.element.equation(column(variables_.stage, m) - f);
       } else if (invertible) {
         // Collocation: A^-1 (X - x_left) = h F, each row with the model of one stage only.
-        result_.element.equation(combination(tableau_.A.inverse().row(m), increments) - h * f);
+        result_.element.equation(combination(inverse.row(m), increments) - h * f);
       } else {
         result_.element.equation(increments[at(m)] - h * combination(tableau_.A.row(m), slopes));
       }
@@ -161,16 +162,16 @@ class ElementBuilder {
     if (result_.layout.end_state.count > 0) {
       SX end = left_x_;
       if (is_integral() && invertible) {
-        end += combination(tableau_.b.transpose() * tableau_.A.inverse(), increments);
+        end += combination(tableau_.b.transpose() * inverse, increments);
       } else {
-        end += h * combination(tableau_.b.transpose(), slopes);
+        end += h * combination(tableau_.b, slopes);
       }
       result_.element.equation(variables_.end_state - end - correction());
     }
     if (result_.depends_on_time) result_.element.equation(variables_.end_time - left_t_ - h_);
   }
 
-  [[nodiscard]] SX combination(const Eigen::RowVectorXd& weights, const std::vector<SX>& terms) const {
+  [[nodiscard]] SX combination(linalg::ConstView weights, const std::vector<SX>& terms) const {
     SX sum = SX::zeros(dcs_.x.numel());
     for (int j = 0; j < stages(); ++j) sum += weights[j] * terms[at(j)];
     return sum;

@@ -63,7 +63,7 @@ void add_paper_cross_complementarity(const Boundary& boundary, LocalExpressions&
 
 /// Returns values of these variables with which the rows of mode mlcp hold: from the first sides of its pairs where the
 /// variables are zero, and h_n - h_(n-1).
-[[nodiscard]] Eigen::VectorXd boundary_values(const Eigen::VectorXd& first_sides, double difference);
+[[nodiscard]] linalg::Vector boundary_values(const linalg::Vector& first_sides, double difference);
 void add_step_equilibration(const FesdOptions& options, const std::vector<SelectionPair>& kinds,
                             const Boundary& boundary, LocalExpressions& expressions);
 

@@ -25,8 +25,8 @@ struct FesdProblem::Implementation {
   std::vector<mpcc::Sign> signs;
   mpcc::Pattern jacobian_pattern, hessian_pattern;
   PlacedFunction elements, boundaries;
-  Eigen::VectorXd parameters;  ///< of the kernel: p, held, T/N
-  Eigen::VectorXd constants;   ///< left state, left time, lambda_(0,0)
+  linalg::Vector parameters;  ///< of the kernel: p, held, T/N
+  linalg::Vector constants;   ///< left state, left time, lambda_(0,0)
   StepData step;
 
   Implementation(std::shared_ptr<FesdKernel> kernel_owner, int n)
@@ -35,12 +35,12 @@ struct FesdProblem::Implementation {
         layout{kernel.layout, n, static_cast<int>(kernel.boundary_bounds.lower.size())},
         elements(kernel.element),
         boundaries(kernel.boundary),
-        constants(Eigen::VectorXd::Zero(kernel.left_size())) {
+        constants(linalg::Vector::zero(kernel.left_size())) {
     SALTUS_ASSERT(n >= 1);
     place();
     find_patterns();
     find_bounds();
-    parameters = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kernel.parameters.size()) + kernel.held + 1);
+    parameters = linalg::Vector::zero(static_cast<linalg::Index>(kernel.parameters.size()) + kernel.held + 1);
     std::copy(kernel.parameters.begin(), kernel.parameters.end(), parameters.data());
   }
 
@@ -112,19 +112,18 @@ struct FesdProblem::Implementation {
 
   void find_bounds() {
     const double infinity = std::numeric_limits<double>::infinity();
-    w_bounds = {Eigen::VectorXd::Constant(layout.size(), -infinity),
-                Eigen::VectorXd::Constant(layout.size(), infinity)};
-    g_bounds = {Eigen::VectorXd::Zero(n_g), Eigen::VectorXd::Zero(n_g)};
+    w_bounds = {linalg::Vector::constant(layout.size(), -infinity), linalg::Vector::constant(layout.size(), infinity)};
+    g_bounds = {linalg::Vector::zero(n_g), linalg::Vector::zero(n_g)};
     const auto& element = layout.element;
     for (int n = 0; n < layout.elements; ++n) {
       const int first = layout.first_of_element(n);
-      const auto segment = [first](Eigen::VectorXd& bound, const VariableBlock& block) {
+      const auto segment = [first](linalg::Vector& bound, const VariableBlock& block) {
         return bound.segment(first + block.first, block.end() - block.first);
       };
-      segment(w_bounds.lower, element.selection).setZero();
-      segment(w_bounds.upper, element.selection).setOnes();
-      segment(w_bounds.lower, element.lambda).setZero();
-      segment(w_bounds.lower, element.correction).setZero();
+      segment(w_bounds.lower, element.selection).set_zero();
+      segment(w_bounds.upper, element.selection).set_constant(1.0);
+      segment(w_bounds.lower, element.lambda).set_zero();
+      segment(w_bounds.lower, element.correction).set_zero();
     }
     for (int n = 1; n < layout.elements; ++n) {
       w_bounds.lower.segment(layout.first_of_boundary(n), layout.boundary_size) = kernel.boundary_bounds.lower;
@@ -135,11 +134,11 @@ struct FesdProblem::Implementation {
   /// eq. (17): lambda_p = max(psi, 0), lambda_n = -min(psi, 0); lambda_i = g_i - min g.
   void set_left_lambda() {
     const int n_selections = layout.element.selection.size;
-    Eigen::VectorXd indicator(n_selections);
+    linalg::Vector indicator(n_selections);
     kernel.native.call(kernel.indicators, std::array<const double*, 3>{&step.t, step.x.data(), parameters.data()},
                        std::array<double*, 1>{indicator.data()});
     for (const auto& [first, count] : kernel.simplices) {
-      indicator.segment(first, count).array() -= indicator.segment(first, count).minCoeff();
+      indicator.segment(first, count).add_to_all(-indicator.segment(first, count).min());
     }
     const int n_lambda = static_cast<int>(kernel.pairs.size());
     for (int k = 0; k < n_lambda; ++k) {
@@ -151,18 +150,17 @@ struct FesdProblem::Implementation {
   }
 
   /// lambda at the left end, then at the points of element n.
-  [[nodiscard]] Eigen::MatrixXd lambda_of(int n, ConstVectorView w) const {
+  [[nodiscard]] linalg::Matrix lambda_of(int n, ConstVectorView w) const {
     const auto& block = layout.element.lambda;
-    Eigen::MatrixXd lambda(block.size, block.count + 1);
+    linalg::Matrix lambda(block.size, block.count + 1);
     const auto left = left_lambda(n);
     for (int i = 0; i < block.size; ++i) lambda(i, 0) = value_at(left[at(i)], w, constants);
-    lambda.rightCols(block.count) = matrix(n, block, w);
+    lambda.right_cols(block.count) = matrix(n, block, w);
     return lambda;
   }
 
-  [[nodiscard]] Eigen::MatrixXd matrix(int n, const VariableBlock& block, ConstVectorView w) const {
-    return Eigen::Map<const Eigen::MatrixXd>(w.data() + layout.first_of_element(n) + block.first, block.size,
-                                             block.count);
+  [[nodiscard]] linalg::Matrix matrix(int n, const VariableBlock& block, ConstVectorView w) const {
+    return linalg::ConstView(w.data() + layout.first_of_element(n) + block.first, block.size, block.count);
   }
 };
 
@@ -191,13 +189,13 @@ void FesdProblem::set_step(const StepData& step) {
   own.g_bounds.lower[own.n_g - 1] = own.g_bounds.upper[own.n_g - 1] = step.length;
 }
 
-Eigen::VectorXd FesdProblem::first_guess() const {
+linalg::Vector FesdProblem::first_guess() const {
   const auto& own = *implementation_;
   const auto& element = own.layout.element;
   const bool is_integral = own.kernel.options.representation == Representation::integral;
   const double mean = own.step.length / own.layout.elements;
-  const Eigen::Map<const Eigen::VectorXd> x(own.step.x.data(), own.kernel.states);
-  Eigen::VectorXd w = Eigen::VectorXd::Zero(own.layout.size());
+  const linalg::ConstView x(own.step.x.data(), own.kernel.states);
+  linalg::Vector w = linalg::Vector::zero(own.layout.size());
   for (int n = 0; n < own.layout.elements; ++n) {
     const int first = own.layout.first_of_element(n);
     w[first + element.h] = mean;
@@ -205,16 +203,16 @@ Eigen::VectorXd FesdProblem::first_guess() const {
     if (element.end_state.count > 0) w.segment(first + element.end_state.first, x.size()) = x;
     if (element.end_time.count > 0) w[first + element.end_time.first] = own.step.t + (n + 1) * mean;
     // Away from the corner a = lambda = 0 of every pair, on no side of any surface.
-    w.segment(first + element.selection.first, element.selection.end() - element.selection.first).setConstant(0.5);
-    w.segment(first + element.lambda.first, element.lambda.end() - element.lambda.first).setConstant(0.5);
+    w.segment(first + element.selection.first, element.selection.end() - element.selection.first).set_constant(0.5);
+    w.segment(first + element.lambda.first, element.lambda.end() - element.lambda.first).set_constant(0.5);
     for (const auto& [simplex, count] : own.kernel.simplices) {
       for (int m = 0; m < element.stages; ++m) {
-        w.segment(first + element.selection.at(m, simplex), count).setConstant(1.0 / count);
+        w.segment(first + element.selection.at(m, simplex), count).set_constant(1.0 / count);
       }
     }
   }
   for (int n = 1; n < own.layout.elements; ++n) {
-    w.segment(own.layout.first_of_boundary(n), own.layout.boundary_size).setConstant(0.5);
+    w.segment(own.layout.first_of_boundary(n), own.layout.boundary_size).set_constant(0.5);
   }
   return w;
 }
@@ -226,15 +224,15 @@ std::vector<SolvedElement> FesdProblem::read(ConstVectorView w) const {
   const bool is_integral = own.kernel.options.representation == Representation::integral;
   std::vector<SolvedElement> solved;
   double t = own.step.t;
-  Eigen::VectorXd left = Eigen::Map<const Eigen::VectorXd>(own.step.x.data(), own.kernel.states);
+  linalg::Vector left = linalg::ConstView(own.step.x.data(), own.kernel.states);
   for (int n = 0; n < own.layout.elements; ++n) {
     SolvedElement one;
     one.t = t;
     one.h = w[own.layout.first_of_element(n) + element.h];
     one.states = own.matrix(n, element.stage, w);
     if (!is_integral) {
-      const Eigen::MatrixXd increments = one.h * one.states * tableau.A.transpose();
-      one.states = increments.colwise() + left;
+      const linalg::Matrix increments = one.h * one.states * tableau.A.transpose();
+      one.states = linalg::plus_column(increments, left);
     }
     one.selections = own.matrix(n, element.selection, w);
     one.lambda = own.lambda_of(n, w);
@@ -264,7 +262,7 @@ double FesdProblem::objective(ConstVectorView w) {
 
 void FesdProblem::objective_gradient(ConstVectorView w, VectorView gradient) {
   auto& own = *implementation_;
-  gradient.setZero();
+  gradient.set_zero();
   own.elements.add_gradient(w, own.constants, own.parameters, gradient);
   own.boundaries.add_gradient(w, own.constants, own.parameters, gradient);
 }

@@ -4,13 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/fesd_options.hpp"
 #include "saltus/discretization/variable_layout.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/mpcc/problem.hpp"
 
 namespace saltus::reformulation {
@@ -70,10 +69,10 @@ struct StepData {
 struct SolvedElement {
   double t = 0.0;  ///< left end
   double h = 0.0;
-  Eigen::MatrixXd states;      ///< n_x by n_s
-  Eigen::MatrixXd selections;  ///< n_selections by n_s
-  Eigen::MatrixXd lambda;      ///< n_lambda by 1 + points: left end, stages, right end if that is no stage
-  Eigen::VectorXd end;         ///< n_x
+  linalg::Matrix states;      ///< n_x by n_s
+  linalg::Matrix selections;  ///< n_selections by n_s
+  linalg::Matrix lambda;      ///< n_lambda by 1 + points: left end, stages, right end if that is no stage
+  linalg::Vector end;         ///< n_x
 };
 
 /// States equations (47) of [nurkanovic2024] for N elements, T = sum h_n, as min f, g = 0, 0 <= G _|_ H >= 0:
@@ -90,7 +89,7 @@ class FesdProblem final : public mpcc::Problem {
 
   void set_step(const StepData& step);
   /// Returns the state at the left end everywhere, selections in the middle, lambda as at the left end but not zero.
-  [[nodiscard]] Eigen::VectorXd first_guess() const;
+  [[nodiscard]] linalg::Vector first_guess() const;
   [[nodiscard]] std::vector<SolvedElement> read(mpcc::ConstVectorView w) const;
   [[nodiscard]] const VariableLayout& layout() const;
 

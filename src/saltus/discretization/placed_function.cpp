@@ -63,14 +63,13 @@ void PlacedFunction::add_patterns(mpcc::Pattern& jacobian, mpcc::Pattern& hessia
   }
 }
 
-const std::vector<double>& PlacedFunction::gather(int copy, ConstVectorView w, const Eigen::VectorXd& constants) {
+const std::vector<double>& PlacedFunction::gather(int copy, ConstVectorView w, const linalg::Vector& constants) {
   const auto& places = copies_[at(copy)].places;
   for (std::size_t i = 0; i < places.size(); ++i) z_[i] = value_at(places[i], w, constants);
   return z_;
 }
 
-double PlacedFunction::objective(ConstVectorView w, const Eigen::VectorXd& constants,
-                                 const Eigen::VectorXd& parameters) {
+double PlacedFunction::objective(ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters) {
   if (!function_.has_objective()) return 0.0;
   double sum = 0.0;
   for (std::size_t i = 0; i < copies_.size(); ++i) {
@@ -81,8 +80,8 @@ double PlacedFunction::objective(ConstVectorView w, const Eigen::VectorXd& const
   return sum;
 }
 
-void PlacedFunction::add_gradient(ConstVectorView w, const Eigen::VectorXd& constants,
-                                  const Eigen::VectorXd& parameters, VectorView gradient, double factor) {
+void PlacedFunction::add_gradient(ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters,
+                                  VectorView gradient, double factor) {
   if (!function_.has_objective()) return;
   for (std::size_t i = 0; i < copies_.size(); ++i) {
     function_.gradient(gather(static_cast<int>(i), w, constants).data(), parameters.data(), entries_.data());
@@ -93,7 +92,7 @@ void PlacedFunction::add_gradient(ConstVectorView w, const Eigen::VectorXd& cons
   }
 }
 
-void PlacedFunction::rows(ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+void PlacedFunction::rows(ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters,
                           VectorView c) {
   for (std::size_t i = 0; i < copies_.size(); ++i) {
     double value = 0.0;
@@ -102,7 +101,7 @@ void PlacedFunction::rows(ConstVectorView w, const Eigen::VectorXd& constants, c
   }
 }
 
-double* PlacedFunction::jacobian(ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+double* PlacedFunction::jacobian(ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters,
                                  double* next) {
   for (std::size_t i = 0; i < copies_.size(); ++i) {
     function_.jacobian(gather(static_cast<int>(i), w, constants).data(), parameters.data(), entries_.data());
@@ -111,7 +110,7 @@ double* PlacedFunction::jacobian(ConstVectorView w, const Eigen::VectorXd& const
   return next;
 }
 
-double* PlacedFunction::hessian(ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+double* PlacedFunction::hessian(ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters,
                                 double factor, ConstVectorView y, double* next) {
   for (std::size_t i = 0; i < copies_.size(); ++i) {
     for (std::size_t k = 0; k < rows_.size(); ++k) rows_[k] = y[copies_[i].rows[k]];

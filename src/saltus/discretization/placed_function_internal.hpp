@@ -3,15 +3,14 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/discretization/local_function_internal.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::discretization {
 
 /// Gives places of local variables: >= 0 a variable of the problem, else the constant constant_place() was made of.
 [[nodiscard]] constexpr int constant_place(int constant) { return -1 - constant; }
-[[nodiscard]] inline double value_at(int place, mpcc::ConstVectorView w, const Eigen::VectorXd& constants) {
+[[nodiscard]] inline double value_at(int place, mpcc::ConstVectorView w, const linalg::Vector& constants) {
   return place >= 0 ? w[place] : constants[-1 - place];
 }
 
@@ -37,18 +36,18 @@ class PlacedFunction {
   /// Returns rows of a copy in the problem: its equations, then G, then H.
   [[nodiscard]] const std::vector<int>& rows_of(int copy) const { return copies_[static_cast<std::size_t>(copy)].rows; }
   /// Returns the local variables of a copy; overwritten by the next call.
-  const std::vector<double>& gather(int copy, mpcc::ConstVectorView w, const Eigen::VectorXd& constants);
-  [[nodiscard]] double objective(mpcc::ConstVectorView w, const Eigen::VectorXd& constants,
-                                 const Eigen::VectorXd& parameters);
+  const std::vector<double>& gather(int copy, mpcc::ConstVectorView w, const linalg::Vector& constants);
+  [[nodiscard]] double objective(mpcc::ConstVectorView w, const linalg::Vector& constants,
+                                 const linalg::Vector& parameters);
   /// Adds factor times the gradient of the objective.
-  void add_gradient(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+  void add_gradient(mpcc::ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters,
                     mpcc::VectorView gradient, double factor = 1.0);
-  void rows(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+  void rows(mpcc::ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters,
             mpcc::VectorView c);
   /// Returns values in the order of add_patterns from `next` on; returns what follows them.
-  double* jacobian(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+  double* jacobian(mpcc::ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters,
                    double* next);
-  double* hessian(mpcc::ConstVectorView w, const Eigen::VectorXd& constants, const Eigen::VectorXd& parameters,
+  double* hessian(mpcc::ConstVectorView w, const linalg::Vector& constants, const linalg::Vector& parameters,
                   double factor, mpcc::ConstVectorView y, double* next);
 
  private:

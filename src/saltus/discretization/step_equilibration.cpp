@@ -92,20 +92,20 @@ SX printed_switch_indicator(const std::vector<SelectionPair>& kinds, const Bound
 }
 
 mpcc::Bounds boundary_bounds(StepEquilibration mode, int pairs) {
-  if (mode != StepEquilibration::mlcp || pairs == 0) return {Eigen::VectorXd(0), Eigen::VectorXd(0)};
+  if (mode != StepEquilibration::mlcp || pairs == 0) return {linalg::Vector(0), linalg::Vector(0)};
   const double infinity = std::numeric_limits<double>::infinity();
-  mpcc::Bounds bounds{Eigen::VectorXd::Zero(5 * pairs + 3), Eigen::VectorXd::Constant(5 * pairs + 3, infinity)};
-  bounds.upper.segment(2 * pairs, 3 * pairs).setOnes();  // multipliers of minima
+  mpcc::Bounds bounds{linalg::Vector::zero(5 * pairs + 3), linalg::Vector::constant(5 * pairs + 3, infinity)};
+  bounds.upper.segment(2 * pairs, 3 * pairs).set_constant(1.0);  // multipliers of minima
   return bounds;
 }
 
-Eigen::VectorXd boundary_values(const Eigen::VectorXd& first_sides, double difference) {
-  const Eigen::Index pairs = (first_sides.size() - 2) / 5;
-  Eigen::VectorXd own = Eigen::VectorXd::Zero(5 * pairs + 3);
-  Eigen::Index smallest = 0;
+linalg::Vector boundary_values(const linalg::Vector& first_sides, double difference) {
+  const linalg::Index pairs = (first_sides.size() - 2) / 5;
+  linalg::Vector own = linalg::Vector::zero(5 * pairs + 3);
+  linalg::Index smallest = 0;
   double minimum = std::numeric_limits<double>::infinity();
-  for (Eigen::Index k = 0; k < pairs; ++k) {
-    const auto sums = first_sides.segment(5 * k, 4).cwiseMax(0.0);
+  for (linalg::Index k = 0; k < pairs; ++k) {
+    const auto sums = first_sides.segment(5 * k, 4).at_least(0.0);
     own[k] = std::min(sums[0], sums[1]);
     own[pairs + k] = std::min(sums[2], sums[3]);
     own[2 * pairs + k] = sums[0] <= sums[1] ? 1.0 : 0.0;
@@ -115,7 +115,7 @@ Eigen::VectorXd boundary_values(const Eigen::VectorXd& first_sides, double diffe
     smallest = k;
   }
   own[4 * pairs + smallest] = 1.0;
-  own.tail(3) << minimum, std::max(difference, 0.0), std::max(-difference, 0.0);
+  own.tail(3) = {minimum, std::max(difference, 0.0), std::max(-difference, 0.0)};
   return own;
 }
 

@@ -1,19 +1,19 @@
 // Contacts of a system at one point, in numbers.
 #pragma once
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::evaluation {
 
 /// Holds values of m contacts with r rows and n velocities; see model::ContactSystem.
 struct ContactValues {
-  using Rows = Eigen::MatrixXd;
-  Eigen::VectorXd gap;                    ///< m
-  Eigen::VectorXd velocity;               ///< r
-  Rows rows;                              ///< r x n
-  Rows responses;                         ///< n x r
-  Eigen::VectorXd acceleration;           ///< r, without contact forces
-  Eigen::VectorXd friction, restitution;  ///< m
+  using Rows = linalg::Matrix;
+  linalg::Vector gap;                    ///< m
+  linalg::Vector velocity;               ///< r
+  Rows rows;                             ///< r x n
+  Rows responses;                        ///< n x r
+  linalg::Vector acceleration;           ///< r, without contact forces
+  linalg::Vector friction, restitution;  ///< m
 };
 
 }  // namespace saltus::evaluation

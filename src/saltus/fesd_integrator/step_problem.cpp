@@ -27,13 +27,13 @@ Expected<StepProblem> StepProblem::make(const reformulation::Dcs& dcs, std::vect
 
 /// Of every pair one sum over the element is zero: which one tells the mode (Lemmas 9 and 10 of [nurkanovic2024]).
 std::vector<int> StepProblem::modes_of(const SolvedElement& element) const {
-  const Eigen::VectorXd lambda = element.lambda.rowwise().sum();
+  const linalg::Vector lambda = element.lambda.row_sums();
   std::vector<int> modes(static_cast<std::size_t>(element.selections.rows()), 0);
   for (std::size_t k = 0; k < kernel_->pairs().size(); ++k) {
     const auto& pair = kernel_->pairs()[k];
     const double sum = element.selections.row(pair.selection).sum();
     const double a = pair.complement ? static_cast<double>(element.selections.cols()) - sum : sum;
-    if (lambda[static_cast<Eigen::Index>(k)] <= a) continue;
+    if (lambda[static_cast<linalg::Index>(k)] <= a) continue;
     modes[at(pair.selection)] = pair.complement ? 1 : -1;
   }
   return modes;

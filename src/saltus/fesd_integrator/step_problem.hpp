@@ -20,10 +20,10 @@ namespace saltus::fesd_integrator {
 struct ElementGuess {
   double t = 0.0;
   double h = 0.0;
-  std::vector<int> modes;      ///< as in ActiveSet: per step selection -1, 0 (slides), 1; per region 0 (active) or -1
-  Eigen::MatrixXd states;      ///< n_x by n_s
-  Eigen::MatrixXd selections;  ///< n_selections by n_s
-  Eigen::VectorXd end;
+  std::vector<int> modes;     ///< as in ActiveSet: per step selection -1, 0 (slides), 1; per region 0 (active) or -1
+  linalg::Matrix states;      ///< n_x by n_s
+  linalg::Matrix selections;  ///< n_selections by n_s
+  linalg::Vector end;
 };
 
 struct StepSolution {

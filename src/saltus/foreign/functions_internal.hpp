@@ -17,12 +17,12 @@ class CachedFunction {
   CachedFunction(const std::string& name, const casadi::SX& w, const casadi::SX& first, const casadi::SX& second);
   /// Evaluates, if w is not the point of the last call.
   void at(mpcc::ConstVectorView w);
-  [[nodiscard]] const Eigen::VectorXd& first() const { return first_; }
-  [[nodiscard]] const Eigen::VectorXd& second() const { return second_; }
+  [[nodiscard]] const linalg::Vector& first() const { return first_; }
+  [[nodiscard]] const linalg::Vector& second() const { return second_; }
 
  private:
   model::ModelFunction function_;
-  Eigen::VectorXd w_, first_, second_;
+  linalg::Vector w_, first_, second_;
 };
 
 struct Problem::Implementation {

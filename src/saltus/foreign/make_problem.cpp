@@ -25,8 +25,8 @@ SX column_of(const std::vector<SX>& scalars) { return scalars.empty() ? SX(0, 1)
 
 void set_bounds(Problem::Implementation& all) {
   const auto& statement = all.statement;
-  all.variable_bounds.lower = Eigen::Map<const Eigen::VectorXd>(statement.lower.data(), index(statement.lower.size()));
-  all.variable_bounds.upper = Eigen::Map<const Eigen::VectorXd>(statement.upper.data(), index(statement.upper.size()));
+  all.variable_bounds.lower = linalg::ConstView(statement.lower);
+  all.variable_bounds.upper = linalg::ConstView(statement.upper);
   all.constraint_bounds.lower.resize(index(statement.rows.size()));
   all.constraint_bounds.upper.resize(index(statement.rows.size()));
   for (std::size_t i = 0; i < statement.rows.size(); ++i) {

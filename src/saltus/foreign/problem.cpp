@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contracts.hpp"
 #include "saltus/foreign/functions_internal.hpp"
 
 namespace saltus::foreign {
@@ -45,23 +46,24 @@ void Problem::jacobian(mpcc::ConstVectorView w, mpcc::VectorView values) {
 
 void Problem::hessian(mpcc::ConstVectorView w, double objective_factor, mpcc::ConstVectorView y,
                       mpcc::VectorView values) {
+  SALTUS_ASSERT(w.is_contiguous() && y.is_contiguous() && values.is_contiguous());
   implementation_->hessian(std::array<const double*, 3>{w.data(), &objective_factor, y.data()},
                            std::array<double*, 1>{values.data()});
 }
 
-Eigen::VectorXd Problem::start() const {
+linalg::Vector Problem::start() const {
   const auto& start = implementation_->statement.start;
-  return complete(Eigen::Map<const Eigen::VectorXd>(start.data(), file_variables()));
+  return complete(linalg::ConstView(start.data(), file_variables()));
 }
 
-Eigen::VectorXd Problem::complete(mpcc::ConstVectorView x) const {
+linalg::Vector Problem::complete(mpcc::ConstVectorView x) const {
   auto& all = *implementation_;
-  Eigen::VectorXd w = Eigen::VectorXd::Zero(variables());
+  linalg::Vector w = linalg::Vector::zero(variables());
   w.head(file_variables()) = x;
-  w = w.cwiseMax(all.variable_bounds.lower).cwiseMin(all.variable_bounds.upper);
+  w = w.at_least(all.variable_bounds.lower).at_most(all.variable_bounds.upper);
   const auto& splits = all.statement.splits;
   if (splits.empty()) return w;
-  Eigen::VectorXd bodies(index(splits.size()));
+  linalg::Vector bodies(index(splits.size()));
   all.bodies(std::array<const double*, 1>{w.data()}, std::array<double*, 1>{bodies.data()});
   for (std::size_t i = 0; i < splits.size(); ++i) {
     const double body = bodies[index(i)];

@@ -33,7 +33,7 @@ class Problem final : public mpcc::Problem {
                mpcc::VectorView values) override;
   [[nodiscard]] const mpcc::Pattern& jacobian_pattern() const override;
   [[nodiscard]] const mpcc::Pattern& hessian_pattern() const override;
-  [[nodiscard]] Eigen::VectorXd start() const override;
+  [[nodiscard]] linalg::Vector start() const override;
   [[nodiscard]] std::string name(int variable) const override;
   [[nodiscard]] std::string row_name(int row) const override;
 
@@ -43,7 +43,7 @@ class Problem final : public mpcc::Problem {
   /// Returns an objective in the file's own sense: a file may maximise, `objective` is always minimised.
   [[nodiscard]] double in_sense_of_file(double objective) const;
   /// Returns all variables from those of the file, moved onto their bounds.
-  [[nodiscard]] Eigen::VectorXd complete(mpcc::ConstVectorView x) const;
+  [[nodiscard]] linalg::Vector complete(mpcc::ConstVectorView x) const;
   /// Returns what a person should know of how the file was read.
   [[nodiscard]] const std::vector<std::string>& notes() const;
 

@@ -26,7 +26,7 @@ struct Row {
   ReformulationOptions options;
 };
 
-const Row rows[] = {
+const Row forms_of_sizes[] = {
     {"step", {.reformulation = Form::step, .lifting = std::nullopt}},
     {"step, lifted", {}},
     {"stewart", {.reformulation = Form::stewart}},
@@ -77,13 +77,13 @@ struct FormSizes {
 /// a form of its own where it adds variables.
 std::vector<FormSizes> sizes_by_form(const model::System& system) {
   std::vector<ReformulationOptions> options;
-  for (const Row& row : rows) options.push_back(row.options);
+  for (const Row& row : forms_of_sizes) options.push_back(row.options);
   auto all = reformulation::sizes_of_all(of_elements(system), options);
   std::vector<FormSizes> forms;
-  for (const Row& row : rows) {
-    auto& sizes = all[static_cast<std::size_t>(&row - rows)];
+  for (const Row& row : forms_of_sizes) {
+    auto& sizes = all[static_cast<std::size_t>(&row - forms_of_sizes)];
     if (sizes && sizes->groups.empty()) return {};
-    if (sizes && &row == &rows[1] && sizes->total.beta == 0) continue;
+    if (sizes && &row == &forms_of_sizes[1] && sizes->total.beta == 0) continue;
     forms.push_back({row.title, std::move(sizes)});
   }
   return forms;

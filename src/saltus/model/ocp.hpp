@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/description.hpp"
 #include "saltus/model/ocp_description.hpp"
 #include "saltus/model/system.hpp"
@@ -31,8 +30,8 @@ struct OcpConstraint {
 struct OcpLeastSquares {
   std::vector<int> of;
   std::vector<int> reference;  ///< outputs of t and p; empty: 0, or samples
-  Eigen::MatrixXd samples;     ///< one row per interval; 0 x 0 without
-  Eigen::MatrixXd weight;      ///< symmetric
+  linalg::Matrix samples;      ///< one row per interval; 0 x 0 without
+  linalg::Matrix weight;       ///< symmetric
   CostPoints at = CostPoints::intervals;
 };
 

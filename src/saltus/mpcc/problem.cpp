@@ -4,9 +4,9 @@
 
 namespace saltus::mpcc {
 
-Eigen::VectorXd Problem::start() const {
+linalg::Vector Problem::start() const {
   const Bounds& bounds = variable_bounds();
-  return Eigen::VectorXd::Zero(variables()).cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+  return linalg::Vector::zero(variables()).at_least(bounds.lower).at_most(bounds.upper);
 }
 
 std::string Problem::name(int variable) const { return fmt::format("w[{}]", variable); }

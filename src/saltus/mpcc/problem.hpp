@@ -5,14 +5,14 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/mpcc/chain.hpp"
 
 namespace saltus::mpcc {
 
-using ConstVectorView = Eigen::Ref<const Eigen::VectorXd>;
-using VectorView = Eigen::Ref<Eigen::VectorXd>;
+// Vectors: one column, entries one behind the other.
+using ConstVectorView = linalg::ConstView;
+using VectorView = linalg::View;
 
 /// Holds places of the entries of a sparse matrix; entries of the same place add up.
 struct Pattern {
@@ -28,8 +28,8 @@ struct Pattern {
 
 /// Holds lower <= . <= upper, componentwise; -inf and +inf where there is no bound.
 struct Bounds {
-  Eigen::VectorXd lower;
-  Eigen::VectorXd upper;
+  linalg::Vector lower;
+  linalg::Vector upper;
 };
 
 /// Says whether one side of a pair is known to be nonnegative.
@@ -67,7 +67,7 @@ struct BranchClosure {
 /// Holds another choice of sides, and where to begin to solve it.
 struct BranchMove {
   std::vector<ActiveSide> sides;
-  Eigen::VectorXd start;
+  linalg::Vector start;
   std::vector<int> appearing{};  ///< variables that may not come back to 0 before the branch is known to be better
   bool is_elsewhere = false;     ///< not the same point: it may be far from the solution of its branch
 };
@@ -107,7 +107,7 @@ class Problem {
   [[nodiscard]] virtual const Pattern& hessian_pattern() const = 0;
 
   /// Returns where to begin, n_w; by default 0, moved onto the bounds.
-  [[nodiscard]] virtual Eigen::VectorXd start() const;
+  [[nodiscard]] virtual linalg::Vector start() const;
   [[nodiscard]] virtual std::string name(int variable) const;  ///< by default "w[3]"
   /// Returns the name of a row of (g, G, H); by default "g[0]", "G[5]", "H[5]".
   [[nodiscard]] virtual std::string row_name(int row) const;

@@ -13,7 +13,7 @@ void raise(double& largest, double value) {
 }
 
 void raise_by_violation(double& largest, ConstVectorView values, const Bounds& bounds) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
+  for (linalg::Index i = 0; i < values.size(); ++i) {
     // NaN compares false with everything: it has to reach `raise`.
     raise(largest, values[i] - bounds.upper[i]);
     raise(largest, bounds.lower[i] - values[i]);
@@ -29,7 +29,7 @@ double Residuals::infeasibility() const {
 }
 
 Residuals residuals(Problem& problem, ConstVectorView w) {
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
   const int n_g = problem.constraints();
   const int pairs = problem.pairs();
@@ -48,7 +48,7 @@ Residuals residuals(Problem& problem, ConstVectorView w) {
 }
 
 std::vector<ActiveSide> active_sides(Problem& problem, ConstVectorView w, double tolerance) {
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
   const int n_g = problem.constraints();
   const int pairs = problem.pairs();

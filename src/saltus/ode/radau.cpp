@@ -5,9 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/ode/explicit/nested_form_internal.hpp"
 #include "saltus/ode/radau_internal.hpp"
 #include "saltus/ode/radau_iteration_internal.hpp"
@@ -45,11 +44,11 @@ Attempt RadauSteps<Tableau>::attempt(const RadauTrial& trial, double* x_new, dou
   h_ = trial.h;
   converged_ = solve(trial) == Outcome::converged;
   if (!converged_) return Attempt::undefined;
-  for (Eigen::Index i = 0; i < n_; ++i) x_new[i] = trial.x[i] + z_(i, last);
+  for (linalg::Index i = 0; i < n_; ++i) x_new[i] = trial.x[i] + z_(i, last);
   converged_ = all_finite(x_new, static_cast<std::size_t>(n_));
   if (!converged_) return Attempt::undefined;
   error_norm_ = estimate(trial, x_new);
-  work_.argument = Eigen::Map<const Vector>(x_new, n_);
+  work_.argument = linalg::ConstView(x_new, n_);
   return evaluate(trial, trial.t + trial.h, work_.argument, slope_new) ? Attempt::finite : Attempt::undefined;
 }
 
@@ -71,7 +70,7 @@ void RadauSteps<Tableau>::begin(const RadauTrial& trial) {
   if (failures_ < most_failures) failures_ = 0;
   started_ = true;
   t_ = trial.t;
-  start_ = Eigen::Map<const Vector>(trial.x, n_);
+  start_ = linalg::ConstView(trial.x, n_);
 }
 
 template <class Tableau>
@@ -84,21 +83,21 @@ auto RadauSteps<Tableau>::solve(const RadauTrial& trial) -> Outcome {
     // What came from earlier steps did not help: once more without it.
     if (!jacobian_here_ && !differentiate(trial)) return Outcome::undefined;
     if (!factorize(trial.h)) return Outcome::undefined;
-    z_.setZero();
-    w_.setZero();
+    z_.set_zero();
+    w_.set_zero();
     outcome = iterate(trial);
   }
   if (outcome == Outcome::failed && trial.jacobian != nullptr && ++failures_ == most_failures) {
     // Differences see nothing of what changes within the rounding of a state.
     if (!differentiate(trial) || !factorize(trial.h)) return Outcome::undefined;
-    z_.setZero();
-    w_.setZero();
+    z_.set_zero();
+    w_.set_zero();
     outcome = iterate(trial);
   }
   if (outcome == Outcome::converged) return outcome;
   // The domain of f may move with t, or what it is steep in, and a state that stays behind be outside of it.
-  for (Eigen::Index j = 0; j <= last; ++j) {
-    z_.col(j) = Tableau::c[at(j)] * trial.h * Eigen::Map<const Vector>(trial.slope, n_);
+  for (linalg::Index j = 0; j <= last; ++j) {
+    for (linalg::Index i = 0; i < n_; ++i) z_(i, j) = Tableau::c[at(j)] * trial.h * trial.slope[i];
   }
   transform_start();
   return iterate(trial);
@@ -108,29 +107,35 @@ auto RadauSteps<Tableau>::solve(const RadauTrial& trial) -> Outcome {
 template <class Tableau>
 void RadauSteps<Tableau>::start_values(double h) {
   if (!previous_.known) {
-    z_.setZero();
-    w_.setZero();
+    z_.set_zero();
+    w_.set_zero();
     return;
   }
-  const Eigen::Map<const Matrix> p(previous_.polynomial.data(), n_, last + 1);
-  for (Eigen::Index j = 0; j <= last; ++j) {
+  const linalg::ConstView p(previous_.polynomial.data(), n_, last + 1);
+  for (linalg::Index j = 0; j <= last; ++j) {
     const double beyond = Tableau::c[at(j)] * (h / previous_.h);
     // The nested form from its end: x(t + h) - r (p1 - s (p2 + s (p3 + r (p4 + s (p5 + ...))))), r = -beyond.
     const double s = 1.0 + beyond;
-    auto column = z_.col(j);
+    linalg::View column = z_.col(j);
     column = p.col(last);
-    for (Eigen::Index k = last - 1; k >= 1; --k) column = p.col(k) + (k % 2 == 1 ? s : -beyond) * column;
-    column = beyond * (p.col(0) - s * column);
+    for (linalg::Index k = last - 1; k >= 1; --k) {
+      column *= k % 2 == 1 ? s : -beyond;
+      column += p.col(k);
+    }
+    column *= -s;
+    column += p.col(0);
+    column *= beyond;
   }
   transform_start();
 }
 
 template <class Tableau>
 void RadauSteps<Tableau>::transform_start() {
-  for (Eigen::Index j = 0; j <= last; ++j) {
+  for (linalg::Index j = 0; j <= last; ++j) {
     const auto& row = Tableau::t_inverse[at(j)];
-    w_.col(j) = row[0] * z_.col(0);
-    for (Eigen::Index k = 1; k <= last; ++k) w_.col(j) += row[at(k)] * z_.col(k);
+    linalg::View column = w_.col(j);
+    column.set_zero();
+    for (linalg::Index k = 0; k <= last; ++k) column.add_scaled(row[at(k)], z_.col(k));
   }
 }
 
@@ -151,14 +156,14 @@ bool RadauSteps<Tableau>::factorize(double h) {
 template <class Tableau>
 double RadauSteps<Tableau>::estimate(const RadauTrial& trial, const double* x_new) {
   const auto& e = Tableau::error;
-  for (Eigen::Index i = 0; i < n_; ++i) {
+  for (linalg::Index i = 0; i < n_; ++i) {
     double sum = e[0] * z_(i, 0);
-    for (std::size_t j = 1; j < stages; ++j) sum += e[j] * z_(i, static_cast<Eigen::Index>(j));
+    for (std::size_t j = 1; j < stages; ++j) sum += e[j] * z_(i, static_cast<linalg::Index>(j));
     work_.right[i] = trial.slope[i] + sum / trial.h;
   }
   systems_.solve(work_.right, work_.solution);
   double largest = 0.0;
-  for (Eigen::Index i = 0; i < n_; ++i) {
+  for (linalg::Index i = 0; i < n_; ++i) {
     const double ratio = std::abs(work_.solution[i]) / error_scale(trial.tolerances, trial.x[i], x_new[i]);
     if (std::isnan(ratio)) return std::numeric_limits<double>::infinity();
     largest = std::max(largest, ratio);
@@ -181,23 +186,25 @@ template <class Tableau>
 void RadauSteps<Tableau>::dense(double* coefficients) const {
   constexpr auto& c = Tableau::c;
   constexpr std::size_t inner = stages - 1;
-  struct Differences {
-    Eigen::Map<Matrix> p;
-    auto operator[](std::size_t k) { return p.col(static_cast<Eigen::Index>(k + 1)); }
+  struct Differences {  ///< of one state: the coefficients behind the first one
+    double* p;
+    std::size_t n;
+    double& operator[](std::size_t k) { return p[(k + 1) * n]; }
   };
-  Differences d{{coefficients, n_, last + 1}};
-  d.p.col(0) = z_.col(last);
-  for (std::size_t k = 0; k < inner; ++k) {
-    d[k] = (z_.col(static_cast<Eigen::Index>(k)) / c[k] - z_.col(last)) / (1.0 - c[k]);
-  }
-  for (std::size_t distance = 1; distance < inner; ++distance) {
-    for (std::size_t k = inner - 1; k >= distance; --k) d[k] = (d[k] - d[k - 1]) / (c[k] - c[k - distance]);
-  }
-  std::array<double, inner - 1> nodes;
-  std::copy_n(c.begin(), inner - 1, nodes.begin());
-  for (std::size_t next = inner - 1; next-- > 0;) begin_with_node(next % 2 == 0 ? 0.0 : 1.0, d, nodes);
-  for (std::size_t k = 0; k < inner; ++k) {
-    if (sign_of_nested(k) < 0.0) d[k] = -d[k];
+  const auto n = static_cast<std::size_t>(n_);
+  for (linalg::Index i = 0; i < n_; ++i) {
+    Differences d{coefficients + i, n};
+    coefficients[i] = z_(i, last);
+    for (std::size_t k = 0; k < inner; ++k) d[k] = (z_(i, index(k)) / c[k] - z_(i, last)) / (1.0 - c[k]);
+    for (std::size_t distance = 1; distance < inner; ++distance) {
+      for (std::size_t k = inner - 1; k >= distance; --k) d[k] = (d[k] - d[k - 1]) / (c[k] - c[k - distance]);
+    }
+    std::array<double, inner - 1> nodes;
+    std::copy_n(c.begin(), inner - 1, nodes.begin());
+    for (std::size_t next = inner - 1; next-- > 0;) begin_with_node(next % 2 == 0 ? 0.0 : 1.0, d, nodes);
+    for (std::size_t k = 0; k < inner; ++k) {
+      if (sign_of_nested(k) < 0.0) d[k] = -d[k];
+    }
   }
 }
 

@@ -58,8 +58,9 @@ auto RadauSteps<Tableau>::iterate(const RadauTrial& trial) -> Outcome {
 
 template <class Tableau>
 bool RadauSteps<Tableau>::stage_slopes(const RadauTrial& trial) {
-  for (Eigen::Index j = 0; j <= last; ++j) {
-    work_.argument = start_ + z_.col(j);
+  for (linalg::Index j = 0; j <= last; ++j) {
+    work_.argument = start_;
+    work_.argument += z_.col(j);
     const double t = trial.t + Tableau::c[at(j)] * trial.h;
     if (!evaluate(trial, t, work_.argument, slopes_.col(j).data())) return false;
   }
@@ -69,18 +70,18 @@ bool RadauSteps<Tableau>::stage_slopes(const RadauTrial& trial) {
 /// Solves for the corrections of the transformed increments (IV.8.4).
 template <class Tableau>
 void RadauSteps<Tableau>::solve_systems(double h) {
-  const auto mixed = [&](std::size_t row, Eigen::Index i) {
+  const auto mixed = [&](std::size_t row, linalg::Index i) {
     const auto& weights = Tableau::t_inverse[row];
     double sum = weights[0] * slopes_(i, 0);
-    for (std::size_t j = 1; j < stages; ++j) sum += weights[j] * slopes_(i, static_cast<Eigen::Index>(j));
+    for (std::size_t j = 1; j < stages; ++j) sum += weights[j] * slopes_(i, static_cast<linalg::Index>(j));
     return sum;
   };
   auto& right = work_.all_right;
-  for (Eigen::Index i = 0; i < n_; ++i) right(i, 0) = mixed(0, i) - Tableau::gamma / h * w_(i, 0);
+  for (linalg::Index i = 0; i < n_; ++i) right(i, 0) = mixed(0, i) - Tableau::gamma / h * w_(i, 0);
   for (std::size_t k = 0; k < stages / 2; ++k) {
     const auto [alpha, beta] = Tableau::pairs[k];
-    const auto real = static_cast<Eigen::Index>(2 * k + 1);
-    for (Eigen::Index i = 0; i < n_; ++i) {
+    const auto real = static_cast<linalg::Index>(2 * k + 1);
+    for (linalg::Index i = 0; i < n_; ++i) {
       const double u = w_(i, real);
       const double v = w_(i, real + 1);
       right(i, real) = mixed(2 * k + 1, i) - (alpha * u - beta * v) / h;
@@ -98,13 +99,13 @@ double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
   const double floor = natural_size(trial.tolerances);
   double largest = 0.0;
   next_ = 0.0;
-  for (Eigen::Index i = 0; i < n_; ++i) {
+  for (linalg::Index i = 0; i < n_; ++i) {
     double change = 0.0;
     double size = std::abs(start_[i]) + floor;
-    for (Eigen::Index j = 0; j <= last; ++j) {
+    for (linalg::Index j = 0; j <= last; ++j) {
       const auto& row = Tableau::t[at(j)];
       double dz = row[0] * corrections_(i, 0);
-      for (std::size_t k = 1; k < stages; ++k) dz += row[k] * corrections_(i, static_cast<Eigen::Index>(k));
+      for (std::size_t k = 1; k < stages; ++k) dz += row[k] * corrections_(i, static_cast<linalg::Index>(k));
       w_(i, j) += corrections_(i, j);
       z_(i, j) += dz;
       change = std::max(change, std::abs(dz));
@@ -132,14 +133,14 @@ bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
 /// not left.
 template <class Tableau>
 bool RadauSteps<Tableau>::take_differences(const RadauTrial& trial) {
-  largest_ = start_.cwiseAbs().maxCoeff();
+  largest_ = start_.max_abs();
   const auto either_way = [&](const std::vector<std::size_t>& columns) {
     return difference(trial, columns, +1.0) || difference(trial, columns, -1.0);
   };
   for (const auto& columns : systems_.groups()) {
     if (!either_way(columns)) return false;
   }
-  for (Eigen::Index j = 0; !systems_.is_sparse() && j < n_; ++j) {
+  for (linalg::Index j = 0; !systems_.is_sparse() && j < n_; ++j) {
     one_column_.front() = static_cast<std::size_t>(j);
     if (!either_way(one_column_)) return false;
   }
@@ -147,7 +148,7 @@ bool RadauSteps<Tableau>::take_differences(const RadauTrial& trial) {
 }
 
 template <class Tableau>
-double RadauSteps<Tableau>::increment(const RadauTrial& trial, Eigen::Index column, double largest) const {
+double RadauSteps<Tableau>::increment(const RadauTrial& trial, linalg::Index column, double largest) const {
   const auto& tolerances = trial.tolerances;
   const double natural = half_digits * natural_size(tolerances);
   const double floor = tolerances.rtol > 0.0 ? std::min(tolerances.atol, natural) : tolerances.atol;
@@ -163,14 +164,14 @@ bool RadauSteps<Tableau>::difference(const RadauTrial& trial, const std::vector<
                                      double direction) {
   work_.argument = start_;
   for (const std::size_t column : columns) {
-    const auto j = static_cast<Eigen::Index>(column);
+    const auto j = static_cast<linalg::Index>(column);
     work_.argument[j] += direction * increment(trial, j, largest_);
   }
   if (!evaluate(trial, trial.t, work_.argument, work_.difference_slope.data())) return false;
-  work_.difference_slope -= Eigen::Map<const Vector>(trial.slope, n_);
+  work_.difference_slope -= linalg::ConstView(trial.slope, n_);
   bool finite = true;
   for (const std::size_t column : columns) {
-    const auto j = static_cast<Eigen::Index>(column);
+    const auto j = static_cast<linalg::Index>(column);
     finite = systems_.set_column(j, work_.difference_slope, work_.argument[j] - start_[j]) && finite;
   }
   return finite;

@@ -7,9 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/ode/radau_internal.hpp"
 #include "saltus/ode/sparse/radau_systems_internal.hpp"
 
@@ -35,10 +34,10 @@ class RadauSteps final : public Radau {
 
  private:
   enum class Outcome { converged, failed, undefined };
-  using Matrix = Eigen::MatrixXd;
-  using Vector = Eigen::VectorXd;
+  using Matrix = linalg::Matrix;
+  using Vector = linalg::Vector;
   static constexpr std::size_t stages = Tableau::stages;
-  static constexpr auto last = static_cast<Eigen::Index>(stages) - 1;
+  static constexpr auto last = static_cast<linalg::Index>(stages) - 1;
 
   void begin(const RadauTrial& trial);
   Outcome solve(const RadauTrial& trial);
@@ -51,12 +50,12 @@ class RadauSteps final : public Radau {
   double correct(const RadauTrial& trial);
   bool differentiate(const RadauTrial& trial);
   bool take_differences(const RadauTrial& trial);
-  [[nodiscard]] double increment(const RadauTrial& trial, Eigen::Index column, double largest) const;
+  [[nodiscard]] double increment(const RadauTrial& trial, linalg::Index column, double largest) const;
   bool difference(const RadauTrial& trial, const std::vector<std::size_t>& columns, double direction);
   double estimate(const RadauTrial& trial, const double* x_new);
   bool evaluate(const RadauTrial& trial, double t, const Vector& x, double* slope);
 
-  Eigen::Index n_;
+  linalg::Index n_;
   long* evaluations_ = nullptr;
   double error_norm_ = 0.0;
 
@@ -93,7 +92,7 @@ class RadauSteps final : public Radau {
   Matrix z_, w_, slopes_;  ///< n x stages: increments, transformed increments, f at the stages
   Matrix corrections_;     ///< of w_
   struct Work {
-    explicit Work(Eigen::Index n)
+    explicit Work(linalg::Index n)
         : argument(n), difference_slope(n), right(n), solution(n), changes(n), all_right(n, last + 1) {}
     Vector argument, difference_slope, right, solution;
     Vector changes;  ///< of the last correction, relative to sizes

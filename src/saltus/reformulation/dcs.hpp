@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
 #include <casadi/core/sx.hpp>
 
 #include "saltus/base/error.hpp"
+#include "saltus/linalg/int_matrix.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/reformulation/reformulation_options.hpp"
 
@@ -24,7 +24,7 @@ struct DcsPart {
   /// Stewart: rows regions, columns `surfaces`, entries -1 and 1. Every pattern is a region of its own: with zeros in
   /// S, g = -S psi would compare sums of different lengths. The smallest g would not have to be that of the region x is
   /// in.
-  Eigen::MatrixXi signs{};
+  linalg::IntMatrix signs{};
   int mode_group = -1;  ///< Stewart, indicators of the user: index into System::mode_groups
 };
 

@@ -187,12 +187,13 @@ GroupRegions regions_of(const FieldGroup& group, const Unnested& unnested, const
   std::vector<int> signs;
   walk.descend(column(sum), signs);
   GroupRegions result;
-  result.signs.resize(static_cast<Eigen::Index>(walk.rows.size()), static_cast<Eigen::Index>(group.surfaces.size()));
+  result.signs = linalg::IntMatrix(static_cast<linalg::Index>(walk.rows.size()),
+                                   static_cast<linalg::Index>(group.surfaces.size()));
   const auto keys = signatures(walk.fields, unnested, system);
   std::map<std::vector<std::uint64_t>, int> known;
   for (std::size_t i = 0; i < walk.rows.size(); ++i) {
     for (std::size_t j = 0; j < group.surfaces.size(); ++j) {
-      result.signs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = walk.rows[i][j];
+      result.signs(static_cast<linalg::Index>(i), static_cast<linalg::Index>(j)) = walk.rows[i][j];
     }
     const auto [place, is_new] = known.try_emplace(keys[i], static_cast<int>(result.fields.size()));
     if (is_new) result.fields.push_back(walk.fields[i]);

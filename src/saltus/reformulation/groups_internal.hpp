@@ -3,8 +3,7 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/int_matrix.hpp"
 #include "saltus/reformulation/unnesting_internal.hpp"
 
 namespace saltus::reformulation {
@@ -38,7 +37,7 @@ inline constexpr int most_surfaces = 10;
 /// Holds the regions a group's part of f tells apart: rows of a sign matrix, 0 where a switching function does not
 /// matter, and the number of the field in each. Rows with the same field are a union.
 struct GroupRegions {
-  Eigen::MatrixXi signs;      ///< columns: the group's surfaces
+  linalg::IntMatrix signs;    ///< columns: the group's surfaces
   std::vector<int> field_of;  ///< per row: index into fields
   std::vector<SX> fields;     ///< n_x each
 };

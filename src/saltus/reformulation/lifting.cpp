@@ -17,7 +17,7 @@ std::vector<std::pair<int, bool>> key_of(const LiftedProduct& product) {
   return key;
 }
 
-int last_nonzero(const Eigen::MatrixXi& signs, Eigen::Index row) {
+int last_nonzero(const linalg::IntMatrix& signs, linalg::Index row) {
   int last = -1;
   for (int j = 0; j < static_cast<int>(signs.cols()); ++j) {
     if (signs(row, j) != 0) last = j;
@@ -27,13 +27,13 @@ int last_nonzero(const Eigen::MatrixXi& signs, Eigen::Index row) {
 
 }  // namespace
 
-Lifting lift(const Eigen::MatrixXi& signs, int most_factors) {
+Lifting lift(const linalg::IntMatrix& signs, int most_factors) {
   SALTUS_ASSERT(most_factors >= 2);
   Lifting lifting;
   lifting.theta.resize(static_cast<std::size_t>(signs.rows()));
   for (int j = 0; j < static_cast<int>(signs.cols()); ++j) {
     std::map<std::vector<std::pair<int, bool>>, int> known;
-    for (Eigen::Index i = 0; i < signs.rows(); ++i) {
+    for (linalg::Index i = 0; i < signs.rows(); ++i) {
       LiftedProduct& product = lifting.theta[at(i)];
       if (signs(i, j) != 0) product.factors.push_back({j, signs(i, j) < 0});
       const std::size_t size = product.factors.size() + (product.beta >= 0 ? 1 : 0);
@@ -46,6 +46,6 @@ Lifting lift(const Eigen::MatrixXi& signs, int most_factors) {
   return lifting;
 }
 
-Lifting without_lifting(const Eigen::MatrixXi& signs) { return lift(signs, std::numeric_limits<int>::max()); }
+Lifting without_lifting(const linalg::IntMatrix& signs) { return lift(signs, std::numeric_limits<int>::max()); }
 
 }  // namespace saltus::reformulation

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/int_matrix.hpp"
 
 namespace saltus::reformulation {
 
@@ -38,9 +38,9 @@ struct Lifting {
 /// @param signs         rows of -1, 0, 1, one per region
 /// @param most_factors  n_d >= 2
 /// Cost: rows times columns times the logarithm of the rows.
-[[nodiscard]] Lifting lift(const Eigen::MatrixXi& signs, int most_factors);
+[[nodiscard]] Lifting lift(const linalg::IntMatrix& signs, int most_factors);
 
 /// Returns theta without lifting: all factors in one product.
-[[nodiscard]] Lifting without_lifting(const Eigen::MatrixXi& signs);
+[[nodiscard]] Lifting without_lifting(const linalg::IntMatrix& signs);
 
 }  // namespace saltus::reformulation

@@ -74,7 +74,7 @@ class StewartForm {
                  .first = static_cast<int>(collected_.selection.size()),
                  .count = rows,
                  .surfaces = group.surfaces};
-    part.signs.resize(rows, n);
+    part.signs = linalg::IntMatrix(rows, n);
     std::vector<SXElem> theta;
     for (const int surface : group.surfaces) alpha_[at(surface)] = 0.0;
     for (int i = 0; i < rows; ++i) {

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Dense>
-#include <Eigen/SparseCore>
 #include <casadi/core/function.hpp>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/components.hpp"
+#include "saltus/linalg/sparse.hpp"
+#include "saltus/linalg/spectra.hpp"
 #include "saltus/reformulation/expressions_internal.hpp"
 
 namespace saltus::reformulation {
@@ -22,12 +22,22 @@ constexpr double rank_tolerance = 1e-8;
 /// A surface is met by a solution that slides where its psi is 0 to the accuracy of the states.
 constexpr double zero_tolerance = 1e-6;
 
-using Sparse = Eigen::SparseMatrix<double, Eigen::ColMajor, casadi_int>;
+using Sparse = linalg::SparseColumns;
 
 /// Cost: grows with the entries that are not structurally 0.
 Sparse matrix(const DM& values) {
-  return Eigen::Map<const Sparse>(values.size1(), values.size2(), values.nnz(), values.colind(), values.row(),
-                                  values.ptr());
+  std::vector<linalg::Triplet> entries;
+  for (casadi_int j = 0; j < values.size2(); ++j) {
+    for (casadi_int k = values.colind()[j]; k < values.colind()[j + 1]; ++k) {
+      entries.push_back({values.row()[k], j, values.ptr()[k]});
+    }
+  }
+  return {values.size1(), values.size2(), entries};
+}
+
+double norm_of_column(const Sparse& matrix, linalg::Index column) {
+  const auto first = at(matrix.start()[at(column)]), last = at(matrix.start()[at(column) + 1]);
+  return linalg::ConstView(matrix.values().subspan(first, last - first)).norm();
 }
 
 /// f with the lifted variables put in.
@@ -106,13 +116,12 @@ std::vector<double> WellPosedness::Parts::held_at(const SolutionPoint& point) co
 SurfaceStates WellPosedness::Parts::sides_at(const SolutionPoint& point, const std::vector<double>& held) const {
   const auto values = surfaces(std::vector<DM>{point.t, point.x, point.u, parameters, held});
   const auto psi = std::vector<double>(DM::densify(values[0]));
-  const Sparse transposed = matrix(values[1]).transpose();
-  const double size =
-      Eigen::Map<const Eigen::VectorXd>(point.x.data(), static_cast<Eigen::Index>(point.x.size())).norm();
+  const Sparse transposed = matrix(values[1]).transposed();
+  const double size = linalg::ConstView(point.x).norm();
   SurfaceStates sides;
   for (std::size_t j = 0; j < psi.size(); ++j) {
     const Surface& surface = dcs.surfaces[j];
-    const double steepness = transposed.col(static_cast<Eigen::Index>(j)).norm();
+    const double steepness = norm_of_column(transposed, index(j));
     const bool is_zero = std::abs(psi[j]) <= zero_tolerance * steepness * (1.0 + size);
     const bool slides = surface.function >= 0 && point.mode[at(surface.function)] == 0 && is_zero;
     sides.alpha.push_back(slides ? point.alpha[at(surface.function)] : psi[j] > 0.0 ? 1.0 : 0.0);
@@ -131,12 +140,12 @@ struct Unknowns {
 };
 
 /// 1 / length of each column, by the longest of its block; 1 where all of a block is 0.
-Eigen::VectorXd scales(const Sparse& columns, const std::vector<Eigen::Index>& block_of, Eigen::Index blocks) {
-  Eigen::VectorXd longest = Eigen::VectorXd::Zero(blocks), scale = Eigen::VectorXd::Ones(columns.cols());
-  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-    longest(block_of[at(i)]) = std::max(longest(block_of[at(i)]), columns.col(i).norm());
+linalg::Vector scales(const Sparse& columns, const std::vector<linalg::Index>& block_of, linalg::Index blocks) {
+  linalg::Vector longest = linalg::Vector::zero(blocks), scale = linalg::Vector::ones(columns.cols());
+  for (linalg::Index i = 0; i < columns.cols(); ++i) {
+    longest(block_of[at(i)]) = std::max(longest(block_of[at(i)]), norm_of_column(columns, i));
   }
-  for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+  for (linalg::Index i = 0; i < columns.cols(); ++i) {
     if (longest(block_of[at(i)]) > 0.0) scale(i) = 1.0 / longest(block_of[at(i)]);
   }
   return scale;
@@ -145,55 +154,53 @@ Eigen::VectorXd scales(const Sparse& columns, const std::vector<Eigen::Index>& b
 /// Gradients and fields divided by their lengths (those of a simplex by the longest), so that the entries are cosines;
 /// what is 0 stays 0.
 Sparse system_of(const Unknowns& unknowns, const Sparse& indicator_x, const Sparse& f_selection) {
-  const auto n = static_cast<Eigen::Index>(unknowns.selections.size());
-  const Eigen::Index size = n + unknowns.simplexes;
-  std::vector<Eigen::Index> block_of;
-  std::vector<Eigen::Triplet<double>> entries;
-  Sparse chosen(f_selection.cols(), n);
-  for (Eigen::Index i = 0; i < n; ++i) {
+  const auto n = static_cast<linalg::Index>(unknowns.selections.size());
+  const linalg::Index size = n + unknowns.simplexes;
+  std::vector<linalg::Index> block_of;
+  std::vector<linalg::Triplet> entries, chosen_entries;
+  for (linalg::Index i = 0; i < n; ++i) {
     const int simplex = unknowns.simplex_of[at(i)];
     block_of.push_back(simplex < 0 ? i : n + simplex);
-    chosen.insert(unknowns.selections[at(i)], i) = 1.0;
+    chosen_entries.push_back({unknowns.selections[at(i)], i, 1.0});
     if (simplex < 0) continue;
-    entries.emplace_back(i, n + simplex, 1.0);
-    entries.emplace_back(n + simplex, i, 1.0);
+    entries.push_back({i, n + simplex, 1.0});
+    entries.push_back({n + simplex, i, 1.0});
   }
-  const Sparse gradients = Sparse(indicator_x.transpose()) * chosen, fields = f_selection * chosen;
-  const Eigen::VectorXd rows = scales(gradients, block_of, size), columns = scales(fields, block_of, size);
-  const Sparse product = Sparse(gradients.transpose()) * fields;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Sparse::InnerIterator entry(product, j); entry; ++entry) {
-      entries.emplace_back(entry.row(), j, entry.value() * rows(entry.row()) * columns(j));
+  const Sparse chosen(f_selection.cols(), n, chosen_entries);
+  const Sparse gradients = indicator_x.transposed() * chosen, fields = f_selection * chosen;
+  const linalg::Vector rows = scales(gradients, block_of, size), columns = scales(fields, block_of, size);
+  const Sparse product = gradients.transposed() * fields;
+  for (linalg::Index j = 0; j < n; ++j) {
+    for (const auto [row, value] : product.along(j)) {
+      entries.push_back({row, j, value * rows(row) * columns(j)});
     }
   }
-  Sparse result(size, size);
-  result.setFromTriplets(entries.begin(), entries.end());
-  return result;
+  return {size, size, entries};
 }
 
 /// The singular values of a square matrix, by its blocks: a block has the unknowns that some equation joins.
 std::vector<double> singular_values(const Sparse& system) {
   Components components(static_cast<std::size_t>(system.cols()));
-  for (Eigen::Index j = 0; j < system.cols(); ++j) {
-    for (Sparse::InnerIterator entry(system, j); entry; ++entry) {
-      if (entry.value() != 0.0) components.join(static_cast<std::size_t>(entry.row()), static_cast<std::size_t>(j));
+  for (linalg::Index j = 0; j < system.cols(); ++j) {
+    for (const auto [row, value] : system.along(j)) {
+      if (value != 0.0) components.join(at(row), at(j));
     }
   }
   const auto blocks = components.lists();
-  std::vector<Eigen::Index> place(static_cast<std::size_t>(system.cols()));
+  std::vector<linalg::Index> place(static_cast<std::size_t>(system.cols()));
   for (const auto& block : blocks) {
-    for (std::size_t k = 0; k < block.size(); ++k) place[block[k]] = static_cast<Eigen::Index>(k);
+    for (std::size_t k = 0; k < block.size(); ++k) place[block[k]] = static_cast<linalg::Index>(k);
   }
   std::vector<double> found;
   for (const auto& block : blocks) {
-    const auto n = static_cast<Eigen::Index>(block.size());
-    Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(n, n);
+    const auto n = static_cast<linalg::Index>(block.size());
+    linalg::Matrix dense = linalg::Matrix::zero(n, n);
     for (const std::size_t j : block) {
-      for (Sparse::InnerIterator entry(system, static_cast<Eigen::Index>(j)); entry; ++entry) {
-        if (entry.value() != 0.0) dense(place[at(entry.row())], place[j]) = entry.value();
+      for (const auto [row, value] : system.along(index(j))) {
+        if (value != 0.0) dense(place[at(row)], place[j]) = value;
       }
     }
-    const Eigen::VectorXd values = Eigen::JacobiSVD<Eigen::MatrixXd>(dense).singularValues();
+    const linalg::Vector values = linalg::singular_values(dense).values;
     found.insert(found.end(), values.begin(), values.end());
   }
   return found;
@@ -220,7 +227,7 @@ std::vector<int> WellPosedness::Parts::undetermined(const DcsPart& part, const S
       for (std::size_t j = 0; j < part.surfaces.size(); ++j) {
         const int surface = part.surfaces[j];
         const double alpha = sides.alpha[at(surface)];
-        const double factor = part.signs(i, static_cast<Eigen::Index>(j)) > 0 ? alpha : 1.0 - alpha;
+        const double factor = part.signs(i, static_cast<linalg::Index>(j)) > 0 ? alpha : 1.0 - alpha;
         value *= factor;
         is_active = is_active && (sides.slides[at(surface)] || factor == 1.0);
       }
@@ -255,7 +262,7 @@ ActiveSetRank WellPosedness::rank_at(const SolutionPoint& point) const {
   if (result.unknowns == 0) return result;
   const auto gradients = p.gradients(std::vector<DM>{point.t, point.x, point.u, p.parameters, held, selection});
   const Sparse system = system_of(unknowns, matrix(gradients[0]), matrix(gradients[1]));
-  if (!Eigen::Map<const Eigen::VectorXd>(system.valuePtr(), system.nonZeros()).allFinite()) {
+  if (!system.all_finite()) {
     result.smallest_singular_value = std::numeric_limits<double>::quiet_NaN();
     return result;
   }

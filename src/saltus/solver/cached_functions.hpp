@@ -13,13 +13,13 @@ class CachedFunctions {
       : problem_(&problem), c_(problem.rows()), jacobian_(problem.jacobian_pattern().entries()) {}
 
   /// Returns what is valid until the next call.
-  [[nodiscard]] const Eigen::VectorXd& functions(mpcc::ConstVectorView w) {
+  [[nodiscard]] const linalg::Vector& functions(mpcc::ConstVectorView w) {
     move_to(w);
     if (!has_functions_) problem_->functions(w_, c_);
     has_functions_ = true;
     return c_;
   }
-  [[nodiscard]] const Eigen::VectorXd& jacobian(mpcc::ConstVectorView w) {
+  [[nodiscard]] const linalg::Vector& jacobian(mpcc::ConstVectorView w) {
     move_to(w);
     if (!has_jacobian_) problem_->jacobian(w_, jacobian_);
     has_jacobian_ = true;
@@ -37,9 +37,9 @@ class CachedFunctions {
   }
 
   mpcc::Problem* problem_;
-  Eigen::VectorXd w_;
-  Eigen::VectorXd c_;
-  Eigen::VectorXd jacobian_;
+  linalg::Vector w_;
+  linalg::Vector c_;
+  linalg::Vector jacobian_;
   bool has_functions_ = false;
   bool has_jacobian_ = false;
 };

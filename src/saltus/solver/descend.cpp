@@ -229,8 +229,8 @@ class Descent {
 void descend(Run& run) { Descent(run).descend(); }
 
 void rescue(Run& run) {
-  const Eigen::VectorXd w = run.relaxed.point.w.head(run.problem.variables());
-  Eigen::VectorXd c(run.problem.rows());
+  const linalg::Vector w = run.relaxed.point.w.head(run.problem.variables());
+  linalg::Vector c(run.problem.rows());
   run.problem.functions(w, c);
   const auto sides = crossover::smaller_sides(run.problem, run.groups, c);
   // Undecided is what the last sigma has not pulled to an axis: products are below it, sides below its root.
@@ -256,8 +256,8 @@ void rescue(Run& run) {
 
 void certify_relaxed(Run& run) {
   const int n = run.problem.variables();
-  const Eigen::VectorXd w = run.relaxed.point.w.head(n);
-  Eigen::VectorXd c(run.problem.rows());
+  const linalg::Vector w = run.relaxed.point.w.head(n);
+  linalg::Vector c(run.problem.rows());
   run.problem.functions(w, c);
   const auto sides = crossover::smaller_sides(run.problem, run.groups, c);
   const auto states = certificate::pair_states(run.problem, w, sides, run.options.tolerance);

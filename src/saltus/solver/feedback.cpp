@@ -4,16 +4,13 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/SparseLU>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/solver/crossover/branch_problem.hpp"
 #include "saltus/solver/crossover/sides.hpp"
 
 namespace saltus::solver {
 namespace {
-
-using Matrix = Eigen::SparseMatrix<double>;
 
 constexpr double diagonal_shift = 1e-9;
 /// Of the size of a bound: what is nearer is on it.
@@ -24,9 +21,9 @@ bool is_on(double value, double bound) {
   return std::isfinite(bound) && std::abs(value - bound) <= on_bound * std::max(1.0, std::abs(bound));
 }
 
-std::vector<bool> on_bounds(const Eigen::VectorXd& values, const mpcc::Bounds& bounds) {
+std::vector<bool> on_bounds(const linalg::Vector& values, const mpcc::Bounds& bounds) {
   std::vector<bool> on;
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
+  for (linalg::Index i = 0; i < values.size(); ++i) {
     on.push_back(is_on(values[i], bounds.lower[i]) || is_on(values[i], bounds.upper[i]));
   }
   return on;
@@ -34,12 +31,12 @@ std::vector<bool> on_bounds(const Eigen::VectorXd& values, const mpcc::Bounds& b
 
 std::vector<bool> equal_bounds(const mpcc::Bounds& bounds) {
   std::vector<bool> equal;
-  for (Eigen::Index i = 0; i < bounds.lower.size(); ++i) equal.push_back(bounds.lower[i] == bounds.upper[i]);
+  for (linalg::Index i = 0; i < bounds.lower.size(); ++i) equal.push_back(bounds.lower[i] == bounds.upper[i]);
   return equal;
 }
 
 crossover::BranchProblem branch_of(mpcc::Problem& problem, const Solution& solution) {
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(solution.w, c);
   const auto sides =
       solution.crossed_over ? solution.sides : crossover::smaller_sides(problem, crossover::groups_of(problem), c);
@@ -52,10 +49,10 @@ class Conditions {
  public:
   Conditions(mpcc::Problem& problem, const Solution& solution, const std::optional<TrackingScales>& scales)
       : chain_(*problem.chain()), branch_(branch_of(problem, solution)), place_(branch_.reduction().place) {
-    const Eigen::VectorXd v = branch_.reduced(solution.w);
-    Eigen::VectorXd values(branch_.jacobian_pattern().entries()), c(branch_.constraints());
+    const linalg::Vector v = branch_.reduced(solution.w);
+    linalg::Vector values(branch_.jacobian_pattern().entries()), c(branch_.constraints());
     branch_.jacobian(v, values);
-    rows_ = sparse<Eigen::RowMajor>(branch_.jacobian_pattern(), values, branch_.constraints(), branch_.variables());
+    rows_ = sparse<linalg::Major::rows>(branch_.jacobian_pattern(), values, branch_.constraints(), branch_.variables());
     if (scales) {
       is_active_ = equal_bounds(branch_.constraint_bounds());
       is_fixed_ = equal_bounds(branch_.variable_bounds());
@@ -71,50 +68,48 @@ class Conditions {
   }
 
   /// d u_k / d x at the start of element e of interval k; 0 where the conditions cannot be factorised.
-  [[nodiscard]] Eigen::MatrixXd gain(int k, int e, int controls, int states) {
+  [[nodiscard]] linalg::Matrix gain(int k, int e, int controls, int states) {
     mark(k, e, states);
-    Eigen::MatrixXd gain = Eigen::MatrixXd::Zero(controls, states);
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::MatrixXd right = Eigen::MatrixXd::Zero(unknowns_ + rows_.rows(), states);
+    linalg::Matrix gain = linalg::Matrix::zero(controls, states);
+    std::vector<linalg::Triplet> entries;
+    linalg::Matrix right = linalg::Matrix::zero(unknowns_ + rows_.rows(), states);
     add_hessian(entries, right);
-    const Eigen::Index size = add_rows(entries, right);
-    Matrix conditions(size, size);
-    conditions.setFromTriplets(entries.begin(), entries.end());
-    Eigen::SparseLU<Matrix> factors(conditions);
-    if (factors.info() != Eigen::Success) return gain;
-    const Eigen::MatrixXd change = factors.solve(right.topRows(size));
+    const linalg::Index size = add_rows(entries, right);
+    const linalg::SparseLu factors(linalg::SparseColumns(size, size, entries));
+    if (!factors.is_factorised()) return gain;
+    const linalg::Matrix change = factors.solve(right.top_rows(size));
     const auto& shared = chain_.intervals[at(k)].shared;
     for (int i = 0; i < controls; ++i) {
       const int place = place_[at(shared.first + i)];
       if (place < 0 || unknown_[at(place)] < 0) continue;
-      if (change.row(unknown_[at(place)]).allFinite()) gain.row(i) = change.row(unknown_[at(place)]);
+      if (change.row(unknown_[at(place)]).all_finite()) gain.row(i) = change.row(unknown_[at(place)]);
     }
     return gain;
   }
 
  private:
   /// Of the rows of the branch problem, in L = f + y'c.
-  [[nodiscard]] Eigen::VectorXd multipliers(const mpcc::Problem& problem, const MpccMultipliers& found) const {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(problem.rows());
+  [[nodiscard]] linalg::Vector multipliers(const mpcc::Problem& problem, const MpccMultipliers& found) const {
+    linalg::Vector all = linalg::Vector::zero(problem.rows());
     if (found.rows.size() == problem.constraints()) all.head(found.rows.size()) = found.rows;
     if (found.G.size() == problem.pairs() && found.H.size() == problem.pairs()) {
       all.segment(problem.constraints(), problem.pairs()) = -found.G;
       all.tail(problem.pairs()) = -found.H;
     }
     const auto& rows = branch_.reduction().rows;
-    Eigen::VectorXd y(static_cast<Eigen::Index>(rows.size()));
+    linalg::Vector y(static_cast<linalg::Index>(rows.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) y[index(i)] = all[rows[i]];
     return y;
   }
 
-  void take_hessian(const Eigen::VectorXd& v, const Eigen::VectorXd& y) {
+  void take_hessian(const linalg::Vector& v, const linalg::Vector& y) {
     const auto& pattern = branch_.hessian_pattern();
-    Eigen::VectorXd values(pattern.entries());
+    linalg::Vector values(pattern.entries());
     branch_.hessian(v, 1.0, y, values);
     for (int e = 0; e < pattern.entries(); ++e) {
       const int i = pattern.row[at(e)], j = pattern.column[at(e)];
-      hessian_.emplace_back(i, j, values[e]);
-      if (i != j) hessian_.emplace_back(j, i, values[e]);
+      hessian_.push_back({i, j, values[e]});
+      if (i != j) hessian_.push_back({j, i, values[e]});
     }
   }
 
@@ -122,7 +117,7 @@ class Conditions {
   void take_tracking(const TrackingScales& scales) {
     const auto weigh = [&](int variable, double scale) {
       const int place = place_[at(variable)];
-      if (place >= 0) hessian_.emplace_back(place, place, 1.0 / (scale * scale));
+      if (place >= 0) hessian_.push_back({place, place, 1.0 / (scale * scale)});
     };
     for (const auto& [shared, first, elements] : chain_.intervals) {
       for (std::size_t i = 0; i < scales.controls.size(); ++i)
@@ -163,13 +158,13 @@ class Conditions {
   /// Of an equation the last element whose own variables it has.
   void find_element(int row) {
     int last = -1;
-    for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
-      const auto place = at(entry.col());
+    for (const linalg::Entry entry : rows_.along(row)) {
+      const auto place = at(entry.inner);
       if (!is_shared_[place] && element_[place] != no_element) last = std::max(last, element_[place]);
     }
     if (last >= 0) row_element_[at(row)] = last;
-    for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
-      const auto place = at(entry.col());
+    for (const linalg::Entry entry : rows_.along(row)) {
+      const auto place = at(entry.inner);
       if (is_shared_[place] && element_[place] >= 0) element_[place] = std::max(element_[place], last);
     }
   }
@@ -202,32 +197,32 @@ class Conditions {
     }
   }
 
-  void add_hessian(std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& right) const {
+  void add_hessian(std::vector<linalg::Triplet>& entries, linalg::View right) const {
     for (const auto& entry : hessian_) {
-      const int row = unknown_[at(entry.row())];
+      const int row = unknown_[at(entry.row)];
       if (row < 0) continue;
-      if (const int column = unknown_[at(entry.col())]; column >= 0) entries.emplace_back(row, column, entry.value());
-      if (const int state = state_[at(entry.col())]; state >= 0) right(row, state) -= entry.value();
+      if (const int column = unknown_[at(entry.column)]; column >= 0) entries.push_back({row, column, entry.value});
+      if (const int state = state_[at(entry.column)]; state >= 0) right(row, state) -= entry.value;
     }
-    for (int i = 0; i < unknowns_; ++i) entries.emplace_back(i, i, diagonal_shift);
+    for (int i = 0; i < unknowns_; ++i) entries.push_back({i, i, diagonal_shift});
   }
 
   /// Those that speak of unknowns, of the states at the start and of what is held only. @return the size of the
   /// conditions
-  Eigen::Index add_rows(std::vector<Eigen::Triplet<double>>& entries, Eigen::MatrixXd& right) const {
+  linalg::Index add_rows(std::vector<linalg::Triplet>& entries, linalg::View right) const {
     int next = unknowns_;
     for (int row = 0; row < rows_.rows(); ++row) {
       if (!is_active_[at(row)] || !is_behind(row)) continue;
-      for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
-        const auto place = at(entry.col());
+      for (const linalg::Entry entry : rows_.along(row)) {
+        const auto place = at(entry.inner);
         if (const int column = unknown_[place]; column >= 0) {
-          entries.emplace_back(next, column, entry.value());
-          entries.emplace_back(column, next, entry.value());
+          entries.push_back({next, column, entry.value});
+          entries.push_back({column, next, entry.value});
         } else if (state_[place] >= 0) {
-          right(next, state_[place]) -= entry.value();
+          right(next, state_[place]) -= entry.value;
         }
       }
-      entries.emplace_back(next, next, -diagonal_shift);
+      entries.push_back({next, next, -diagonal_shift});
       ++next;
     }
     return next;
@@ -237,8 +232,8 @@ class Conditions {
     // What is past in this interval has its controls, too.
     if (row_element_[at(row)] >= first_element_ && row_element_[at(row)] < next_element_) return false;
     bool has_unknown = false;
-    for (RowMatrix::InnerIterator entry(rows_, row); entry; ++entry) {
-      const auto place = at(entry.col());
+    for (const linalg::Entry entry : rows_.along(row)) {
+      const auto place = at(entry.inner);
       if (unknown_[place] < 0 && !is_held_[place]) return false;
       has_unknown = has_unknown || unknown_[place] >= 0;
     }
@@ -249,7 +244,7 @@ class Conditions {
   crossover::BranchProblem branch_;
   const std::vector<int>& place_;
   RowMatrix rows_;
-  std::vector<Eigen::Triplet<double>> hessian_;  ///< both triangles
+  std::vector<linalg::Triplet> hessian_;  ///< both triangles
   std::vector<bool> is_active_, is_fixed_;
   std::vector<int> element_, row_element_;
   std::vector<bool> is_shared_;  ///< by the elements of an interval
@@ -261,19 +256,19 @@ class Conditions {
 
 }  // namespace
 
-std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Solution& solution, int controls, int states,
-                                            const std::optional<TrackingScales>& scales) {
-  if (problem.chain() == nullptr || !solution.w.allFinite()) return {};
+std::vector<linalg::Matrix> feedback_gains(mpcc::Problem& problem, const Solution& solution, int controls, int states,
+                                           const std::optional<TrackingScales>& scales) {
+  if (problem.chain() == nullptr || !solution.w.all_finite()) return {};
   problem.without_method_terms();
   problem.relaxed_by(0.0);
   Conditions conditions(problem, solution, scales);
   const auto& chain = *problem.chain();
-  std::vector<Eigen::MatrixXd> gains(chain.elements.size());
+  std::vector<linalg::Matrix> gains(chain.elements.size());
   for (std::size_t k = 0; k < chain.intervals.size(); ++k) {
     const int first = chain.intervals[k].first_element, count = scales ? chain.intervals[k].elements : 1;
     for (int e = first; e < first + count; ++e) {
       gains[at(e)] =
-          e == 0 ? Eigen::MatrixXd::Zero(controls, states) : conditions.gain(static_cast<int>(k), e, controls, states);
+          e == 0 ? linalg::Matrix::zero(controls, states) : conditions.gain(static_cast<int>(k), e, controls, states);
     }
   }
   return gains;

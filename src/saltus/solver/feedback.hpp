@@ -4,8 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/solver/solve.hpp"
 
 namespace saltus::solver {
@@ -31,8 +30,7 @@ struct TrackingScales {
 /// harm.
 /// @param problem  with a chain; else there are none
 /// Cost: per gain a sparse factorisation of what is behind it.
-[[nodiscard]] std::vector<Eigen::MatrixXd> feedback_gains(mpcc::Problem& problem, const Solution& solution,
-                                                          int controls, int states,
-                                                          const std::optional<TrackingScales>& scales = {});
+[[nodiscard]] std::vector<linalg::Matrix> feedback_gains(mpcc::Problem& problem, const Solution& solution, int controls,
+                                                         int states, const std::optional<TrackingScales>& scales = {});
 
 }  // namespace saltus::solver

@@ -74,12 +74,8 @@ class Path {
     return std::nullopt;
   }
 
-  [[nodiscard]] double infeasibility_of(const Eigen::VectorXd& w) {
+  [[nodiscard]] double infeasibility_of(const linalg::Vector& w) {
     return std::max(certificate::scaled_infeasibility(run_.problem, w), certificate::complementarity(run_.problem, w));
-  }
-
-  [[nodiscard]] static double norm(const Eigen::VectorXd& w) {
-    return w.size() > 0 ? w.lpNorm<Eigen::Infinity>() : 0.0;
   }
 
   /// The sides stay those of a branch that was refused, and what is left of the path cannot lift the relaxed objective
@@ -109,9 +105,9 @@ class Path {
       point.z_upper = last.z_upper;
     } else if (attempt_.multipliers.rows.size() == run_.problem.constraints() &&
                attempt_.multipliers.lower.size() == w_.size() && attempt_.multipliers.upper.size() == w_.size()) {
-      point.y = Eigen::VectorXd::Zero(relaxed.constraints());
+      point.y = linalg::Vector::zero(relaxed.constraints());
       point.y.head(run_.problem.constraints()) = attempt_.multipliers.rows;
-      point.z_lower = point.z_upper = Eigen::VectorXd::Ones(relaxed.variables());
+      point.z_lower = point.z_upper = linalg::Vector::ones(relaxed.variables());
       point.z_lower.head(w_.size()) = attempt_.multipliers.lower;
       point.z_upper.head(w_.size()) = attempt_.multipliers.upper;
     } else {
@@ -139,8 +135,8 @@ class Path {
     run_.problem.relaxed_by(0.0);
     relaxed.set_sigma(sigma);
 
-    const Eigen::VectorXd w = point.w.head(w_.size());
-    const double infeasibility = point.w.allFinite() && !report.diverging ? infeasibility_of(w) : NAN;
+    const linalg::Vector w = point.w.head(w_.size());
+    const double infeasibility = point.w.all_finite() && !report.diverging ? infeasibility_of(w) : NAN;
     const bool stands_still = report.termination == Termination::step_size_too_small &&
                               certificate::scaled_infeasibility(run_.problem, w) <= run_.options.tolerance;
     const bool is_solved = report.termination == Termination::completed || stands_still;
@@ -174,7 +170,7 @@ class Path {
   /// True if the branch of the smaller sides is good enough.
   bool cross_over(double sigma, bool is_last) {
     if (run_.problem.pairs() > 0 && sigma > 1.0001 * crossover_sigma) return false;
-    Eigen::VectorXd c(run_.problem.rows());
+    linalg::Vector c(run_.problem.rows());
     run_.problem.functions(w_, c);
     const auto sides = crossover::smaller_sides(run_.problem, run_.groups, c);
     // The same sides have the same solution: what was refused for its objective needs no second solution, what was
@@ -184,7 +180,7 @@ class Path {
     if (is_refused) return accept_refused();
     if (sides == infeasible_sides_ && !is_last && sigma > retry_factor * infeasible_sigma_) return false;
     crossover::Branch branch = run_.solve_branch(sides, w_, is_last ? whole_limit : trial_limit);
-    const bool is_near = norm(branch.w) <= far_away * std::max(1.0, norm(w_));
+    const bool is_near = branch.w.max_abs() <= far_away * std::max(1.0, w_.max_abs());
     const bool is_feasible = branch.is_feasible(run_.options.tolerance) && std::isfinite(branch.objective) && is_near &&
                              branch.optimality_error <= stationary;
     auto& step = run_.solution.homotopy.back();
@@ -218,7 +214,7 @@ class Path {
 
   Run& run_;
   const Attempt& attempt_;
-  Eigen::VectorXd w_;
+  linalg::Vector w_;
   double infeasibility_ = 0.0;
   bool has_multipliers_ = false;
   bool has_point_ = false;  ///< of the last relaxed problem, near enough to feasible ones for a branch

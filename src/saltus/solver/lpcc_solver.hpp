@@ -4,8 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/mpcc/problem.hpp"
 #include "saltus/result/status.hpp"
 
@@ -17,9 +16,9 @@ namespace saltus::solver {
 /// A trust region is among the bounds, so they are finite. Of each disjunction (rows i, j) row i or row j of A d is at
 /// its lower bound.
 struct LpccProblem {
-  Eigen::VectorXd cost;
+  linalg::Vector cost;
   mpcc::Pattern pattern;  ///< of A
-  Eigen::VectorXd entries;
+  linalg::Vector entries;
   mpcc::Bounds rows;
   mpcc::Bounds variables;
   std::vector<std::pair<int, int>> disjunctions;
@@ -28,7 +27,7 @@ struct LpccProblem {
 struct LpccSolution {
   /// completed, infeasible, time_limit, not_converged.
   result::Termination termination = result::Termination::not_converged;
-  Eigen::VectorXd d;
+  linalg::Vector d;
   double objective = 0.0;
   std::vector<bool> first_is_active;  ///< per disjunction: row i is at its lower bound
   int nodes = 0;                      ///< linear programs solved

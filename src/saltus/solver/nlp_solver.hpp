@@ -16,10 +16,10 @@ using mpcc::VectorView;
 /// Holds a primal and dual point of min f(w), lower_w <= w <= upper_w, lower_g <= g(w) <= upper_g:
 ///   grad f + (dg/dw)' y - z_lower + z_upper = 0.
 struct NlpPoint {
-  Eigen::VectorXd w;
-  Eigen::VectorXd y;        ///< one per row of g; empty in a start without multipliers
-  Eigen::VectorXd z_lower;  ///< one per variable, >= 0
-  Eigen::VectorXd z_upper;
+  linalg::Vector w;
+  linalg::Vector y;        ///< one per row of g; empty in a start without multipliers
+  linalg::Vector z_lower;  ///< one per variable, >= 0
+  linalg::Vector z_upper;
 };
 
 struct NlpOptions {

@@ -56,7 +56,7 @@ class Run {
 
 /// Makes one attempt at the path: its start, its first sigma, its steering.
 struct Attempt {
-  Eigen::VectorXd w;
+  linalg::Vector w;
   MpccMultipliers multipliers;  ///< may be empty
   homotopy::Steering steering = homotopy::Steering::direct;
   double sigma_initial = 1.0;

@@ -47,7 +47,7 @@ Expected<void> check_options(const SolveOptions& options) {
 
 Expected<void> check_start(mpcc::Problem& problem, ConstVectorView w) {
   const auto code = ErrorCode::invalid_model;
-  for (Eigen::Index i = 0; i < w.size(); ++i) {
+  for (linalg::Index i = 0; i < w.size(); ++i) {
     if (!std::isfinite(w[i])) {
       return refuse(code, fmt::format("the start of {} is {}", problem.name(static_cast<int>(i)), w[i]));
     }
@@ -55,9 +55,9 @@ Expected<void> check_start(mpcc::Problem& problem, ConstVectorView w) {
   if (const double f = problem.objective(w); !std::isfinite(f)) {
     return refuse(code, fmt::format("the objective is {} at the start", f));
   }
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
-  for (Eigen::Index i = 0; i < c.size(); ++i) {
+  for (linalg::Index i = 0; i < c.size(); ++i) {
     if (!std::isfinite(c[i])) {
       return refuse(code, fmt::format("{} is {} at the start", problem.row_name(static_cast<int>(i)), c[i]));
     }
@@ -82,14 +82,14 @@ PathEnd follow_with_restarts(Run& run, const Start& start) {
   return follow_relaxed(run, attempt);
 }
 
-double infeasibility_of(mpcc::Problem& problem, const Eigen::VectorXd& w) {
+double infeasibility_of(mpcc::Problem& problem, const linalg::Vector& w) {
   return std::max(certificate::scaled_infeasibility(problem, w), certificate::complementarity(problem, w));
 }
 
 /// The branch of the start's sides, if it has a solution. Where a limit ends it, its point is kept if it is more nearly
 /// feasible than the start.
-bool solve_first_branch(Run& run, const Eigen::VectorXd& w) {
-  Eigen::VectorXd c(run.problem.rows());
+bool solve_first_branch(Run& run, const linalg::Vector& w) {
+  linalg::Vector c(run.problem.rows());
   run.problem.functions(w, c);
   const auto sides = crossover::smaller_sides(run.problem, run.groups, c);
   auto branch = run.solve_branch(sides, w, start_iterations, "sides of the start");
@@ -151,7 +151,7 @@ Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpc
   Start from = start.value_or(Start{.w = problem.start(), .multipliers = {}});
   SALTUS_ASSERT(from.w.size() == problem.variables());
   const auto& bounds = problem.variable_bounds();
-  from.w = from.w.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+  from.w = from.w.at_least(bounds.lower).at_most(bounds.upper);
   problem.without_method_terms();
   if (auto checked = check_start(problem, from.w); !checked) return tl::unexpected(checked.error());
 

@@ -46,7 +46,7 @@ struct Solution {
   result::Termination termination = result::Termination::not_converged;
   std::string message;
   double objective = 0.0;
-  Eigen::VectorXd w;
+  linalg::Vector w;
   MpccMultipliers multipliers;
   result::Certificate certificate;
   std::vector<result::HomotopyStep> homotopy;
@@ -58,7 +58,7 @@ struct Solution {
 
 /// Says where to begin; multipliers may be empty.
 struct Start {
-  Eigen::VectorXd w;
+  linalg::Vector w;
   MpccMultipliers multipliers;
 };
 

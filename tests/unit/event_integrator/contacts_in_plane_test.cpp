@@ -3,14 +3,16 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Dense>
-
 #include "run_model.hpp"
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator::testing {
 namespace {
 
 using casadi::SX;
+using linalg::Matrix;
+using linalg::Vector;
 using result::ContactMode;
 using result::EventKind;
 
@@ -205,9 +207,8 @@ TEST(ContactsInPlane, AForceThatGrowsOvercomesFriction) {
 
 /// Inverse masses by which the normal force changes fast with the direction of the slip: (W_zz - mu W_z. d) is small.
 TEST(ContactsInPlane, ASlipBeginsWhereItsDirectionChangesTheNormalForce) {
-  Eigen::Matrix3d inverse;
-  inverse << 0.88, 1.07, -0.23, 1.07, 2.12, -0.61, -0.23, -0.61, 0.64;
-  const Eigen::Matrix3d mass = inverse.inverse();
+  const Matrix inverse{{0.88, 1.07, -0.23}, {1.07, 2.12, -0.61}, {-0.23, -0.61, 0.64}};
+  const Matrix mass = linalg::inverse(inverse);
   SX symmetric(3, 3);
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) symmetric(i, j) = 0.5 * (mass(i, j) + mass(j, i));
@@ -306,37 +307,36 @@ TEST(ContactsInPlane, ASlipThatBeginsUnderATurningForceTakesFewSteps) {
 }
 
 /// dv/dp = M^-1 (n - mu T v_t/|v_t|) by 10^6 steps of the classical method; slip that ends would stick.
-Eigen::Vector3d behind_impact(const Eigen::Matrix3d& mass, Eigen::Vector3d v, double friction, double restitution) {
-  const Eigen::Matrix3d inverse = mass.inverse();
-  const auto rate = [&](const Eigen::Vector3d& at) -> Eigen::Vector3d {
-    const double slip = std::hypot(at.x(), at.y());
-    return inverse * Eigen::Vector3d(-friction * at.x() / slip, -friction * at.y() / slip, 1.0);
+Vector behind_impact(const Matrix& mass, Vector v, double friction, double restitution) {
+  const Matrix inverse = linalg::inverse(mass);
+  const auto rate = [&](const Vector& at) -> Vector {
+    const double slip = std::hypot(at[0], at[1]);
+    return inverse * Vector{-friction * at[0] / slip, -friction * at[1] / slip, 1.0};
   };
-  const auto step = [&](const Eigen::Vector3d& at, double h) -> Eigen::Vector3d {
-    const Eigen::Vector3d a = rate(at), b = rate(at + 0.5 * h * a), c = rate(at + 0.5 * h * b), d = rate(at + h * c);
+  const auto step = [&](const Vector& at, double h) -> Vector {
+    const Vector a = rate(at), b = rate(at + 0.5 * h * a), c = rate(at + 0.5 * h * b), d = rate(at + h * c);
     return at + h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
   };
   double work = 0.0, h = 1e-5;
-  while (v.z() < -1e-13) {
-    const double length = std::min(h, -v.z() / rate(v).z());
+  while (v[2] < -1e-13) {
+    const double length = std::min(h, -v[2] / rate(v)[2]);
     const auto middle = step(v, 0.5 * length), next = step(v, length);
-    work -= length / 6.0 * (v.z() + 4.0 * middle.z() + next.z());
+    work -= length / 6.0 * (v[2] + 4.0 * middle[2] + next[2]);
     v = next;
   }
   double left = restitution * restitution * work;
   while (left > 1e-13) {
-    const double slope = rate(v).z();
-    const double length = std::min(h, 2.0 * left / (v.z() + std::sqrt(v.z() * v.z() + 2.0 * slope * left)));
+    const double slope = rate(v)[2];
+    const double length = std::min(h, 2.0 * left / (v[2] + std::sqrt(v[2] * v[2] + 2.0 * slope * left)));
     const auto middle = step(v, 0.5 * length), next = step(v, length);
-    left -= length / 6.0 * (v.z() + 4.0 * middle.z() + next.z());
+    left -= length / 6.0 * (v[2] + 4.0 * middle[2] + next[2]);
     v = next;
   }
   return v;
 }
 
 TEST(ContactsInPlane, TheSlipTurnsInAnImpact) {
-  Eigen::Matrix3d mass;
-  mass << 1.0, 0.2, -0.3, 0.2, 3.0, 0.4, -0.3, 0.4, 2.0;
+  const Matrix mass{{1.0, 0.2, -0.3}, {0.2, 3.0, 0.4}, {-0.3, 0.4, 2.0}};
   SX symbolic(3, 3);
   for (casadi_int i = 0; i < 3; ++i) {
     for (casadi_int j = 0; j < 3; ++j) symbolic(i, j) = mass(i, j);
@@ -350,15 +350,14 @@ TEST(ContactsInPlane, TheSlipTurnsInAnImpact) {
     ASSERT_FALSE(run.events.empty());
     const auto exact = behind_impact(mass, {1.5, -1.0, -2.0}, 0.4, restitution);
     for (std::size_t i = 0; i < 3; ++i) {
-      EXPECT_NEAR(run.events[0].x_after[3 + i], exact(static_cast<Eigen::Index>(i)), 1e-9) << restitution;
+      EXPECT_NEAR(run.events[0].x_after[3 + i], exact(static_cast<linalg::Index>(i)), 1e-9) << restitution;
     }
   }
 }
 
 /// Friction holds in the impact what has come to rest in it.
 TEST(ContactsInPlane, AnImpactMayEndTheSlip) {
-  Eigen::Matrix3d mass;
-  mass << 1.0, 0.2, 0.0, 0.2, 1.5, 0.1, 0.0, 0.1, 2.0;
+  const Matrix mass{{1.0, 0.2, 0.0}, {0.2, 1.5, 0.1}, {0.0, 0.1, 2.0}};
   SX symbolic(3, 3);
   for (casadi_int i = 0; i < 3; ++i) {
     for (casadi_int j = 0; j < 3; ++j) symbolic(i, j) = mass(i, j);

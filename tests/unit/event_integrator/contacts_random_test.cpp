@@ -85,12 +85,15 @@ using Mode = event_integrator::ContactMode;
 /// Frictionless contacts at rest of a body with as many positions as `rank`.
 ContactPoint random_point(int contacts, int rank, std::mt19937& dice) {
   std::uniform_real_distribution<double> part(-1.0, 1.0);
-  const Eigen::MatrixXd rows = Eigen::MatrixXd::NullaryExpr(contacts, rank, [&] { return part(dice); });
+  linalg::Matrix rows(contacts, rank);
+  for (double& entry : rows) entry = part(dice);
+  linalg::Vector forces(rank);
   ContactPoint point;
   point.influence = rows * rows.transpose();
-  point.velocity.setZero(contacts);
-  point.acceleration = rows * Eigen::VectorXd::NullaryExpr(rank, [&] { return part(dice); });
-  point.free_terms = point.terms = point.acceleration.cwiseAbs().maxCoeff();
+  point.velocity.set_zero(contacts);
+  for (double& force : forces) force = part(dice);
+  point.acceleration = rows * forces;
+  point.free_terms = point.terms = point.acceleration.max_abs();
   const auto m = static_cast<std::size_t>(contacts);
   point.friction.assign(m, 0.0);
   point.restitution.assign(m, 0.0);
@@ -137,7 +140,7 @@ TEST(ContactForces, WhatTouchesWithoutAForceMayBeOpenAndClosed) {
   for (int run = 0; run < 40; ++run) {
     auto point = random_point(4, 4, dice);
     // The first one presses, the second one neither presses nor leaves.
-    point.acceleration = -point.influence * Eigen::Vector4d(1.0, 0.0, 0.5, 0.0) + Eigen::Vector4d(0.0, 0.0, 0.0, 1.0);
+    point.acceleration = linalg::Vector{0.0, 0.0, 0.0, 1.0} - point.influence * linalg::Vector{1.0, 0.0, 0.5, 0.0};
     expect_the_same_modes(point);
   }
 }

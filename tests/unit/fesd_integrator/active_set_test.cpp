@@ -72,22 +72,22 @@ TEST(DenseSystem, SolvesToRoundingAndByLeastNorm) {
   DenseSystem system;
   system.reserve(2);
   system.reset(2);
-  system.matrix() << 0.0, 2.0, 4.0, 1.0;
-  system.right() << 6.0, 7.0;
+  system.matrix() = linalg::Matrix{{0.0, 2.0}, {4.0, 1.0}};
+  system.right() = {6.0, 7.0};
   ASSERT_TRUE(system.solve(1e-14));
   EXPECT_DOUBLE_EQ(system.right()(0), 1.0);
   EXPECT_DOUBLE_EQ(system.right()(1), 3.0);
   // x + y = 2 twice: (1, 1) is nearest to the origin.
   system.reset(2);
-  system.matrix().setOnes();
-  system.right().setConstant(2.0);
+  system.matrix().set_constant(1.0);
+  system.right().set_constant(2.0);
   ASSERT_TRUE(system.solve(1e-14));
   EXPECT_NEAR(system.right()(0), 1.0, 1e-14);
   EXPECT_NEAR(system.right()(1), 1.0, 1e-14);
   // x + y = 2 and x + y = 3 is no rounding.
   system.reset(2);
-  system.matrix().setOnes();
-  system.right() << 2.0, 3.0;
+  system.matrix().set_constant(1.0);
+  system.right() = {2.0, 3.0};
   EXPECT_FALSE(system.solve(1e-14));
   system.reset(1);
   system.matrix()(0, 0) = std::numeric_limits<double>::quiet_NaN();
@@ -103,7 +103,7 @@ Element element_of(const discretization::ButcherTableau& method, Curve x, Slope 
   element.h = 0.5;
   element.x = {x(2.0)};
   element.end = {x(2.5)};
-  for (Eigen::Index m = 0; m < method.stages(); ++m) {
+  for (linalg::Index m = 0; m < method.stages(); ++m) {
     const double t = 2.0 + 0.5 * method.c(m);
     element.stage_states.push_back(x(t));
     element.stage_slopes.push_back(slope(t));

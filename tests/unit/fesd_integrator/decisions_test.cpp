@@ -220,13 +220,13 @@ TEST(Transition, AContactThatIsHeldStaysClosedWhileAnotherOneStopsABody) {
 }
 
 TEST(NonnegativeSolution, HasTheLeastResidual) {
-  Eigen::MatrixXd A(3, 4);
-  A << 1.0, -2.0, 0.5, 3.0, 0.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0, 1.0;
-  for (const Eigen::Vector3d& b : {Eigen::Vector3d(0.0, 0.0, 1.0), Eigen::Vector3d(0.0, -5.0, 1.0),
-                                   Eigen::Vector3d(-1.0, -1.0, -1.0), Eigen::Vector3d(2.0, 0.3, 1.0)}) {
-    const Eigen::VectorXd x = nonnegative_solution(A, b);
-    const Eigen::VectorXd slope = A.transpose() * (b - A * x);
-    for (Eigen::Index j = 0; j < x.size(); ++j) {
+  using linalg::Vector;
+  const linalg::Matrix A{{1.0, -2.0, 0.5, 3.0}, {0.0, 1.0, 1.0, -1.0}, {1.0, 1.0, 1.0, 1.0}};
+  for (const Vector& b :
+       {Vector{0.0, 0.0, 1.0}, Vector{0.0, -5.0, 1.0}, Vector{-1.0, -1.0, -1.0}, Vector{2.0, 0.3, 1.0}}) {
+    const Vector x = nonnegative_solution(A, b);
+    const Vector slope = A.transpose() * (b - A * x);
+    for (linalg::Index j = 0; j < x.size(); ++j) {
       EXPECT_GE(x[j], 0.0);
       EXPECT_LE(slope[j], 1e-9);
       EXPECT_NEAR(x[j] * slope[j], 0.0, 1e-9);
@@ -236,12 +236,11 @@ TEST(NonnegativeSolution, HasTheLeastResidual) {
 
 TEST(NonnegativeSolution, TakesIndependentColumns) {
   // Of equal columns one, and the shorter ones of those that do as well.
-  Eigen::MatrixXd A(2, 5);
-  A << -1.0, -1.0, 4.0, 8.0, 4.0, 1.0, 1.0, 1.0, 1.0, 1.0;
-  const Eigen::VectorXd x = nonnegative_solution(A, Eigen::Vector2d(0.0, 1.0));
+  const linalg::Matrix A{{-1.0, -1.0, 4.0, 8.0, 4.0}, {1.0, 1.0, 1.0, 1.0, 1.0}};
+  const linalg::Vector x = nonnegative_solution(A, linalg::Vector{0.0, 1.0});
   EXPECT_NEAR(x[0], 0.8, 1e-14);
   EXPECT_NEAR(x[2], 0.2, 1e-14);
-  EXPECT_EQ((x.array() > 0.0).count(), 2);
+  EXPECT_EQ(std::ranges::count_if(x, [](double weight) { return weight > 0.0; }), 2);
 }
 
 TEST(Transition, SurfacesWithoutInfluenceAreDecidedOneByOne) {

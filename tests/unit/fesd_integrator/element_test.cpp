@@ -108,7 +108,7 @@ TEST(ElementSolver, ProjectsEndsBehindTheLastStage) {
   EXPECT_NEAR(std::hypot(element.end[0], element.end[1]), 1.0, 1e-15);
   double x = element.x[0], y = element.x[1];
   for (std::size_t m = 0; m < 2; ++m) {
-    const double weight = element.h * gauss.b(static_cast<Eigen::Index>(m));
+    const double weight = element.h * gauss.b(static_cast<linalg::Index>(m));
     x += weight * element.stage_slopes[2 * m];
     y += weight * element.stage_slopes[2 * m + 1];
     EXPECT_NEAR(std::hypot(element.stage_states[2 * m], element.stage_states[2 * m + 1]), 1.0, 1e-15);

@@ -13,7 +13,7 @@
 namespace saltus::fesd_integrator {
 namespace {
 
-using Eigen::Index;
+using linalg::Index;
 using Unit = DenseSystem::Unit;
 using Entries = std::vector<std::tuple<Index, Index, double>>;
 
@@ -69,16 +69,16 @@ TEST(SparseSystem, FewerEntriesThanBeforeAreAnotherMatrix) {
   SparseSystem system;
   system.reset(2);
   for (const auto& [i, j, value] : Entries{{0, 0, 2.0}, {1, 1, 4.0}, {0, 1, 8.0}}) system.add(i, j, value);
-  system.right() << 10.0, 4.0;
+  system.right() = {10.0, 4.0};
   ASSERT_TRUE(system.solve(0.0, Unit::row));
   EXPECT_DOUBLE_EQ(system.right()(0), 1.0);
   system.reset(2);
   for (const auto& [i, j, value] : Entries{{0, 0, 2.0}, {1, 1, 4.0}}) system.add(i, j, value);
-  system.right() << 10.0, 4.0;
+  system.right() = {10.0, 4.0};
   ASSERT_TRUE(system.solve(0.0, Unit::row));  // a diagonal
   EXPECT_DOUBLE_EQ(system.right()(0), 5.0);
   EXPECT_DOUBLE_EQ(system.right()(1), 1.0);
-  system.right() << 1.0, 1.0;
+  system.right() = {1.0, 1.0};
   ASSERT_TRUE(system.solve_again());
   EXPECT_DOUBLE_EQ(system.right()(1), 0.25);
 }
@@ -94,8 +94,8 @@ TEST(SparseSystem, ASingularOneHasTheSolutionOfLeastNorm) {
     for (const Index i : {n - 2, n - 1}) entries.insert(entries.end(), {{i, n - 2, 1.0}, {i, n - 1, 3.0}});
     entries.emplace_back(n - 1, n - 1, difference);
     fill(entries, n, sparse, dense);
-    sparse.right().setOnes();
-    dense.right().setOnes();
+    sparse.right().set_constant(1.0);
+    dense.right().set_constant(1.0);
     ASSERT_TRUE(sparse.solve(1e-12, Unit::row));
     ASSERT_TRUE(dense.solve(1e-12, Unit::row));
     EXPECT_FALSE(sparse.is_factorised());
@@ -108,7 +108,7 @@ TEST(SparseSystem, SaysWhereThereIsNoSolution) {
   SparseSystem system;
   system.reset(2);
   for (const auto& [i, j, value] : Entries{{0, 0, 1.0}, {1, 0, 1.0}, {1, 1, 0.0}}) system.add(i, j, value);
-  system.right() << 1.0, 2.0;
+  system.right() = {1.0, 2.0};
   EXPECT_FALSE(system.solve(0.0, Unit::row));
   system.reset(2);
   for (const auto& [i, j, value] : Entries{{0, 0, 1.0}, {1, 0, NAN}, {1, 1, 1.0}}) system.add(i, j, value);

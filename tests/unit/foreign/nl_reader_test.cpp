@@ -135,7 +135,8 @@ TEST(NlReader, ShippedExamples) {
     const auto problem = parse(text.str(), entry.path().filename().string());
     ASSERT_TRUE(problem) << to_text(problem.error());
     EXPECT_GT((*problem)->pairs(), 0);
-    const Eigen::VectorXd w = (*problem)->start().array() + 0.3;
+    linalg::Vector w = (*problem)->start();
+    w.add_to_all(0.3);
     mpcc::expect_correct_derivatives(**problem, w);
   }
   EXPECT_EQ(files, 6);

@@ -4,11 +4,11 @@
 #include <memory>
 #include <string>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "saltus/foreign/parse.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::foreign {
 
@@ -35,15 +35,10 @@ inline std::unique_ptr<Problem> parsed(const std::string& text) {
   return nullptr;
 }
 
-inline Eigen::VectorXd point(std::initializer_list<double> values) {
-  Eigen::VectorXd w(static_cast<Eigen::Index>(values.size()));
-  Eigen::Index i = 0;
-  for (const double value : values) w[i++] = value;
-  return w;
-}
+inline linalg::Vector point(std::initializer_list<double> values) { return values; }
 
-inline Eigen::VectorXd functions_at(Problem& problem, const Eigen::VectorXd& w) {
-  Eigen::VectorXd c(problem.rows());
+inline linalg::Vector functions_at(Problem& problem, const linalg::Vector& w) {
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
   return c;
 }

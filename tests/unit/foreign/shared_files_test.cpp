@@ -33,9 +33,9 @@ TEST(SharedFiles, AllAreRead) {
     ASSERT_TRUE(problem) << to_text(problem.error());
     EXPECT_GT((*problem)->pairs(), 0) << entry.path();
     const auto w = (*problem)->start();
-    Eigen::VectorXd c((*problem)->rows());
+    linalg::Vector c((*problem)->rows());
     (*problem)->functions(w, c);
-    EXPECT_TRUE(c.allFinite() && std::isfinite((*problem)->objective(w))) << entry.path();
+    EXPECT_TRUE(c.all_finite() && std::isfinite((*problem)->objective(w))) << entry.path();
   }
   EXPECT_GE(files, 53);
 }

@@ -63,7 +63,7 @@ class PolynomialProblem final : public Problem {
   explicit PolynomialProblem(PolynomialStatement statement) : statement_(std::move(statement)) {
     auto& [n, f, g, G, H, w_bounds, g_bounds] = statement_;
     if (w_bounds.lower.size() == 0) {
-      w_bounds.upper = Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
+      w_bounds.upper = linalg::Vector::constant(n, std::numeric_limits<double>::infinity());
       w_bounds.lower = -w_bounds.upper;
     }
     rows_ = g;
@@ -89,21 +89,21 @@ class PolynomialProblem final : public Problem {
     for (int i = 0; i < variables(); ++i) gradient[i] = statement_.f.derivative(i).value(w);
   }
   void functions(ConstVectorView w, VectorView c) override {
-    for (std::size_t row = 0; row < rows_.size(); ++row) c[static_cast<Eigen::Index>(row)] = rows_[row].value(w);
+    for (std::size_t row = 0; row < rows_.size(); ++row) c[static_cast<linalg::Index>(row)] = rows_[row].value(w);
   }
   void jacobian(ConstVectorView w, VectorView values) override {
-    Eigen::Index next = 0;
+    linalg::Index next = 0;
     for (const auto& row : rows_) {
       for (int i = 0; i < variables(); ++i) values[next++] = row.derivative(i).value(w);
     }
   }
   void hessian(ConstVectorView w, double objective_factor, ConstVectorView y, VectorView values) override {
-    Eigen::Index next = 0;
+    linalg::Index next = 0;
     for (int i = 0; i < variables(); ++i) {
       for (int j = 0; j <= i; ++j) {
         double sum = objective_factor * statement_.f.derivative(i).derivative(j).value(w);
         for (std::size_t row = 0; row < rows_.size(); ++row) {
-          sum += y[static_cast<Eigen::Index>(row)] * rows_[row].derivative(i).derivative(j).value(w);
+          sum += y[static_cast<linalg::Index>(row)] * rows_[row].derivative(i).derivative(j).value(w);
         }
         values[next++] = sum;
       }

@@ -5,22 +5,18 @@
 #include <functional>
 #include <initializer_list>
 
-#include <Eigen/Core>
 #include <gtest/gtest.h>
 
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
 
 namespace saltus::pipeline {
 
-inline Eigen::VectorXd vector(std::initializer_list<double> values) {
-  Eigen::VectorXd made(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), made.begin());
-  return made;
-}
+inline linalg::Vector vector(std::initializer_list<double> values) { return values; }
 
 /// A solution as functions of time.
 struct Exact {
-  std::function<Eigen::VectorXd(double)> x, selections, lambda;
+  std::function<linalg::Vector(double)> x, selections, lambda;
 };
 
 inline discretization::ButcherTableau radau() {
@@ -47,7 +43,7 @@ inline discretization::SolvedElement element(double t, double h, const Exact& ex
 }
 
 /// lambda_n and lambda_p.
-inline Eigen::VectorXd sides(double psi) { return vector({std::max(-psi, 0.0), std::max(psi, 0.0)}); }
+inline linalg::Vector sides(double psi) { return vector({std::max(-psi, 0.0), std::max(psi, 0.0)}); }
 
 inline OptimizedRun run_of(const model::Ocp& ocp, const discretization::OcpSolution& solution,
                            reformulation::Form form = reformulation::Form::step) {

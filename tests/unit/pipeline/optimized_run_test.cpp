@@ -14,7 +14,7 @@ namespace {
 
 using casadi::SX;
 using discretization::OcpSolution;
-using Eigen::VectorXd;
+using linalg::Vector;
 using model::Builder;
 using model::Ocp;
 using result::EventKind;
@@ -110,8 +110,9 @@ TEST(OptimizedRunTest, CrossingInStewartsForm) {
   const auto dcs = reformulation::reformulate(ocp.system, {reformulation::Form::stewart, 2});
   ASSERT_TRUE(dcs.has_value());
   ASSERT_EQ(dcs->parts.size(), 1U);
-  const Eigen::VectorXi signs = dcs->parts.front().signs.col(0);
-  ASSERT_EQ(signs.size(), 2);
+  const auto& table = dcs->parts.front().signs;
+  ASSERT_EQ(table.rows(), 2);
+  const int signs[] = {table(0, 0), table(1, 0)};
   const auto x = [](double t) { return vector({refracted(t)}); };
   const auto lambda = [&](double t) {
     const double larger = std::abs(refracted(t));
@@ -227,13 +228,13 @@ TEST(OptimizedRunTest, PointsThatAreNoSolutions) {
     guess.initial_state = {0.0};
     guess.states.assign((*problem)->start_fractions().size(), {0.5});
     (*problem)->set_start(guess);
-    const Eigen::VectorXd start = (*problem)->start();
+    const Vector start = (*problem)->start();
     const auto run = run_of(ocp, (*problem)->read(start), form);
     EXPECT_EQ(run.elements.t.size(), 6U * 4U);
     EXPECT_EQ(run.final.t, 2.0);
     EXPECT_EQ(run.trajectory.u.front(), std::vector<double>{2.0});
     EXPECT_EQ(run.trajectory.u.back(), std::vector<double>{-1.0});
-    const VectorXd nowhere = VectorXd::Constant(start.size(), std::nan(""));
+    const Vector nowhere = Vector::constant(start.size(), std::nan(""));
     EXPECT_FALSE(run_of(ocp, (*problem)->read(nowhere), form).trajectory.t.empty());
   }
 }

@@ -2,10 +2,12 @@
 #include "saltus/reformulation/dcs.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include <gtest/gtest.h>
 
 #include "dcs_tools.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/builder.hpp"
 #include "saltus/reformulation/sizes.hpp"
 
@@ -130,12 +132,9 @@ TEST(SparseSignMatrices, NeedFewerLiftedVariables) {
 /// With zeros in S, g = -S psi compares sums of different lengths: at psi = (0.1, 10) the region psi_1 > 0 has g = -0.1
 /// and (psi_1 < 0, psi_2 > 0), where the point is not, has g = -9.9. So every pattern is a region in Stewart's form.
 TEST(SparseSignMatrices, AreNoIndicatorsOfStewartsForm) {
-  Eigen::MatrixXi signs(3, 2);
-  signs << 1, 0, -1, 1, -1, -1;
-  const Eigen::Vector2d psi(0.1, 10.0);
-  Eigen::Index smallest = 0;
-  (-signs.cast<double>() * psi).minCoeff(&smallest);
-  EXPECT_EQ(smallest, 1);
+  const linalg::Matrix signs{{1, 0}, {-1, 1}, {-1, -1}};
+  const linalg::Vector psi{0.1, 10.0}, all_g = -signs * psi;
+  EXPECT_EQ(all_g.index_of_min(), 1);
 
   Builder builder("sparse");
   const SX x = builder.state("x", {0.0}), y = builder.state("y", {0.0});
@@ -147,7 +146,7 @@ TEST(SparseSignMatrices, AreNoIndicatorsOfStewartsForm) {
   ASSERT_EQ(dcs.parts[0].signs.rows(), 4);
   const auto g = indicators(dcs, {0.1, 10.0});
   const auto active = std::min_element(g.begin(), g.end()) - g.begin();
-  EXPECT_EQ(dcs.parts[0].signs.row(active), (Eigen::RowVector2i(1, 1)));
+  EXPECT_TRUE(std::ranges::equal(dcs.parts[0].signs.row(active), std::array{1, 1}));
 }
 
 TEST(IndependentGroups, AreSummed) {

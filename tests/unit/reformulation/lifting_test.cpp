@@ -10,8 +10,8 @@ namespace saltus::reformulation {
 namespace {
 
 /// All sign patterns of n functions, + before -, the first function slowest.
-Eigen::MatrixXi all_patterns(int n) {
-  Eigen::MatrixXi signs(1 << n, n);
+linalg::IntMatrix all_patterns(int n) {
+  linalg::IntMatrix signs(1 << n, n);
   for (int i = 0; i < signs.rows(); ++i) {
     for (int j = 0; j < n; ++j) signs(i, j) = ((i >> (n - 1 - j)) & 1) == 0 ? 1 : -1;
   }
@@ -36,7 +36,7 @@ std::vector<double> theta(const Lifting& lifting, const std::vector<double>& alp
 }
 
 /// eq. (21), written out.
-std::vector<double> theta(const Eigen::MatrixXi& signs, const std::vector<double>& alpha) {
+std::vector<double> theta(const linalg::IntMatrix& signs, const std::vector<double>& alpha) {
   std::vector<double> result;
   for (int i = 0; i < signs.rows(); ++i) {
     double product = 1.0;
@@ -59,7 +59,7 @@ std::size_t longest(const Lifting& lifting) {
   return most;
 }
 
-void expect_same_multipliers(const Eigen::MatrixXi& signs, int most_factors) {
+void expect_same_multipliers(const linalg::IntMatrix& signs, int most_factors) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const Lifting lifted = lift(signs, most_factors);
@@ -104,11 +104,9 @@ TEST(Lifting, ThreeFunctions) {
 
 /// The algorithm as printed gives theta_1 = 0.5 here, and the thetas of the second matrix in another order.
 TEST(Lifting, FunctionsThatDoNotMatterToARegion) {
-  Eigen::MatrixXi first(3, 2);
-  first << 0, 1, 1, -1, -1, -1;
+  const linalg::IntMatrix first{{0, 1}, {1, -1}, {-1, -1}};
   EXPECT_EQ(lift(first, 2).theta.front(), (LiftedProduct{-1, {{1, false}}}));
-  Eigen::MatrixXi second(3, 2);
-  second << -1, 1, -1, -1, 1, 0;
+  const linalg::IntMatrix second{{-1, 1}, {-1, -1}, {1, 0}};
   EXPECT_EQ(lift(second, 2).theta.back(), (LiftedProduct{-1, {{0, false}}}));
   for (const auto& signs : {first, second}) expect_same_multipliers(signs, 2);
 }
@@ -117,7 +115,7 @@ TEST(Lifting, RandomSparseRegions) {
   std::mt19937 random(11);
   std::uniform_int_distribution<int> sign(-1, 1);
   for (int run = 0; run < 200; ++run) {
-    Eigen::MatrixXi signs(12, 7);
+    linalg::IntMatrix signs(12, 7);
     for (int i = 0; i < signs.rows(); ++i) {
       for (int j = 0; j < signs.cols(); ++j) signs(i, j) = sign(random);
     }

@@ -15,7 +15,7 @@ using result::HomotopyPhase;
 using result::StationarityType;
 
 /// Solves the branch of the sides, then descends from it.
-Solution descended(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, const Eigen::VectorXd& from) {
+Solution descended(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides, const linalg::Vector& from) {
   adapters::IpoptSolver ipopt;
   adapters::HighsLpcc highs;
   const SolveOptions options;
@@ -42,7 +42,7 @@ TEST(Descent, FlipsWhatAMultiplierPointsAt) {
     if (implied) small::imply_signs(statement);
     mpcc::PolynomialProblem problem(statement);
     if (implied) small::imply_signs(problem);
-    const Solution solution = descended(problem, {G}, Eigen::Vector2d(0.0, 1.0));
+    const Solution solution = descended(problem, {G}, linalg::Vector{0.0, 1.0});
     EXPECT_NEAR(solution.w[0], 0.5, 1e-12);
     EXPECT_NEAR(solution.objective, -0.25, 1e-12);
     EXPECT_EQ(solution.sides, std::vector{H});
@@ -59,7 +59,7 @@ TEST(Descent, LinearProgramFindsWhatNoSingleFlipDoes) {
       4, 2, {{{1.0, {2}}, {-1.0, {1}}, {1.0, {0, 1}}, {1.0, {0, 0, 2}}, {-1.0, {0, 0, 1}}, {1.0, {0, 0, 0, 1}}}});
   small::add_row(statement, {{{1.0, {1}}, {-1.0, {0, 0, 1}}}}, 0.0, 0.0);
   mpcc::PolynomialProblem problem(statement);
-  const Solution solution = descended(problem, {G, G}, Eigen::Vector4d(0.0, 1.0, 0.0, 1.0));
+  const Solution solution = descended(problem, {G, G}, linalg::Vector{0.0, 1.0, 0.0, 1.0});
   EXPECT_NEAR(solution.objective, -0.5, 1e-12);
   EXPECT_EQ(solution.sides, (std::vector{H, H}));
   EXPECT_GE(count(solution, HomotopyPhase::lpcc), 1);
@@ -68,7 +68,7 @@ TEST(Descent, LinearProgramFindsWhatNoSingleFlipDoes) {
 
 TEST(Descent, BStationaryWithoutBeingStrongly) {
   mpcc::PolynomialProblem problem(small::b_not_strong());
-  const Solution solution = descended(problem, {G}, Eigen::Vector3d(0.0, 1.0, 0.0));
+  const Solution solution = descended(problem, {G}, linalg::Vector{0.0, 1.0, 0.0});
   EXPECT_NEAR(solution.w.norm(), 0.0, 1e-12);
   EXPECT_NE(solution.certificate.stationarity_type, StationarityType::S);
   EXPECT_EQ(solution.certificate.b_stationary, true);
@@ -93,7 +93,7 @@ mpcc::PolynomialStatement element() {
       statement.H.push_back(small::variable(lambda));
     }
   }
-  statement.w_bounds.lower.setZero();
+  statement.w_bounds.lower.set_zero();
   small::add_row(statement, {{{1.0, {0, 0, 0, 0, 1}}, {1.0, {0, 0, 0, 0, 0, 1}}}}, 1.0, 1.0);
   return statement;
 }
@@ -109,7 +109,7 @@ TEST(Descent, GroupsFlipTogetherAndClosuresHold) {
       if (closes) closure.equal.emplace_back(4, 5);
       return closure;
     });
-    const Solution solution = descended(problem, {H, H, H, H}, Eigen::VectorXd::Constant(6, 0.5));
+    const Solution solution = descended(problem, {H, H, H, H}, linalg::Vector::constant(6, 0.5));
     // theta = (1, 2), lambda = 0: -5; and of the lengths (w4 - 0.3)^2 - 0.09.
     EXPECT_NEAR(solution.w[0], 1.0, 1e-12);
     EXPECT_NEAR(solution.w[1], 2.0, 1e-12);
@@ -131,21 +131,20 @@ TEST(Descent, WhatAClosureHoldsIsNoChoice) {
     closure.at_lower = {0};
     return closure;
   });
-  const Solution solution = descended(problem, {G}, Eigen::Vector2d(0.0, 1.0));
+  const Solution solution = descended(problem, {G}, linalg::Vector{0.0, 1.0});
   EXPECT_NEAR(solution.w.norm(), 0.0, 1e-9);
   EXPECT_EQ(count(solution, HomotopyPhase::branch), 1);
   EXPECT_EQ(count(solution, HomotopyPhase::lpcc), 0);
   EXPECT_EQ(solution.certificate.b_stationary, true);
 }
 
-MpccMultipliers of_pairs(const Eigen::VectorXd& nu_G, const Eigen::VectorXd& nu_H) {
+MpccMultipliers of_pairs(const linalg::Vector& nu_G, const linalg::Vector& nu_H) {
   return {.rows = {}, .lower = {}, .upper = {}, .G = nu_G, .H = nu_H};
 }
 
 TEST(StationarityType, ByTheSignsOnBiactivePairs) {
   const auto type = [](double G0, double H0, double G1, double H1) {
-    return certificate::stationarity_type(of_pairs(Eigen::Vector2d(G0, G1), Eigen::Vector2d(H0, H1)), {true, true},
-                                          1e-8);
+    return certificate::stationarity_type(of_pairs(linalg::Vector{G0, G1}, linalg::Vector{H0, H1}), {true, true}, 1e-8);
   };
   EXPECT_EQ(type(1.0, 2.0, 0.0, 3.0), StationarityType::S);
   EXPECT_EQ(type(1.0, 2.0, -1e-9, 3.0), StationarityType::S);  // rounding
@@ -155,7 +154,7 @@ TEST(StationarityType, ByTheSignsOnBiactivePairs) {
   EXPECT_EQ(type(1.0, 2.0, -1.0, 3.0), StationarityType::A);
   EXPECT_EQ(type(1.0, -2.0, -1.0, -3.0), StationarityType::W);
   // Pairs that are not biactive have no say.
-  const auto multipliers = of_pairs(Eigen::Vector2d(-1.0, 1.0), Eigen::Vector2d(-1.0, 1.0));
+  const auto multipliers = of_pairs(linalg::Vector{-1.0, 1.0}, linalg::Vector{-1.0, 1.0});
   EXPECT_EQ(certificate::stationarity_type(multipliers, {false, true}, 1e-8), StationarityType::S);
 }
 

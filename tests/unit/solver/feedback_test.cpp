@@ -18,9 +18,9 @@ class Regulator final : public mpcc::Problem {
 
   explicit Regulator(int elements = 1) : elements_(elements) {
     const int n = variables(), rows = constraints();
-    bounds_.lower = Eigen::VectorXd::Constant(n, -inf);
-    bounds_.upper = Eigen::VectorXd::Constant(n, inf);
-    rows_.lower = rows_.upper = Eigen::VectorXd::Zero(rows);
+    bounds_.lower = linalg::Vector::constant(n, -inf);
+    bounds_.upper = linalg::Vector::constant(n, inf);
+    rows_.lower = rows_.upper = linalg::Vector::zero(rows);
     rows_.lower[0] = rows_.upper[0] = a * start_value;
     for (int k = 0; k < intervals; ++k) {
       chain_.intervals.push_back({{control(k), 1}, k * elements, elements});
@@ -51,7 +51,7 @@ class Regulator final : public mpcc::Problem {
     return sum;
   }
   void objective_gradient(mpcc::ConstVectorView w, mpcc::VectorView gradient) override {
-    gradient.setZero();
+    gradient.set_zero();
     for (int k = 0; k < intervals; ++k) gradient[control(k)] = 2.0 * r * w[control(k)];
     gradient[variables() - 1] = 2.0 * q * w[variables() - 1];
   }
@@ -67,7 +67,7 @@ class Regulator final : public mpcc::Problem {
     }
   }
   void hessian(mpcc::ConstVectorView, double factor, mpcc::ConstVectorView, mpcc::VectorView values) override {
-    values.setConstant(2.0 * factor * r);
+    values.set_constant(2.0 * factor * r);
     values[intervals] = 2.0 * factor * q;
   }
   [[nodiscard]] const mpcc::Pattern& jacobian_pattern() const override { return jacobian_; }
@@ -85,9 +85,9 @@ class Regulator final : public mpcc::Problem {
 /// Without controls but the last.
 Solution at_zero(const Regulator& problem, double u_of_last) {
   Solution solution;
-  solution.w = Eigen::VectorXd::Zero(problem.variables());
+  solution.w = linalg::Vector::zero(problem.variables());
   solution.w[problem.control(Regulator::intervals - 1)] = u_of_last;
-  solution.multipliers.rows = Eigen::VectorXd::Zero(problem.constraints());
+  solution.multipliers.rows = linalg::Vector::zero(problem.constraints());
   // Rows hold: each state is what the one before makes of it.
   double x = Regulator::start_value;
   const int elements = problem.constraints() / Regulator::intervals;

@@ -14,7 +14,7 @@ mpcc::PolynomialProblem circle_on_axes() {
   statement.variables = 3;
   statement.g = {{{{1.0, {2}}, {1.0, {0, 2}}, {1.0, {0, 0, 1}}, {-2.0, {}}}},
                  {{{1.0, {0, 0, 1}}, {-1.0, {1, 1}}, {-1.0, {}}}}};
-  statement.g_bounds = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+  statement.g_bounds = {linalg::Vector::zero(2), linalg::Vector::zero(2)};
   statement.G = {{{{1.0, {1}}}}};
   statement.H = {{{{1.0, {0, 1}}}}};
   return mpcc::PolynomialProblem(statement);
@@ -22,19 +22,19 @@ mpcc::PolynomialProblem circle_on_axes() {
 
 TEST(Polish, NewtonToRounding) {
   auto problem = circle_on_axes();
-  Eigen::VectorXd w = Eigen::Vector3d(1.01, 1e-5, 0.98);
+  linalg::Vector w{1.01, 1e-5, 0.98};
   EXPECT_EQ(polish(problem, w), PolishOutcome::polished);
-  EXPECT_NEAR((w - Eigen::Vector3d(1.0, 0.0, 1.0)).norm(), 0.0, 1e-14);
+  EXPECT_NEAR((w - linalg::Vector{1.0, 0.0, 1.0}).norm(), 0.0, 1e-14);
 }
 
 TEST(Polish, LeavesThePointAloneWhereItFails) {
   auto problem = circle_on_axes();
-  const Eigen::VectorXd middle = Eigen::Vector3d(0.7, 0.7, 1.0);
-  Eigen::VectorXd w = middle;
+  const linalg::Vector middle{0.7, 0.7, 1.0};
+  linalg::Vector w = middle;
   EXPECT_EQ(polish(problem, w), PolishOutcome::no_active_set);
   EXPECT_EQ(w, middle);
   // Newton with w1 = 0 goes to w0 = -1 from here: a solution of the equations that violates a sign.
-  const Eigen::VectorXd beyond = Eigen::Vector3d(-0.9, 1e-6, 1.0);
+  const linalg::Vector beyond{-0.9, 1e-6, 1.0};
   w = beyond;
   EXPECT_EQ(polish(problem, w), PolishOutcome::violated);
   EXPECT_EQ(w, beyond);
@@ -45,16 +45,16 @@ TEST(Polish, SumsOfNonnegativeTermsVanishTermByTerm) {
   mpcc::PolynomialStatement statement;
   statement.variables = 3;
   statement.g = {{{{1.0, {0, 0, 1}}, {-1.0, {1}}, {1.0, {0, 1}}, {-1.0, {}}}}};
-  statement.g_bounds = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
+  statement.g_bounds = {linalg::Vector::zero(1), linalg::Vector::zero(1)};
   statement.G = {{{{1.0, {1}}, {1.0, {0, 1}}}}};
   statement.H = {{{{1.0, {0, 0, 1}}}}};
-  statement.w_bounds = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(10.0)};
+  statement.w_bounds = {linalg::Vector::zero(3), linalg::Vector::constant(3, 10.0)};
   mpcc::PolynomialProblem problem(statement);
   problem.set_sign(0, mpcc::Sign::implied);
   problem.set_sign(1, mpcc::Sign::implied);
-  Eigen::VectorXd w = Eigen::Vector3d(3e-6, 1e-6, 1.0);
+  linalg::Vector w{3e-6, 1e-6, 1.0};
   EXPECT_EQ(polish(problem, w), PolishOutcome::polished);
-  EXPECT_NEAR((w - Eigen::Vector3d(0.0, 0.0, 1.0)).norm(), 0.0, 1e-14);
+  EXPECT_NEAR((w - linalg::Vector{0.0, 0.0, 1.0}).norm(), 0.0, 1e-14);
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ TEST_P(EveryRelaxation, RelaxedProblemHasExactDerivatives) {
   statement.variables = 3;
   statement.f = {{{1.0, {2, 1}}}};
   statement.g = {{{{1.0, {1, 1, 1}}}}};
-  statement.g_bounds = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
+  statement.g_bounds = {linalg::Vector::zero(1), linalg::Vector::zero(1)};
   statement.G = {{{{1.0, {1}}, {0.5, {0, 0, 2}}}}, {{{1.0, {0, 1}}}}};
   statement.H = {{{{1.0, {1, 1}}}}, {{{1.0, {0, 0, 1}}, {0.3, {0, 1}}}}};
   mpcc::PolynomialProblem problem(statement);
@@ -97,9 +97,9 @@ TEST_P(EveryRelaxation, RelaxedProblemHasExactDerivatives) {
     relaxed.set_sigma(0.09);
     EXPECT_EQ(relaxed.constraints(), 1 + 3 + 2 * inequalities(GetParam()));
     EXPECT_EQ(relaxed.pairs(), 0);
-    Eigen::VectorXd w = relaxed.with_elastic_variables(Eigen::Vector3d(0.7, 0.9, 0.4));
+    linalg::Vector w = relaxed.with_elastic_variables(linalg::Vector{0.7, 0.9, 0.4});
     ASSERT_EQ(w.size(), 3 + (steering == Steering::direct ? 0 : steering == Steering::l1 ? 2 : 1));
-    for (Eigen::Index i = 3; i < w.size(); ++i) w[i] = 0.09 + 0.02 * static_cast<double>(i);  // off all seams
+    for (linalg::Index i = 3; i < w.size(); ++i) w[i] = 0.09 + 0.02 * static_cast<double>(i);  // off all seams
     mpcc::expect_correct_derivatives(relaxed, w);
   }
 }
@@ -111,10 +111,10 @@ TEST(RelaxedProblem, OneEvaluationPerPoint) {
     RelaxedProblem relaxed(problem, Relaxation::fischer_burmeister, steering);
     relaxed.set_sigma(0.1);
     problem.forget_counts();
-    Eigen::VectorXd w = Eigen::VectorXd::Constant(relaxed.variables(), 0.3);
-    Eigen::VectorXd c(relaxed.constraints());
-    Eigen::VectorXd jacobian(relaxed.jacobian_pattern().entries());
-    Eigen::VectorXd hessian(relaxed.hessian_pattern().entries());
+    linalg::Vector w = linalg::Vector::constant(relaxed.variables(), 0.3);
+    linalg::Vector c(relaxed.constraints());
+    linalg::Vector jacobian(relaxed.jacobian_pattern().entries());
+    linalg::Vector hessian(relaxed.hessian_pattern().entries());
     for (int point = 1; point <= 3; ++point) {
       w[0] += 0.1;
       relaxed.functions(w, c);

@@ -26,28 +26,30 @@ inline PolynomialStatement statement(int variables, int pairs, Polynomial f) {
   PolynomialStatement result;
   result.variables = variables;
   result.f = std::move(f);
-  result.g_bounds = {Eigen::VectorXd(0), Eigen::VectorXd(0)};
+  result.g_bounds = {linalg::Vector(0), linalg::Vector(0)};
   for (int pair = 0; pair < pairs; ++pair) {
     result.G.push_back(variable(2 * pair));
     result.H.push_back(variable(2 * pair + 1));
   }
-  result.w_bounds = {Eigen::VectorXd::Constant(variables, -infinity), Eigen::VectorXd::Constant(variables, infinity)};
+  result.w_bounds = {linalg::Vector::constant(variables, -infinity), linalg::Vector::constant(variables, infinity)};
   return result;
 }
 
 inline void add_row(PolynomialStatement& to, Polynomial g, double lower, double upper) {
   to.g.push_back(std::move(g));
   auto& bounds = to.g_bounds;
-  const Eigen::Index rows = bounds.lower.size();
-  bounds.lower.conservativeResize(rows + 1);
-  bounds.upper.conservativeResize(rows + 1);
+  const linalg::Index rows = bounds.lower.size();
+  bounds.lower.resize_and_keep(rows + 1);
+  bounds.upper.resize_and_keep(rows + 1);
   bounds.lower[rows] = lower;
   bounds.upper[rows] = upper;
 }
 
 /// Sides that are bounds of variables instead of constraints.
 /// Only for pairs of variables in order.
-inline void imply_signs(PolynomialStatement& to) { to.w_bounds.lower.head(2 * static_cast<int>(to.G.size())).setZero(); }
+inline void imply_signs(PolynomialStatement& to) {
+  to.w_bounds.lower.head(2 * static_cast<int>(to.G.size())).set_zero();
+}
 inline void imply_signs(PolynomialProblem& of) {
   for (int side = 0; side < 2 * of.pairs(); ++side) of.set_sign(side, mpcc::Sign::implied);
 }

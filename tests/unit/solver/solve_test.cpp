@@ -19,7 +19,7 @@ using result::StationarityType;
 using result::Termination;
 using small::infinity;
 
-Solution solved(mpcc::Problem& problem, const Eigen::VectorXd& start, const SolveOptions& options = {}) {
+Solution solved(mpcc::Problem& problem, const linalg::Vector& start, const SolveOptions& options = {}) {
   adapters::IpoptSolver ipopt;
   adapters::HighsLpcc highs;
   auto solution = solve(problem, ipopt, highs, options, Start{.w = start, .multipliers = {}});
@@ -42,11 +42,11 @@ void expect_certified(mpcc::PolynomialProblem& problem, const Solution& solution
   const int n = problem.variables();
   const int n_g = problem.constraints();
   const int pairs = problem.pairs();
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(solution.w, c);
-  Eigen::VectorXd slope(n);
+  linalg::Vector slope(n);
   problem.objective_gradient(solution.w, slope);
-  Eigen::VectorXd entries(problem.jacobian_pattern().entries());
+  linalg::Vector entries(problem.jacobian_pattern().entries());
   problem.jacobian(solution.w, entries);
   const auto& m = solution.multipliers;
   ASSERT_EQ(m.rows.size(), n_g);
@@ -56,9 +56,9 @@ void expect_certified(mpcc::PolynomialProblem& problem, const Solution& solution
     for (int i = 0; i < n; ++i) slope[i] += y * entries[row * n + i];
   }
   slope += m.upper - m.lower;
-  EXPECT_LE(slope.lpNorm<Eigen::Infinity>(), tolerance);
-  EXPECT_GE(m.lower.minCoeff(), 0.0);
-  EXPECT_GE(m.upper.minCoeff(), 0.0);
+  EXPECT_LE(slope.max_abs(), tolerance);
+  EXPECT_GE(m.lower.min(), 0.0);
+  EXPECT_GE(m.upper.min(), 0.0);
   for (int i = 0; i < n; ++i) {
     if (m.lower[i] > tolerance) {
       EXPECT_NEAR(solution.w[i], problem.variable_bounds().lower[i], tolerance);
@@ -101,7 +101,7 @@ TEST_P(EveryMethod, MinimumOnOneAxis) {
   SolveOptions options;
   options.relaxation = std::get<0>(GetParam());
   options.steering = std::get<1>(GetParam());
-  const Solution solution = solved(problem, Eigen::Vector2d(0.0, 5.0), options);
+  const Solution solution = solved(problem, linalg::Vector{0.0, 5.0}, options);
   EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
   EXPECT_TRUE(solution.crossed_over);
   EXPECT_NEAR(solution.w[0], 1.0, 1e-12);
@@ -111,7 +111,7 @@ TEST_P(EveryMethod, MinimumOnOneAxis) {
   expect_certified(problem, solution, 1e-10);
 
   options.crossover = false;
-  const Solution relaxed = solved(problem, Eigen::Vector2d(0.0, 5.0), options);
+  const Solution relaxed = solved(problem, linalg::Vector{0.0, 5.0}, options);
   EXPECT_FALSE(relaxed.crossed_over);
   EXPECT_NEAR(relaxed.w[0], 1.0, 1e-6) << log_of(relaxed);
   EXPECT_NEAR(relaxed.w[1], 0.0, 1e-6) << log_of(relaxed);
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
 TEST(Solve, StronglyStationaryBiactivePoint) {
   // min (w0 + 1)^2 + (w1 + 2)^2: the origin, nu = (2, 4).
   mpcc::PolynomialProblem problem(small::statement(2, 1, small::distance(-1.0, -2.0)));
-  const Solution solution = solved(problem, Eigen::Vector2d(1.0, 1.0));
+  const Solution solution = solved(problem, linalg::Vector{1.0, 1.0});
   EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
   EXPECT_NEAR(solution.w.norm(), 0.0, 1e-12);
   EXPECT_EQ(solution.certificate.stationarity_type, StationarityType::S);
@@ -142,7 +142,7 @@ TEST(Solve, StronglyStationaryBiactivePoint) {
 
 TEST(Solve, NotStronglyButBStationary) {
   mpcc::PolynomialProblem problem(small::b_not_strong());
-  const Solution solution = solved(problem, Eigen::Vector3d(0.0, 1.0, 0.0));
+  const Solution solution = solved(problem, linalg::Vector{0.0, 1.0, 0.0});
   EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
   EXPECT_NEAR(solution.w.norm(), 0.0, 1e-10);
   EXPECT_NE(solution.certificate.stationarity_type, StationarityType::S);
@@ -156,14 +156,14 @@ TEST(Solve, Infeasible) {
   auto statement = small::statement(2, 1, small::distance(1.0, 1.0));
   small::add_row(statement, {{{1.0, {1, 1}}}}, 1.0, 1.0);  // w0 w1 = 1
   mpcc::PolynomialProblem problem(statement);
-  const Solution solution = solved(problem, Eigen::Vector2d(1.0, 1.0));
+  const Solution solution = solved(problem, linalg::Vector{1.0, 1.0});
   EXPECT_EQ(solution.termination, Termination::infeasible) << log_of(solution);
   EXPECT_NE(solution.message.find("G[0]"), std::string::npos) << solution.message;
 }
 
 TEST(Solve, Unbounded) {
   mpcc::PolynomialProblem problem(small::statement(2, 1, {{{-1.0, {1}}, {-1.0, {0, 1}}}}));
-  const Solution solution = solved(problem, Eigen::Vector2d(1.0, 2.0));
+  const Solution solution = solved(problem, linalg::Vector{1.0, 2.0});
   EXPECT_EQ(solution.termination, Termination::not_converged) << log_of(solution);
   EXPECT_NE(solution.message.find("unbounded"), std::string::npos) << solution.message;
 }
@@ -175,14 +175,14 @@ TEST(Solve, ClarkePointOfThePathIsNoSolution) {
   options.crossover = false;
   options.schedule.sigma_final = 1e-3;
   options.tolerance = 0.04;  // the sides are sqrt(sigma_final) = 0.032 there
-  const Solution clarke = solved(problem, Eigen::Vector2d(0.5, 0.5), options);
+  const Solution clarke = solved(problem, linalg::Vector{0.5, 0.5}, options);
   EXPECT_EQ(clarke.termination, Termination::not_converged) << log_of(clarke);
   EXPECT_EQ(clarke.certificate.stationarity_type, StationarityType::C);
   EXPECT_EQ(clarke.certificate.b_stationary, false);
   EXPECT_NEAR(clarke.certificate.lpcc_decrease.value_or(0.0), -1.0, 0.05);
   EXPECT_NE(clarke.message.find("not B-stationary"), std::string::npos) << clarke.message;
 
-  const Solution solution = solved(problem, Eigen::Vector2d(0.5, 0.5));
+  const Solution solution = solved(problem, linalg::Vector{0.5, 0.5});
   EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
   EXPECT_NEAR(solution.objective, 1.0, 1e-12);
 }
@@ -191,7 +191,7 @@ TEST(Solve, ANonlinearProgramIsAProblemWithoutPairs) {
   auto statement = small::statement(2, 0, small::distance(2.0, 1.0));
   small::add_row(statement, {{{1.0, {1}}, {1.0, {0, 1}}}}, -infinity, 1.0);
   mpcc::PolynomialProblem problem(statement);
-  const Solution solution = solved(problem, Eigen::Vector2d(0.0, 0.0));
+  const Solution solution = solved(problem, linalg::Vector{0.0, 0.0});
   EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
   EXPECT_NEAR(solution.w[0], 1.0, 1e-12);
   EXPECT_NEAR(solution.multipliers.rows[0], 2.0, 1e-10);
@@ -201,14 +201,14 @@ TEST(Solve, ANonlinearProgramIsAProblemWithoutPairs) {
 
 TEST(Solve, StopsWhereItIsToldTo) {
   mpcc::PolynomialProblem problem(small::b_not_strong());
-  const Eigen::Vector3d start(0.0, 1.0, 0.0);
+  const linalg::Vector start{0.0, 1.0, 0.0};
   SolveOptions options;
   int asked = 0;
   options.is_interrupted = [&asked] { return ++asked > 8; };
   const Solution interrupted = solved(problem, start, options);
   EXPECT_EQ(interrupted.termination, Termination::stopped_by_user) << log_of(interrupted);
   EXPECT_LE(interrupted.iterations, 9);
-  EXPECT_TRUE(interrupted.w.allFinite());
+  EXPECT_TRUE(interrupted.w.all_finite());
 
   options = {};
   options.time_limit = 1e-9;
@@ -232,8 +232,8 @@ class SlowSolver final : public NlpSolver {
     report.iterations = std::min(needed_, options.iteration_limit);
     if (options.iteration_limit >= needed_) return report;
     report.termination = Termination::iteration_limit;
-    point.w.array() += 1e-7;
-    point.y.array() += 10.0;  // so that no last digits are found
+    point.w.add_to_all(1e-7);
+    point.y.add_to_all(10.0);  // so that no last digits are found
     return report;
   }
   [[nodiscard]] const char* name() const override { return "slow"; }
@@ -247,7 +247,7 @@ class SlowSolver final : public NlpSolver {
 Solution solved_slowly(int needed, int limit) {
   auto statement = small::minimum_on_one_axis();
   statement.variables = 3;
-  statement.w_bounds = {Eigen::Vector3d::Constant(-infinity), Eigen::Vector3d::Constant(infinity)};
+  statement.w_bounds = {linalg::Vector::constant(3, -infinity), linalg::Vector::constant(3, infinity)};
   small::add_row(statement, {{{1.0, {2}}, {1.0, {1}}, {-1.0, {0, 0, 1}}}}, 0.0, 0.0);
   small::add_row(statement, {{{1.0, {0, 0, 2}}}}, 4.0, 4.0);
   mpcc::PolynomialProblem problem(statement);
@@ -256,7 +256,7 @@ Solution solved_slowly(int needed, int limit) {
   SolveOptions options;
   options.first = FirstProblem::branch;
   options.iteration_limit = limit;
-  auto solution = solve(problem, slow, highs, options, Start{.w = Eigen::Vector3d(3.0, 0.0, 1.0), .multipliers = {}});
+  auto solution = solve(problem, slow, highs, options, Start{.w = linalg::Vector{3.0, 0.0, 1.0}, .multipliers = {}});
   EXPECT_TRUE(solution.has_value());
   return solution ? *solution : Solution{};
 }
@@ -280,7 +280,7 @@ TEST(Solve, EveryProblemIsReported) {
   SolveOptions options;
   std::size_t reported = 0;
   options.on_step = [&reported](const result::HomotopyStep&) { ++reported; };
-  const Solution solution = solved(problem, Eigen::Vector2d(0.0, 5.0), options);
+  const Solution solution = solved(problem, linalg::Vector{0.0, 5.0}, options);
   EXPECT_EQ(reported, solution.homotopy.size());
   int iterations = 0;
   for (const auto& step : solution.homotopy) iterations += step.iterations;
@@ -293,7 +293,7 @@ TEST(Solve, WarmStartsWithMultipliersReachTheSamePoint) {
   mpcc::PolynomialProblem problem(small::minimum_on_one_axis());
   SolveOptions options;
   options.warm_start = homotopy::WarmStart::primal_dual;
-  const Solution solution = solved(problem, Eigen::Vector2d(0.0, 5.0), options);
+  const Solution solution = solved(problem, linalg::Vector{0.0, 5.0}, options);
   EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
   EXPECT_NEAR(solution.w[0], 1.0, 1e-12);
 }

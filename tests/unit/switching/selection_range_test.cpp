@@ -4,25 +4,28 @@
 #include <cstddef>
 #include <random>
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::switching {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using linalg::Index;
+using linalg::Matrix;
+using linalg::Vector;
 
 /// Entries in [-1, 1], r rows.
-MatrixXd random_effects(std::mt19937_64& random, Index r, Index q) {
+Matrix random_effects(std::mt19937_64& random, Index r, Index q) {
   std::uniform_real_distribution<double> entry(-1.0, 1.0);
-  return MatrixXd::NullaryExpr(r, q, [&] { return entry(random); });
+  Matrix matrix(r, q);
+  for (double& value : matrix) value = entry(random);
+  return matrix;
 }
 
 /// Differences of n states, the last one at 0.
-MatrixXd differences(Index n) {
-  MatrixXd effects = MatrixXd::Zero(n - 1, n * (n - 1) / 2);
+Matrix differences(Index n) {
+  Matrix effects = Matrix::zero(n - 1, n * (n - 1) / 2);
   Index column = 0;
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < i; ++j, ++column) {
@@ -34,14 +37,12 @@ MatrixXd differences(Index n) {
 }
 
 TEST(SelectionRange, OfThreeDirectionsInThePlaneIsAHexagon) {
-  MatrixXd effects(2, 3);
-  effects << 1.0, 0.0, 1.0,  //
-      0.0, 2.0, 2.0;
+  const Matrix effects{{1.0, 0.0, 1.0}, {0.0, 2.0, 2.0}};
   SelectionRange range;
   ASSERT_TRUE(range.set(effects));
   ASSERT_EQ(range.facets().size(), 3U);
   // First coordinate from 0 to 2 in halves of its size 2, from a = -1.
-  const VectorXd constant = VectorXd::Constant(2, -1.0);
+  const Vector constant = Vector::constant(2, -1.0);
   for (std::size_t f = 0; f < 3; ++f) {
     const auto& facets = range.facets()[f];
     double sum = 0.0;
@@ -71,8 +72,8 @@ TEST(SelectionRange, HoldsZeroExactlyWhereSelectionsDo) {
   int held = 0, lost = 0;
   for (int instance = 0; instance < 2000; ++instance) {
     const Index r = 1 + instance % 4, q = r + instance % 3;
-    const MatrixXd effects = random_effects(random, r, q);
-    const VectorXd constant = -effects * VectorXd::Constant(q, 0.5) + 0.6 * random_effects(random, r, 1).col(0);
+    const Matrix effects = random_effects(random, r, q);
+    const Vector constant = -effects * Vector::constant(q, 0.5) + 0.6 * random_effects(random, r, 1).col(0);
     SelectionRange range;
     ASSERT_TRUE(range.set(effects));
     double margin = 1.0;
@@ -81,10 +82,10 @@ TEST(SelectionRange, HoldsZeroExactlyWhereSelectionsDo) {
       margin = std::min({margin, span.max, -span.min});
     }
     if (std::abs(margin) < 1e-6) continue;
-    const VectorXd lambda = bounded_selections(effects, constant);
-    ASSERT_GE(lambda.minCoeff(), 0.0);
-    ASSERT_LE(lambda.maxCoeff(), 1.0);
-    const double residual = (constant + effects * lambda).cwiseAbs().maxCoeff();
+    const Vector lambda = bounded_selections(effects, constant);
+    ASSERT_GE(lambda.min(), 0.0);
+    ASSERT_LE(lambda.max(), 1.0);
+    const double residual = (constant + effects * lambda).max_abs();
     if (margin > 0.0) {
       EXPECT_LT(residual, 1e-9) << instance;
       ++held;
@@ -99,23 +100,21 @@ TEST(SelectionRange, HoldsZeroExactlyWhereSelectionsDo) {
 
 TEST(SelectionRange, CentralSelectionsAreTheNearestOnes) {
   std::mt19937_64 random(3);
-  const MatrixXd effects = random_effects(random, 3, 6);
-  const VectorXd constant = random_effects(random, 3, 1).col(0);
-  const VectorXd lambda = central_selections(effects, constant);
+  const Matrix effects = random_effects(random, 3, 6);
+  const Vector constant = random_effects(random, 3, 1).col(0);
+  const Vector lambda = central_selections(effects, constant);
   EXPECT_LT((constant + effects * lambda).norm(), 1e-13);
   // What they differ from 1/2 by is in the row space.
-  const VectorXd offset = lambda.array() - 0.5;
-  const VectorXd multipliers = (effects * effects.transpose()).ldlt().solve(effects * offset);
+  const Vector offset = lambda - Vector::constant(6, 0.5);
+  const Vector multipliers = linalg::Ldl(effects * effects.transpose()).solve(effects * offset);
   EXPECT_LT((effects.transpose() * multipliers - offset).norm(), 1e-12);
 }
 
 TEST(SelectionRange, RefusesWhatHasNoVolumeOrTooManyFacets) {
   SelectionRange range;
-  MatrixXd flat(2, 3);
-  flat << 1.0, 2.0, 3.0,  //
-      2.0, 4.0, 6.0;
+  const Matrix flat{{1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}};
   EXPECT_FALSE(range.set(flat));
-  EXPECT_FALSE(range.set(MatrixXd::Ones(2, 1)));
+  EXPECT_FALSE(range.set(Matrix::constant(2, 1, 1.0)));
   EXPECT_FALSE(range.set(differences(12)));
   EXPECT_TRUE(range.set(differences(3)));
 }

@@ -1,16 +1,14 @@
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 
 #include <Highs.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <Eigen/SparseCore>
-
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/base/stopwatch.hpp"
+#include "saltus/solver/sparse.hpp"
 
 namespace saltus::adapters {
 namespace {
@@ -27,15 +25,10 @@ constexpr double at_bound = 1e-9;
 constexpr double gap = 1e-12;
 
 HighsLp linear_program(const LpccProblem& problem) {
-  const auto n = static_cast<HighsInt>(problem.cost.size());
-  const auto m = static_cast<HighsInt>(problem.rows.lower.size());
-  std::vector<Eigen::Triplet<double, HighsInt>> entries;
-  for (int e = 0; e < problem.pattern.entries(); ++e) {
-    entries.emplace_back(problem.pattern.row[at(e)], problem.pattern.column[at(e)], problem.entries[e]);
-  }
-  Eigen::SparseMatrix<double, Eigen::ColMajor, HighsInt> matrix(m, n);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const auto copy = [](const Eigen::VectorXd& values) { return std::vector<double>(values.begin(), values.end()); };
+  const auto n = static_cast<int>(problem.cost.size());
+  const auto m = static_cast<int>(problem.rows.lower.size());
+  const auto matrix = solver::sparse<linalg::Major::columns>(problem.pattern, problem.entries, m, n);
+  const auto copy = [](const linalg::Vector& values) { return std::vector<double>(values.begin(), values.end()); };
   HighsLp lp;
   lp.num_col_ = n;
   lp.num_row_ = m;
@@ -47,16 +40,19 @@ HighsLp linear_program(const LpccProblem& problem) {
   lp.a_matrix_.format_ = MatrixFormat::kColwise;
   lp.a_matrix_.num_col_ = n;
   lp.a_matrix_.num_row_ = m;
-  lp.a_matrix_.start_.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + n + 1);
-  lp.a_matrix_.index_.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
-  lp.a_matrix_.value_.assign(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros());
+  lp.a_matrix_.start_.assign(matrix.start().begin(), matrix.start().end());
+  lp.a_matrix_.index_.assign(matrix.inner().begin(), matrix.inner().end());
+  lp.a_matrix_.value_.assign(matrix.values().begin(), matrix.values().end());
   return lp;
 }
 
 class Search {
  public:
   Search(const LpccProblem& problem, double seconds, int node_limit)
-      : problem_(problem), seconds_(seconds), node_limit_(node_limit), choice_(problem.disjunctions.size(), Choice::open) {
+      : problem_(problem),
+        seconds_(seconds),
+        node_limit_(node_limit),
+        choice_(problem.disjunctions.size(), Choice::open) {
     bool is_set = highs_.setOptionValue("output_flag", false) == HighsStatus::kOk;
     is_set = is_set && highs_.setOptionValue("primal_feasibility_tolerance", feasibility) == HighsStatus::kOk;
     is_set = is_set && highs_.setOptionValue("dual_feasibility_tolerance", feasibility) == HighsStatus::kOk;
@@ -66,7 +62,7 @@ class Search {
   }
 
   LpccSolution run() {
-    best_.d = Eigen::VectorXd::Zero(problem_.cost.size());
+    best_.d = linalg::Vector::zero(problem_.cost.size());
     for (const auto& [first, second] : problem_.disjunctions) {
       best_.first_is_active.push_back(problem_.rows.lower[first] == 0.0);
     }
@@ -89,7 +85,7 @@ class Search {
   /// 0 is a solution unless rows or bounds exclude it: a bound to begin with.
   [[nodiscard]] bool zero_is_feasible() const {
     const auto holds = [](const mpcc::Bounds& bounds) {
-      return bounds.lower.size() == 0 || (bounds.lower.maxCoeff() <= 0.0 && bounds.upper.minCoeff() >= 0.0);
+      return bounds.lower.size() == 0 || (bounds.lower.max() <= 0.0 && bounds.upper.min() >= 0.0);
     };
     const bool are_at_bounds =
         std::all_of(problem_.disjunctions.begin(), problem_.disjunctions.end(), [&](const auto& disjunction) {
@@ -108,7 +104,8 @@ class Search {
     int found = -1;
     for (std::size_t i = 0; i < choice_.size(); ++i) {
       if (choice_[i] != Choice::open) continue;
-      const double violation = std::min(distance(problem_.disjunctions[i].first), distance(problem_.disjunctions[i].second));
+      const double violation =
+          std::min(distance(problem_.disjunctions[i].first), distance(problem_.disjunctions[i].second));
       if (violation > largest) {
         largest = violation;
         found = static_cast<int>(i);
@@ -119,7 +116,7 @@ class Search {
 
   void keep() {
     const auto& values = highs_.getSolution().col_value;
-    best_.d = Eigen::Map<const Eigen::VectorXd>(values.data(), index(values.size()));
+    best_.d = linalg::ConstView(values);
     best_.objective = highs_.getInfo().objective_function_value;
     for (std::size_t i = 0; i < choice_.size(); ++i) {
       const auto& [first, second] = problem_.disjunctions[i];

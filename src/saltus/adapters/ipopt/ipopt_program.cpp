@@ -9,8 +9,8 @@
 namespace saltus::adapters {
 namespace {
 
-using Input = Eigen::Map<const Eigen::VectorXd>;
-using Output = Eigen::Map<Eigen::VectorXd>;
+using Input = linalg::ConstView;
+using Output = linalg::View;
 
 /// Adds the time until its end to a sum.
 class Timer {
@@ -24,6 +24,17 @@ class Timer {
   double& seconds_;
   Stopwatch stopwatch_;
 };
+
+/// Copies the entries of these numbers to as many behind each other.
+void take(Input from, const std::vector<int>& numbers, double* to) {
+  for (const int number : numbers) *to++ = from[number];
+}
+
+/// Copies all entries to those of these numbers.
+void put(Input from, const std::vector<int>& numbers, Output to) {
+  linalg::Index next = 0;
+  for (const int number : numbers) to[number] = from[next++];
+}
 
 void write_pattern(const mpcc::Pattern& pattern, Ipopt::Index* row, Ipopt::Index* column) {
   std::copy(pattern.row.begin(), pattern.row.end(), row);
@@ -104,8 +115,8 @@ void IpoptProgram::find_rows() {
     entries_.push_back(e);
     jacobian_pattern_.add(row, pattern.column[static_cast<std::size_t>(e)]);
   }
-  c_ = y_ = Eigen::VectorXd::Zero(problem_->constraints());
-  jacobian_ = Eigen::VectorXd::Zero(pattern.entries());
+  c_ = y_ = linalg::Vector::zero(problem_->constraints());
+  jacobian_ = linalg::Vector::zero(pattern.entries());
 }
 
 bool IpoptProgram::get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries,
@@ -123,8 +134,9 @@ bool IpoptProgram::get_bounds_info(Ipopt::Index n, double* w_lower, double* w_up
                                    double* g_upper) {
   Output(w_lower, n) = problem_->variable_bounds().lower;
   Output(w_upper, n) = problem_->variable_bounds().upper;
-  Output(g_lower, m) = problem_->constraint_bounds().lower(rows_);
-  Output(g_upper, m) = problem_->constraint_bounds().upper(rows_);
+  SALTUS_ASSERT(static_cast<std::size_t>(m) == rows_.size());
+  take(problem_->constraint_bounds().lower, rows_, g_lower);
+  take(problem_->constraint_bounds().upper, rows_, g_upper);
   return true;
 }
 
@@ -138,7 +150,8 @@ bool IpoptProgram::get_starting_point(Ipopt::Index n, bool wants_w, double* w, b
   }
   if (wants_y) {
     if (point_->y.size() != problem_->constraints()) return false;
-    Output(y, m) = point_->y(rows_);
+    SALTUS_ASSERT(static_cast<std::size_t>(m) == rows_.size());
+    take(point_->y, rows_, y);
   }
   return true;
 }
@@ -152,14 +165,14 @@ bool IpoptProgram::eval_f(Ipopt::Index n, const double* w, bool /*is_new*/, doub
 bool IpoptProgram::eval_grad_f(Ipopt::Index n, const double* w, bool /*is_new*/, double* gradient) {
   const Timer timer(evaluation_seconds_);
   problem_->objective_gradient(Input(w, n), Output(gradient, n));
-  return Input(gradient, n).allFinite();
+  return Input(gradient, n).all_finite();
 }
 
 bool IpoptProgram::eval_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipopt::Index m, double* g) {
   const Timer timer(evaluation_seconds_);
   problem_->functions(Input(w, n), c_);
-  Output(g, m) = c_(rows_);
-  return Input(g, m).allFinite();
+  take(c_, rows_, g);
+  return Input(g, m).all_finite();
 }
 
 bool IpoptProgram::eval_jac_g(Ipopt::Index n, const double* w, bool /*is_new*/, Ipopt::Index /*m*/,
@@ -170,8 +183,8 @@ bool IpoptProgram::eval_jac_g(Ipopt::Index n, const double* w, bool /*is_new*/, 
   }
   const Timer timer(evaluation_seconds_);
   problem_->jacobian(Input(w, n), jacobian_);
-  Output(values, entries) = jacobian_(entries_);
-  return Input(values, entries).allFinite();
+  take(jacobian_, entries_, values);
+  return Input(values, entries).all_finite();
 }
 
 bool IpoptProgram::eval_h(Ipopt::Index n, const double* w, bool /*is_new*/, double objective_factor, Ipopt::Index m,
@@ -182,9 +195,9 @@ bool IpoptProgram::eval_h(Ipopt::Index n, const double* w, bool /*is_new*/, doub
     return true;
   }
   const Timer timer(evaluation_seconds_);
-  y_(rows_) = Input(y, m);
+  put(Input(y, m), rows_, y_);
   problem_->hessian(Input(w, n), objective_factor, y_, Output(values, entries));
-  return Input(values, entries).allFinite();
+  return Input(values, entries).all_finite();
 }
 
 bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Ipopt::Index /*iteration*/, double objective,
@@ -201,14 +214,14 @@ void IpoptProgram::finalize_solution(Ipopt::SolverReturn status, Ipopt::Index n,
                                      const double* z_upper, Ipopt::Index m, const double* /*g*/, const double* y,
                                      double objective, const Ipopt::IpoptData* /*data*/,
                                      Ipopt::IpoptCalculatedQuantities* /*quantities*/) {
-  y_.setZero();
-  y_(rows_) = Input(y, m);
+  y_.set_zero();
+  put(Input(y, m), rows_, y_);
   *point_ = {.w = Input(w, n), .y = y_, .z_lower = Input(z_lower, n), .z_upper = Input(z_upper, n)};
   objective_ = objective;
   const bool is_limited = status == Ipopt::MAXITER_EXCEEDED || status == Ipopt::WALLTIME_EXCEEDED;
   const bool was_nearer = is_limited && !is_near_ && std::isfinite(best_error_);
   if (!is_exhausted() && !was_nearer) return;
-  y_(rows_) = best_.y;
+  put(best_.y, rows_, y_);
   *point_ = {.w = best_.w, .y = y_, .z_lower = best_.z_lower, .z_upper = best_.z_upper};
   objective_ = problem_->objective(best_.w);
 }

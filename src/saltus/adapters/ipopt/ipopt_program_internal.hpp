@@ -54,7 +54,7 @@ class IpoptProgram final : public Ipopt::TNLP {
   std::vector<int> rows_;     ///< of the problem that Ipopt sees
   std::vector<int> entries_;  ///< of the problem's Jacobian
   mpcc::Pattern jacobian_pattern_;
-  Eigen::VectorXd c_, y_, jacobian_;
+  linalg::Vector c_, y_, jacobian_;
   mpcc::Problem* problem_ = nullptr;
   solver::NlpPoint* point_ = nullptr;
   std::function<bool()> is_interrupted_;

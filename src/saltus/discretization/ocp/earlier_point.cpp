@@ -2,13 +2,13 @@
 
 namespace saltus::discretization {
 
-void Polynomial::add(double node, Eigen::VectorXd value) {
+void Polynomial::add(double node, linalg::Vector value) {
   const auto is_same = [node](const auto& other) { return std::abs(other.first - node) <= 1e-12; };
   if (std::none_of(points_.begin(), points_.end(), is_same)) points_.emplace_back(node, std::move(value));
 }
 
-Eigen::VectorXd Polynomial::at(double place) const {
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(points_.front().second.size());
+linalg::Vector Polynomial::at(double place) const {
+  linalg::Vector sum = linalg::Vector::zero(points_.front().second.size());
   for (const auto& [node, value] : points_) {
     double weight = 1.0;
     for (const auto& [other, unused] : points_) {
@@ -23,7 +23,7 @@ EarlierPoint::EarlierPoint(const OcpStructure& made, const OcpSolution& solution
     : made_(made), w_(w) {
   find_least_at_start(solution);
   double begin = 0.0;
-  Eigen::VectorXd left = Eigen::Map<const Eigen::VectorXd>(solution.initial_state.data(), made.kernel.states);
+  linalg::Vector left = linalg::ConstView(solution.initial_state.data(), made.kernel.states);
   for (std::size_t k = 0; k < made.interval.size(); ++k) {
     const double length = solution.speed_of_time[k] * solution.horizon / made.intervals;
     for (std::size_t n = 0; n < solution.elements[k].size(); ++n) {
@@ -40,7 +40,7 @@ EarlierPoint::EarlierPoint(const OcpStructure& made, const OcpSolution& solution
 /// The multiplier of a simplex is minus the least of its indicators.
 void EarlierPoint::find_least_at_start(const OcpSolution& solution) {
   const auto& parts = made_.kernel.simplex_parts;
-  least_at_start_.resize(static_cast<Eigen::Index>(parts.size()));
+  least_at_start_.resize(static_cast<linalg::Index>(parts.size()));
   if (parts.empty()) return;
   std::vector<double> known = solution.parameters;
   const auto& sizes = made_.kernel.shared;
@@ -52,7 +52,7 @@ void EarlierPoint::find_least_at_start(const OcpSolution& solution) {
   const auto values = casadi::DM::densify(made_.kernel.indicator(in).front()).nonzeros();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto first = values.begin() + parts[i].first;
-    least_at_start_[static_cast<Eigen::Index>(i)] = -*std::min_element(first, first + parts[i].second);
+    least_at_start_[static_cast<linalg::Index>(i)] = -*std::min_element(first, first + parts[i].second);
   }
 }
 
@@ -64,7 +64,7 @@ double EarlierPoint::end_of(int k, int intervals) const {
   return where_clock_is(share * value(made_.horizon));
 }
 
-Eigen::VectorXd EarlierPoint::sampled(const Piece& piece, const VariableBlock& block, double place) const {
+linalg::Vector EarlierPoint::sampled(const Piece& piece, const VariableBlock& block, double place) const {
   Polynomial polynomial;
   const auto& layout = made_.kernel.layout;
   if (block.first == layout.simplex.first) {
@@ -83,21 +83,21 @@ bool EarlierPoint::stands(const Piece& piece) const {
 }
 
 Piece EarlierPoint::piece_of(std::size_t e, double begin, const SolvedElement& solved,
-                             const Eigen::VectorXd& left) const {
+                             const linalg::Vector& left) const {
   Piece piece{.element = e, .begin = begin, .end = begin + solved.h, .modes = {}, .states = {}, .lambda = {}};
   const auto& c = made_.kernel.tableau.c;
   piece.states.add(0.0, left);
-  for (Eigen::Index m = 0; m < c.size(); ++m) piece.states.add(c[m], solved.states.col(m));
+  for (linalg::Index m = 0; m < c.size(); ++m) piece.states.add(c[m], solved.states.col(m));
   piece.lambda.add(0.0, solved.lambda.col(0));
-  for (Eigen::Index m = 1; m < solved.lambda.cols(); ++m) {
+  for (linalg::Index m = 1; m < solved.lambda.cols(); ++m) {
     piece.lambda.add(m <= c.size() ? c[m - 1] : 1.0, solved.lambda.col(m));
   }
-  const Eigen::VectorXd selected = solved.selections.rowwise().sum(), lambda = solved.lambda.rowwise().sum();
+  const linalg::Vector selected = solved.selections.row_sums(), lambda = solved.lambda.row_sums();
   for (std::size_t k = 0; k < made_.kernel.pairs.size(); ++k) {
     const auto& pair = made_.kernel.pairs[k];
     const double side = selected[pair.selection];
     const double stages = static_cast<double>(solved.selections.cols());
-    piece.modes.push_back(lambda[static_cast<Eigen::Index>(k)] > (pair.complement ? stages - side : side));
+    piece.modes.push_back(lambda[static_cast<linalg::Index>(k)] > (pair.complement ? stages - side : side));
   }
   return piece;
 }

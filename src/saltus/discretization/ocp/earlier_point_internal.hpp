@@ -16,11 +16,11 @@ namespace saltus::discretization {
 class Polynomial {
  public:
   /// Adds a column, unless there is one at this node.
-  void add(double node, Eigen::VectorXd value);
-  [[nodiscard]] Eigen::VectorXd at(double place) const;
+  void add(double node, linalg::Vector value);
+  [[nodiscard]] linalg::Vector at(double place) const;
 
  private:
-  std::vector<std::pair<double, Eigen::VectorXd>> points_;
+  std::vector<std::pair<double, linalg::Vector>> points_;
 };
 
 /// Holds an element that has a length; times are those of the right-hand side, from 0 on.
@@ -45,8 +45,8 @@ class EarlierPoint {
   /// Returns where interval k of so many ends.
   [[nodiscard]] double end_of(int k, int intervals) const;
   /// Returns a group over the stages, or the points of the multipliers, at a place in an element.
-  [[nodiscard]] Eigen::VectorXd sampled(const Piece& piece, const VariableBlock& block, double place) const;
-  [[nodiscard]] Eigen::VectorXd group_of(std::size_t element, const VariableBlock& block, int group) const {
+  [[nodiscard]] linalg::Vector sampled(const Piece& piece, const VariableBlock& block, double place) const;
+  [[nodiscard]] linalg::Vector group_of(std::size_t element, const VariableBlock& block, int group) const {
     return w_.segment(made_.element[element].variable(block.at(group)), block.size);
   }
   /// Returns whether the clock stands.
@@ -54,13 +54,13 @@ class EarlierPoint {
 
  private:
   [[nodiscard]] Piece piece_of(std::size_t e, double begin, const SolvedElement& solved,
-                               const Eigen::VectorXd& left) const;
+                               const linalg::Vector& left) const;
   [[nodiscard]] double where_clock_is(double time) const;
   void find_least_at_start(const OcpSolution& solution);
 
   const OcpStructure& made_;
   mpcc::ConstVectorView w_;
-  Eigen::VectorXd least_at_start_;
+  linalg::Vector least_at_start_;
   std::vector<Piece> pieces_;
   std::vector<double> nodes_;  ///< right ends of the intervals
 };

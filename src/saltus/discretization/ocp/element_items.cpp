@@ -47,7 +47,7 @@ void ElementItems::add(std::vector<std::pair<std::size_t, Items>> changes, std::
     if (!fit(items, made_.interval[k].elements)) return;
     write(k, items, move);
   }
-  move.start = move.start.cwiseMax(made_.w_bounds.lower).cwiseMin(made_.w_bounds.upper);
+  move.start = move.start.at_least(made_.w_bounds.lower).at_most(made_.w_bounds.upper);
   moves.push_back(std::move(move));
 }
 
@@ -102,7 +102,7 @@ bool ElementItems::fit(Items& items, int elements) const {
 }
 
 /// An element of other modes stays where the one that it comes from ends: of that one's path it has none.
-void ElementItems::begin_at_end(std::size_t from, std::size_t to, Eigen::VectorXd& start) const {
+void ElementItems::begin_at_end(std::size_t from, std::size_t to, linalg::Vector& start) const {
   const auto& layout = made_.kernel.layout;
   const auto fill = [&](const VariableBlock& block, const std::vector<int>& at_end) {
     for (int group = 0; group < block.count; ++group) {

@@ -13,7 +13,7 @@ struct Item {
   std::size_t element = 0;
   double length = 0.0;
   ElementSides::Sides modes{};
-  Eigen::VectorXd own{};  ///< its variables, where it has been solved anew
+  linalg::Vector own{};  ///< its variables, where it has been solved anew
 };
 using Items = std::vector<Item>;
 
@@ -38,7 +38,7 @@ class ElementItems {
   [[nodiscard]] int speed_of(std::size_t k) const;
   [[nodiscard]] bool fit(Items& items, int elements) const;
   [[nodiscard]] bool make_equal(std::size_t k, Items& items) const;
-  void begin_at_end(std::size_t from, std::size_t to, Eigen::VectorXd& start) const;
+  void begin_at_end(std::size_t from, std::size_t to, linalg::Vector& start) const;
   void write(std::size_t k, const Items& items, mpcc::BranchMove& move) const;
 
   const OcpStructure& made_;

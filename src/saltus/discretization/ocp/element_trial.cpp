@@ -1,9 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/QR>
-
 #include "saltus/discretization/ocp/element_trial_internal.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::discretization {
 namespace {
@@ -48,7 +47,7 @@ std::vector<double> ElementTrial::left_of(std::size_t number) const {
   return values;
 }
 
-std::vector<double> ElementTrial::right_of(const Eigen::VectorXd& own) const {
+std::vector<double> ElementTrial::right_of(const linalg::Vector& own) const {
   const auto& layout = made_.kernel.layout;
   std::vector<double> values;
   for (int i = 0; i < made_.kernel.states; ++i) values.push_back(own[layout.right_state() + i - 1]);
@@ -61,7 +60,7 @@ std::vector<double> ElementTrial::lambda(const std::vector<double>& left) const 
   return {left.end() - made_.kernel.layout.lambda.size, left.end()};
 }
 
-std::vector<bool> ElementTrial::hold(const Modes& modes, Eigen::Ref<Eigen::VectorXd> local) const {
+std::vector<bool> ElementTrial::hold(const Modes& modes, linalg::View local) const {
   const auto& kernel = made_.kernel;
   const auto& layout = kernel.layout;
   std::vector<bool> is_held(at(layout.size), false);
@@ -84,10 +83,10 @@ std::vector<bool> ElementTrial::hold(const Modes& modes, Eigen::Ref<Eigen::Vecto
   return is_held;
 }
 
-void ElementTrial::begin_at(const std::vector<double>& left, Eigen::Ref<Eigen::VectorXd> local) const {
+void ElementTrial::begin_at(const std::vector<double>& left, linalg::View local) const {
   const auto& kernel = made_.kernel;
   const auto& layout = kernel.layout;
-  const Eigen::Map<const Eigen::VectorXd> state(left.data(), kernel.states);
+  const linalg::ConstView state(left.data(), kernel.states);
   const auto fill = [&](const VariableBlock& block) {
     for (int group = 0; group < block.count; ++group) local.segment(block.at(group), block.size) = state;
   };
@@ -97,15 +96,15 @@ void ElementTrial::begin_at(const std::vector<double>& left, Eigen::Ref<Eigen::V
   if (layout.end_time.count > 0) local[layout.end_time.first] = left[at(kernel.states)];
 }
 
-std::optional<Eigen::VectorXd> ElementTrial::solve(const std::vector<double>& left, std::size_t interval,
-                                                   const Modes& modes, double length) const {
+std::optional<linalg::Vector> ElementTrial::solve(const std::vector<double>& left, std::size_t interval,
+                                                  const Modes& modes, double length) const {
   const auto& kernel = made_.kernel;
   std::vector<double> z = left;
   for (const int place : made_.interval[interval].shared) z.push_back(value_at(place, w_, made_.constants));
   z[left.size() + at(kernel.shared.controls + kernel.shared.parameters + kernel.shared.held + 1)] = 1.0;
   const std::size_t first = z.size();
   z.resize(first + at(kernel.layout.size), 0.0);
-  Eigen::Map<Eigen::VectorXd> local(z.data() + first, kernel.layout.size);
+  linalg::View local(z.data() + first, kernel.layout.size);
   begin_at(left, local);
   local[kernel.layout.h] = length;
   std::vector<bool> is_held = hold(modes, local);
@@ -116,7 +115,7 @@ std::optional<Eigen::VectorXd> ElementTrial::solve(const std::vector<double>& le
 }
 
 /// Where selections are not unique, those of the smallest step may be beyond their bounds: there they stay.
-bool ElementTrial::hold_beyond(Eigen::Ref<Eigen::VectorXd> local, std::vector<bool>& is_held) const {
+bool ElementTrial::hold_beyond(linalg::View local, std::vector<bool>& is_held) const {
   bool are_beyond = false;
   const auto& selection = made_.kernel.layout.selection;
   for (int i = selection.first; i < selection.end(); ++i) {
@@ -131,34 +130,34 @@ bool ElementTrial::hold_beyond(Eigen::Ref<Eigen::VectorXd> local, std::vector<bo
 bool ElementTrial::solve(std::vector<double>& z, std::size_t first, const std::vector<bool>& is_held) const {
   auto& element = made_.kernel.element;
   const auto& pattern = element.jacobian_pattern();
-  Eigen::Map<Eigen::VectorXd> local(z.data() + first, made_.kernel.layout.size);
+  linalg::View local(z.data() + first, made_.kernel.layout.size);
   std::vector<double> rows(at(element.equations() + 2 * element.pairs())), entries(at(pattern.entries()));
-  const Eigen::Map<const Eigen::VectorXd> errors(rows.data(), element.equations());
+  const linalg::ConstView errors(rows.data(), element.equations());
   double objective = 0.0;
   for (int step = 0; step < largest_steps; ++step) {
     element.values(z.data(), made_.local_parameters.data(), &objective, rows.data());
-    if (!errors.allFinite()) return false;
-    if (errors.lpNorm<Eigen::Infinity>() <= solved) return true;
+    if (!errors.all_finite()) return false;
+    if (errors.max_abs() <= solved) return true;
     element.jacobian(z.data(), made_.local_parameters.data(), entries.data());
-    Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(element.equations(), local.size());
+    linalg::Matrix jacobian = linalg::Matrix::zero(element.equations(), local.size());
     for (int e = 0; e < pattern.entries(); ++e) {
       const int row = pattern.row[at(e)], column = pattern.column[at(e)] - static_cast<int>(first);
       if (row < element.equations() && column >= 0 && !is_held[at(column)]) jacobian(row, column) += entries[at(e)];
     }
-    local -= jacobian.completeOrthogonalDecomposition().solve(errors);
+    local -= linalg::least_squares(jacobian, errors);
   }
   return false;
 }
 
-bool ElementTrial::is_admissible(const Eigen::VectorXd& own) const {
+bool ElementTrial::is_admissible(const linalg::Vector& own) const {
   const auto& layout = made_.kernel.layout;
   const auto selections = own.segment(layout.selection.first - 1, layout.selection.end() - layout.selection.first);
   const auto lambdas = own.segment(layout.lambda.first - 1, layout.lambda.end() - layout.lambda.first);
-  if (lambdas.size() > 0 && lambdas.minCoeff() < -allowed) return false;
-  return selections.size() == 0 || (selections.minCoeff() >= -allowed && selections.maxCoeff() <= 1.0 + allowed);
+  if (lambdas.size() > 0 && lambdas.min() < -allowed) return false;
+  return selections.size() == 0 || (selections.min() >= -allowed && selections.max() <= 1.0 + allowed);
 }
 
-bool ElementTrial::stands_still(const std::vector<double>& left, const Eigen::VectorXd& own) const {
+bool ElementTrial::stands_still(const std::vector<double>& left, const linalg::Vector& own) const {
   const int clock = made_.kernel.clock;
   if (clock < 0) return false;
   const double length = value_at(made_.horizon, w_, made_.constants) / made_.intervals;

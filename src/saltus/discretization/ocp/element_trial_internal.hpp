@@ -25,24 +25,24 @@ class ElementTrial {
   /// Returns what is left of element `number`: state, time if it matters, multipliers.
   [[nodiscard]] std::vector<double> left_of(std::size_t number) const;
   /// Returns the same of what follows an element.
-  [[nodiscard]] std::vector<double> right_of(const Eigen::VectorXd& own) const;
+  [[nodiscard]] std::vector<double> right_of(const linalg::Vector& own) const;
   /// Returns multipliers at a left end.
   [[nodiscard]] std::vector<double> lambda(const std::vector<double>& left) const;
   /// Returns the variables of an element but its length, if its equations have a solution.
   /// @param length  in parts of a control interval
-  [[nodiscard]] std::optional<Eigen::VectorXd> solve(const std::vector<double>& left, std::size_t interval,
-                                                     const Modes& modes, double length) const;
+  [[nodiscard]] std::optional<linalg::Vector> solve(const std::vector<double>& left, std::size_t interval,
+                                                    const Modes& modes, double length) const;
   /// Returns whether selections and multipliers are within their bounds.
-  [[nodiscard]] bool is_admissible(const Eigen::VectorXd& own) const;
+  [[nodiscard]] bool is_admissible(const linalg::Vector& own) const;
   /// Returns whether the clock stands.
-  [[nodiscard]] bool stands_still(const std::vector<double>& left, const Eigen::VectorXd& own) const;
+  [[nodiscard]] bool stands_still(const std::vector<double>& left, const linalg::Vector& own) const;
 
  private:
-  [[nodiscard]] std::vector<bool> hold(const Modes& modes, Eigen::Ref<Eigen::VectorXd> local) const;
-  [[nodiscard]] bool hold_beyond(Eigen::Ref<Eigen::VectorXd> local, std::vector<bool>& is_held) const;
+  [[nodiscard]] std::vector<bool> hold(const Modes& modes, linalg::View local) const;
+  [[nodiscard]] bool hold_beyond(linalg::View local, std::vector<bool>& is_held) const;
   /// @param first  of the element's variables among the local ones
   [[nodiscard]] bool solve(std::vector<double>& local, std::size_t first, const std::vector<bool>& is_held) const;
-  void begin_at(const std::vector<double>& left, Eigen::Ref<Eigen::VectorXd> local) const;
+  void begin_at(const std::vector<double>& left, linalg::View local) const;
 
   const OcpStructure& made_;
   mpcc::ConstVectorView w_;

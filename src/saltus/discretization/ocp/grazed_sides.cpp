@@ -37,7 +37,7 @@ class GrazedSides {
 
   /// Points with other controls in the interval before, up to where one of these surfaces is reached earlier.
   void add_crossing(std::size_t e, const std::vector<std::size_t>& surfaces,
-                    std::vector<Eigen::VectorXd>& points) const {
+                    std::vector<linalg::Vector>& points) const {
     const auto k = at(made_.element[e - 1].interval);
     for (int i = 0; i < made_.kernel.shared.controls; ++i) {
       const int place = made_.interval[k].shared[at(i)];
@@ -45,7 +45,7 @@ class GrazedSides {
       const double width =
           std::isfinite(upper - lower) ? upper - lower : unbounded_width * std::max(1.0, std::abs(w_[place]));
       for (const double sign : {-1.0, 1.0}) {
-        Eigen::VectorXd point = w_;
+        linalg::Vector point = w_;
         point[place] = std::clamp(w_[place] + sign * control_share * width, lower, upper);
         if (point[place] != w_[place] && shorten(e, surfaces, point)) points.push_back(std::move(point));
       }
@@ -54,9 +54,9 @@ class GrazedSides {
 
  private:
   /// Least multiplier behind the elements of the interval before e, all lengths times a factor; these are written.
-  [[nodiscard]] std::optional<double> least_behind(std::size_t e, double factor, Eigen::VectorXd& point) const {
+  [[nodiscard]] std::optional<double> least_behind(std::size_t e, double factor, linalg::Vector& point) const {
     const auto k = at(made_.element[e - 1].interval);
-    const Eigen::VectorXd controls = point;
+    const linalg::Vector controls = point;
     const ElementTrial trial(made_, controls);
     const auto items = items_.of_interval(k);
     auto left = trial.left_of(at(made_.interval[k].first_element));
@@ -72,7 +72,7 @@ class GrazedSides {
   }
 
   /// @return whether a surface is crossed where it was touched; then the point ends on it
-  [[nodiscard]] bool shorten(std::size_t e, const std::vector<std::size_t>& surfaces, Eigen::VectorXd& point) const {
+  [[nodiscard]] bool shorten(std::size_t e, const std::vector<std::size_t>& surfaces, linalg::Vector& point) const {
     const auto whole = least_behind(e, 1.0, point);
     if (!whole || *whole >= -on_surface) return false;
     double low = 0.0, high = 1.0;
@@ -90,7 +90,7 @@ class GrazedSides {
   }
 
   /// What the elements before e lose those behind it get, if there are any in the interval.
-  void set_lengths(std::size_t e, double factor, Eigen::VectorXd& point) const {
+  void set_lengths(std::size_t e, double factor, linalg::Vector& point) const {
     const auto& interval = made_.interval[at(made_.element[e - 1].interval)];
     if (interval.lengths.empty()) return;
     const auto place = made_.element[e - 1].number + 1;
@@ -119,7 +119,7 @@ void add_grazed_sides(const OcpStructure& made, const ElementSides& modes, mpcc:
   for (std::size_t e = 1; e < made.element.size(); ++e) {
     const auto surfaces = grazed.touched(e);
     if (surfaces.empty()) continue;
-    std::vector<Eigen::VectorXd> points;
+    std::vector<linalg::Vector> points;
     grazed.add_crossing(e, surfaces, points);
     const auto count = moves.size();
     for (const auto& point : points) add_touched_sides_at(made, modes, point, e, crowded, moves);

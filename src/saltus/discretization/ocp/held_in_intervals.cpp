@@ -22,10 +22,10 @@ class HeldAtTimes {
       : ocp_(ocp), dcs_(dcs), arguments_(arguments) {}
 
   /// Values of the held symbols at a time; each argument depends on those before it.
-  [[nodiscard]] Eigen::VectorXd at_time(double t) const {
-    const auto count = static_cast<Eigen::Index>(dcs_.held_symbols.size());
-    Eigen::VectorXd values = Eigen::VectorXd::Zero(count);
-    for (Eigen::Index k = 0; k < count; ++k) {
+  [[nodiscard]] linalg::Vector at_time(double t) const {
+    const auto count = static_cast<linalg::Index>(dcs_.held_symbols.size());
+    linalg::Vector values = linalg::Vector::zero(count);
+    for (linalg::Index k = 0; k < count; ++k) {
       std::vector<double> known = ocp_.system.parameter_values;
       known.insert(known.end(), values.data(), values.data() + count);
       const auto& u = ocp_.system.control_initial;
@@ -43,7 +43,7 @@ class HeldAtTimes {
     return values;
   }
 
-  [[nodiscard]] std::string name(Eigen::Index k) const {
+  [[nodiscard]] std::string name(linalg::Index k) const {
     const HeldSymbol& symbol = dcs_.held_symbols[static_cast<std::size_t>(k)];
     return symbol.kind == HeldSymbol::Kind::cell ? ocp_.system.cells[at(symbol.index)].name
                                                  : ocp_.system.switching[at(symbol.index)].name;
@@ -55,8 +55,8 @@ class HeldAtTimes {
   const casadi::Function& arguments_;
 };
 
-Eigen::Index first_difference(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  for (Eigen::Index k = 0; k < a.size(); ++k) {
+linalg::Index first_difference(const linalg::Vector& a, const linalg::Vector& b) {
+  for (linalg::Index k = 0; k < a.size(); ++k) {
     if (a[k] != b[k]) return k;
   }
   return -1;
@@ -91,10 +91,10 @@ Error breaks_with_free_horizon(const std::string& name, const model::Ocp& ocp) {
 
 }  // namespace
 
-Expected<Eigen::MatrixXd> held_in_intervals(const model::Ocp& ocp, const Dcs& dcs, const casadi::Function& arguments,
-                                            int intervals) {
-  const auto count = static_cast<Eigen::Index>(dcs.held_symbols.size());
-  Eigen::MatrixXd held(intervals, count);
+Expected<linalg::Matrix> held_in_intervals(const model::Ocp& ocp, const Dcs& dcs, const casadi::Function& arguments,
+                                           int intervals) {
+  const auto count = static_cast<linalg::Index>(dcs.held_symbols.size());
+  linalg::Matrix held(intervals, count);
   if (count == 0) return held;
   const HeldAtTimes look(ocp, dcs, arguments);
   const double longest = ocp.horizon.free ? ocp.horizon.upper : ocp.horizon.value;
@@ -103,7 +103,7 @@ Expected<Eigen::MatrixXd> held_in_intervals(const model::Ocp& ocp, const Dcs& dc
     const double length = longest / intervals;
     // Breaks at the ends are allowed: looks keep a rounding away from them.
     double before = begin + 1e-9 * length;
-    const Eigen::VectorXd first = look.at_time(before);
+    const linalg::Vector first = look.at_time(before);
     for (int i = 1; i <= looks; ++i) {
       double behind = begin + length * (i == looks ? 1.0 - 1e-9 : static_cast<double>(i) / looks);
       const auto different = first_difference(first, look.at_time(behind));
@@ -121,7 +121,7 @@ Expected<Eigen::MatrixXd> held_in_intervals(const model::Ocp& ocp, const Dcs& dc
       }
       return tl::unexpected(breaks(look.name(different), behind, k, ocp, intervals));
     }
-    held.row(k) = first.transpose();
+    held.row(k) = first;
     if (ocp.horizon.free && k > 0 && first_difference(first, held.row(0).transpose()) >= 0) {
       const auto different = first_difference(first, held.row(0).transpose());
       return tl::unexpected(breaks_with_free_horizon(look.name(different), ocp));

@@ -16,13 +16,13 @@ class RowNumbers {
   void run() {
     auto& made = made_;
     count_rows();
-    made.g_bounds = {Eigen::VectorXd::Zero(made.n_g), Eigen::VectorXd::Zero(made.n_g)};
+    made.g_bounds = {linalg::Vector::zero(made.n_g), linalg::Vector::zero(made.n_g)};
     made.signs.assign(at(2 * made.n_pairs), mpcc::Sign::implied);
     made.pair_group.assign(at(made.n_pairs), -1);
     next_group_ = static_cast<int>(made.element.size() * groups_per_element());
     for (auto& placed : made.functions) place(placed);
     for (std::size_t i = 0; i < made.linear.size(); ++i) {
-      const auto row = made.first_linear_row + static_cast<Eigen::Index>(i);
+      const auto row = made.first_linear_row + static_cast<linalg::Index>(i);
       made.g_bounds.lower[row] = made.g_bounds.upper[row] = made.linear[i].value;
     }
     fill_chain();
@@ -54,8 +54,8 @@ class RowNumbers {
       const auto& one = placed.copies[i];
       placed.placed->add(placed.places[i], {one.first_row, one.first_pair, made.n_g, made.n_pairs});
       if (placed.is_dormant) {
-        made.g_bounds.lower.segment(one.first_row, placed.function->equations()).setConstant(-unbounded_row);
-        made.g_bounds.upper.segment(one.first_row, placed.function->equations()).setConstant(unbounded_row);
+        made.g_bounds.lower.segment(one.first_row, placed.function->equations()).set_constant(-unbounded_row);
+        made.g_bounds.upper.segment(one.first_row, placed.function->equations()).set_constant(unbounded_row);
       }
       for (int row = 0; placed.bounds != nullptr && row < static_cast<int>(placed.bounds->size()); ++row) {
         made.g_bounds.lower[one.first_row + row] = (*placed.bounds)[at(row)].lower;

@@ -17,8 +17,8 @@ using mpcc::ConstVectorView;
 using Sides = std::vector<ActiveSide>;
 
 /// The point with another share of the interval for one element; the others keep their ratios.
-Eigen::VectorXd with_share(const OcpStructure& made, ConstVectorView w, const OcpElement& element, double share) {
-  Eigen::VectorXd changed = w;
+linalg::Vector with_share(const OcpStructure& made, ConstVectorView w, const OcpElement& element, double share) {
+  linalg::Vector changed = w;
   const auto& lengths = made.interval[at(element.interval)].lengths;
   const double rest = 1.0 - w[element.length];
   for (const int h : lengths) {
@@ -50,9 +50,9 @@ std::pair<Stretch, Stretch> stretches_at(const OcpStructure& made, const Element
 }
 
 /// The same total lengths of two stretches, in equal parts, behind their boundary has moved by one element.
-Eigen::VectorXd with_boundary(const OcpStructure& made, ConstVectorView w, const Stretch& before, const Stretch& after,
-                              std::size_t boundary) {
-  Eigen::VectorXd changed = w;
+linalg::Vector with_boundary(const OcpStructure& made, ConstVectorView w, const Stretch& before, const Stretch& after,
+                             std::size_t boundary) {
+  linalg::Vector changed = w;
   const auto total = [&](const Stretch& stretch) {
     double sum = 0.0;
     for (std::size_t e = stretch.first; e < stretch.end; ++e) sum += w[made.element[e].length];
@@ -261,7 +261,7 @@ void OcpProblem::complete(mpcc::VectorView w) {
   const auto& made = *implementation_->structure;
   if (made.boundary_own.empty()) return;
   for (const int i : made.boundary_own) w[i] = 0.0;
-  Eigen::VectorXd c(rows());
+  linalg::Vector c(rows());
   functions(w, c);
   const int equations = made.kernel.equilibration.equations();
   for (const auto& placed : made.functions) {
@@ -274,8 +274,7 @@ void OcpProblem::complete(mpcc::VectorView w) {
   }
 }
 
-std::vector<int> OcpProblem::crowded_intervals(ConstVectorView w, const Eigen::VectorXd& upper,
-                                               double tolerance) const {
+std::vector<int> OcpProblem::crowded_intervals(ConstVectorView w, const linalg::Vector& upper, double tolerance) const {
   const auto& made = *implementation_->structure;
   std::set<int> crowded = implementation_->crowded;
   for (const auto& element : made.element) {
@@ -307,8 +306,8 @@ std::vector<mpcc::BranchMove> OcpProblem::equal_branches(const Sides& sides, Con
   }
   across.add_all(moves);
   add_moved_standstills(made, modes, w, moves);
-  const auto functions = [&](const Eigen::VectorXd& point) {
-    Eigen::VectorXd c(rows());
+  const auto functions = [&](const linalg::Vector& point) {
+    linalg::Vector c(rows());
     implementation_->functions(point, c);
     return c;
   };

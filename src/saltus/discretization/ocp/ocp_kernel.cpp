@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <exception>
 #include <utility>
+#include <vector>
 
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/fesd_checks_internal.hpp"
@@ -37,10 +39,11 @@ void take_closing_gap(const model::FrozenContact& contact, const reformulation::
     return;
   }
   const auto other_side = [&](int region, int surface) {
-    Eigen::RowVectorXi signs = part.signs.row(region);
-    signs[surface] = -signs[surface];
+    const auto row = part.signs.row(region);
+    std::vector<int> signs(row.begin(), row.end());
+    signs[at(surface)] = -signs[at(surface)];
     int other = 0;
-    while (part.signs.row(other) != signs) ++other;
+    while (!std::ranges::equal(part.signs.row(other), signs)) ++other;
     return other;
   };
   for (int region = 0; region < part.count; ++region) {

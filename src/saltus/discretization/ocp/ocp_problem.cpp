@@ -44,7 +44,7 @@ OcpProblem::Implementation::Implementation(std::unique_ptr<OcpStructure> made, c
                      ocp.system.parameter_values[at(parameter)]};
   }
   find_patterns();
-  start = Eigen::VectorXd::Zero(structure->n_w).cwiseMax(structure->w_bounds.lower).cwiseMin(structure->w_bounds.upper);
+  start = linalg::Vector::zero(structure->n_w).at_least(structure->w_bounds.lower).at_most(structure->w_bounds.upper);
 }
 
 void OcpProblem::Implementation::find_patterns() {
@@ -124,7 +124,7 @@ double OcpProblem::objective(ConstVectorView w) {
 void OcpProblem::objective_gradient(ConstVectorView w, VectorView gradient) {
   auto& own = *implementation_;
   auto& made = *own.structure;
-  gradient.setZero();
+  gradient.set_zero();
   for (const auto& penalty : made.penalties) {
     gradient[penalty.variable] += penalty.factor * (penalty.squared ? 2.0 * w[penalty.variable] : 1.0);
   }
@@ -150,7 +150,7 @@ void OcpProblem::Implementation::functions(ConstVectorView w, VectorView c) cons
   for (std::size_t i = 0; i < made.linear.size(); ++i) {
     double sum = 0.0;
     for (const auto& [variable, coefficient] : made.linear[i].entries) sum += coefficient * w[variable];
-    c[made.first_linear_row + static_cast<Eigen::Index>(i)] = sum;
+    c[made.first_linear_row + static_cast<linalg::Index>(i)] = sum;
   }
 }
 

@@ -5,13 +5,12 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/fesd_options.hpp"
 #include "saltus/discretization/fesd_problem.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/mpcc/problem.hpp"
 #include "saltus/result/optimization.hpp"
@@ -79,7 +78,7 @@ class OcpProblem final : public mpcc::Problem {
   /// Returns times of stages and ends of equal elements as fractions of the horizon, in the order of the elements.
   [[nodiscard]] std::vector<double> start_fractions() const;
   void set_start(const OcpGuessValues& guess);
-  void set_start(Eigen::VectorXd w);
+  void set_start(linalg::Vector w);
   /// Takes a point of a problem of the same kernel with other intervals or elements: stretches of equal modes are cut
   /// where intervals end, and divided into as many elements as there are.
   void set_start(const OcpProblem& earlier, mpcc::ConstVectorView w);
@@ -108,7 +107,7 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] const mpcc::Pattern& jacobian_pattern() const override;
   [[nodiscard]] const mpcc::Pattern& hessian_pattern() const override;
 
-  [[nodiscard]] Eigen::VectorXd start() const override;
+  [[nodiscard]] linalg::Vector start() const override;
   [[nodiscard]] std::string name(int variable) const override;
   [[nodiscard]] std::string row_name(int row) const override;
   [[nodiscard]] const mpcc::Chain* chain() const override;
@@ -131,7 +130,7 @@ class OcpProblem final : public mpcc::Problem {
   /// Returns intervals whose number of elements holds the objective up: one presses against its largest length, or the
   /// last equal_branches() has found a motion for which there is none left.
   /// @param upper  multipliers of upper bounds at w
-  [[nodiscard]] std::vector<int> crowded_intervals(mpcc::ConstVectorView w, const Eigen::VectorXd& upper,
+  [[nodiscard]] std::vector<int> crowded_intervals(mpcc::ConstVectorView w, const linalg::Vector& upper,
                                                    double tolerance) const;
 
  private:

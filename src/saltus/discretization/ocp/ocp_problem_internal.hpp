@@ -13,7 +13,7 @@ namespace saltus::discretization {
 
 /// Holds a fixed parameter that the relaxed problems follow from one value to another.
 struct FollowedParameter {
-  Eigen::Index place = 0;  ///< among the parameters of the local functions
+  linalg::Index place = 0;  ///< among the parameters of the local functions
   double initial = 0.0, last = 0.0;
 };
 
@@ -23,7 +23,7 @@ struct FollowedParameter {
 struct OcpProblem::Implementation {
   std::unique_ptr<OcpStructure> structure;
   mpcc::Pattern jacobian_pattern, hessian_pattern;
-  Eigen::VectorXd start;
+  linalg::Vector start;
   double time_weight = 0.0;
   double method_scale = 0.0;      ///< 0: without the method's terms
   std::vector<int> mean_lengths;  ///< of heuristic_mean: variables; their mean is 1 over the number of their interval

@@ -13,27 +13,26 @@ using mpcc::ConstVectorView;
 namespace {
 
 SolvedElement read_element(const OcpStructure& made, int number, ConstVectorView w, double t, double h,
-                           const Eigen::VectorXd& left) {
+                           const linalg::Vector& left) {
   const auto& kernel = made.kernel;
   const auto& layout = kernel.layout;
   const auto& element = made.element[at(number)];
   const auto matrix = [&](const VariableBlock& block) {
-    return Eigen::MatrixXd(
-        Eigen::Map<const Eigen::MatrixXd>(w.data() + element.variable(block.first), block.size, block.count));
+    return linalg::ConstView(w.data() + element.variable(block.first), block.size, block.count);
   };
   SolvedElement one;
   one.t = t;
   one.h = h;
   one.states = matrix(layout.stage);
   if (kernel.options.representation == Representation::differential) {
-    const Eigen::MatrixXd increments = h * one.states * kernel.tableau.A.transpose();
-    one.states = increments.colwise() + left;
+    const linalg::Matrix increments = h * one.states * kernel.tableau.A.transpose();
+    one.states = linalg::plus_column(increments, left);
   }
   one.selections = matrix(layout.selection);
   one.lambda.resize(layout.lambda.size, layout.lambda.count + 1);
   const auto places = made.left_lambda(number);
   for (int i = 0; i < layout.lambda.size; ++i) one.lambda(i, 0) = value_at(places[at(i)], w, made.constants);
-  one.lambda.rightCols(layout.lambda.count) = matrix(layout.lambda);
+  one.lambda.right_cols(layout.lambda.count) = matrix(layout.lambda);
   one.end = w.segment(element.variable(layout.right_state()), kernel.states);
   return one;
 }
@@ -52,7 +51,7 @@ OcpSolution OcpProblem::read(ConstVectorView w) const {
     solution.parameters[i] = is_free ? w[made.parameters[free++]] : kernel.fixed_parameters[fixed++];
   }
   for (const int place : made.start.state) solution.initial_state.push_back(own.value(place, w));
-  Eigen::VectorXd left = Eigen::Map<const Eigen::VectorXd>(solution.initial_state.data(), kernel.states);
+  linalg::Vector left = linalg::ConstView(solution.initial_state.data(), kernel.states);
   const auto& sizes = kernel.shared;
   double start = made.from;
   for (const auto& interval : made.interval) {
@@ -127,12 +126,12 @@ std::vector<result::ConstraintMultiplier> OcpProblem::constraint_multipliers(Con
 std::string OcpProblem::not_finite(ConstVectorView w) {
   auto& own = *implementation_;
   auto& made = *own.structure;
-  Eigen::VectorXd c = Eigen::VectorXd::Zero(rows());
+  linalg::Vector c = linalg::Vector::zero(rows());
   for (const auto& placed : made.functions) {
     if (!std::isfinite(placed.placed->objective(w, made.constants, made.local_parameters))) return placed.what;
   }
   functions(w, c);
-  for (Eigen::Index i = 0; i < c.size(); ++i) {
+  for (linalg::Index i = 0; i < c.size(); ++i) {
     if (!std::isfinite(c[i])) return row_name(static_cast<int>(i));
   }
   return {};

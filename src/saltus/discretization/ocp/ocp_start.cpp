@@ -14,7 +14,7 @@ constexpr double interior = 0.1;
 /// Writes a guess into the variables, element by element.
 class StartWriter {
  public:
-  StartWriter(const OcpStructure& made, const OcpGuessValues& guess, Eigen::VectorXd& w)
+  StartWriter(const OcpStructure& made, const OcpGuessValues& guess, linalg::Vector& w)
       : made_(made), kernel_(made.kernel), guess_(guess), w_(w) {}
 
   void write() {
@@ -34,16 +34,14 @@ class StartWriter {
       for (const int h : interval.lengths) w_[h] = 1.0 / interval.elements;
       for (int n = 0; n < interval.elements; ++n) write_element(interval.first_element + n, row);
     }
-    w_ = w_.cwiseMax(made_.w_bounds.lower).cwiseMin(made_.w_bounds.upper);
+    w_ = w_.at_least(made_.w_bounds.lower).at_most(made_.w_bounds.upper);
   }
 
  private:
   void set(int place, double value) {
     if (place >= 0) w_[place] = value;
   }
-  [[nodiscard]] Eigen::Map<const Eigen::VectorXd> state(std::size_t row) const {
-    return {guess_.states[row].data(), kernel_.states};
-  }
+  [[nodiscard]] linalg::ConstView state(std::size_t row) const { return {guess_.states[row].data(), kernel_.states}; }
 
   void write_element(int number, std::size_t& row) {
     const auto& element = made_.element[at(number)];
@@ -54,15 +52,14 @@ class StartWriter {
     const std::size_t first = row;
     const bool ends_at_stage = kernel_.tableau.ends_at_last_stage();
     row += static_cast<std::size_t>(layout.stages + (ends_at_stage ? 0 : 1));
-    const Eigen::VectorXd left = first == 0
-                                     ? Eigen::Map<const Eigen::VectorXd>(guess_.initial_state.data(), kernel_.states)
-                                     : Eigen::VectorXd(state(first - 1));
-    const Eigen::VectorXd end = state(row - 1);
+    const linalg::Vector left =
+        first == 0 ? linalg::ConstView(guess_.initial_state.data(), kernel_.states) : state(first - 1);
+    const linalg::Vector end = state(row - 1);
     for (int m = 0; m < layout.stages; ++m) {
-      const Eigen::VectorXd x = state(first + at(m));
+      const linalg::Vector x = state(first + at(m));
       const bool integral = kernel_.options.representation == Representation::integral;
       w_.segment(element.variable(layout.stage.at(m)), kernel_.states) =
-          integral ? x : Eigen::VectorXd((end - left) / h);
+          integral ? x : linalg::Vector((end - left) / h);
       write_selections(element, m, t + kernel_.tableau.c[m] * h, x);
     }
     if (layout.end_state.count > 0) w_.segment(element.variable(layout.end_state.first), kernel_.states) = end;
@@ -70,19 +67,18 @@ class StartWriter {
     if (layout.has_end_point) write_multipliers(element, layout.points() - 1, t + h, end);
   }
 
-  void write_selections(const OcpElement& element, int m, double t, const Eigen::VectorXd& x) {
+  void write_selections(const OcpElement& element, int m, double t, const linalg::Vector& x) {
     const auto& block = kernel_.layout.selection;
-    Eigen::VectorXd selection = Eigen::VectorXd::Constant(kernel_.selections, 0.5);
-    for (const auto& [first, count] : kernel_.simplex_parts) selection.segment(first, count).setConstant(1.0 / count);
+    linalg::Vector selection = linalg::Vector::constant(kernel_.selections, 0.5);
+    for (const auto& [first, count] : kernel_.simplex_parts) selection.segment(first, count).set_constant(1.0 / count);
     if (guess_.simulated && kernel_.selections > 0) {
-      const Eigen::VectorXd psi = indicator(element, t, x);
+      const linalg::Vector psi = indicator(element, t, x);
       for (const auto& pair : kernel_.pairs) {
         if (!pair.is_region) selection[pair.selection] = psi[pair.selection] > 0.0 ? 1.0 - interior : interior;
       }
       for (const auto& [first, count] : kernel_.simplex_parts) {
-        Eigen::Index smallest = 0;
-        psi.segment(first, count).minCoeff(&smallest);
-        selection.segment(first, count).setConstant(interior / count);
+        const linalg::Index smallest = psi.segment(first, count).index_of_min();
+        selection.segment(first, count).set_constant(interior / count);
         selection[first + smallest] = 1.0 - interior;
       }
     }
@@ -90,26 +86,26 @@ class StartWriter {
     write_multipliers(element, m, t, x);
   }
 
-  void write_multipliers(const OcpElement& element, int point, double t, const Eigen::VectorXd& x) {
+  void write_multipliers(const OcpElement& element, int point, double t, const linalg::Vector& x) {
     const auto& block = kernel_.layout.lambda;
     if (block.size == 0) return;
-    Eigen::VectorXd lambda = Eigen::VectorXd::Constant(block.size, 0.5);
+    linalg::Vector lambda = linalg::Vector::constant(block.size, 0.5);
     if (guess_.simulated) {
-      Eigen::VectorXd psi = indicator(element, t, x);
+      linalg::Vector psi = indicator(element, t, x);
       for (const auto& [first, count] : kernel_.simplex_parts) {
-        psi.segment(first, count).array() -= psi.segment(first, count).minCoeff();
+        psi.segment(first, count).add_to_all(-psi.segment(first, count).min());
       }
       for (std::size_t k = 0; k < kernel_.pairs.size(); ++k) {
         const auto& pair = kernel_.pairs[k];
         const double value = psi[pair.selection];
-        lambda[static_cast<Eigen::Index>(k)] =
+        lambda[static_cast<linalg::Index>(k)] =
             std::max(!pair.is_region && !pair.complement ? -value : value, 0.0) + interior;
       }
     }
     w_.segment(element.variable(block.at(point)), block.size) = lambda;
   }
 
-  [[nodiscard]] Eigen::VectorXd indicator(const OcpElement& element, double t, const Eigen::VectorXd& x) const {
+  [[nodiscard]] linalg::Vector indicator(const OcpElement& element, double t, const linalg::Vector& x) const {
     std::vector<double> known = guess_.parameters;
     const auto& shared = made_.interval[at(element.interval)].shared;
     for (int i = 0; i < kernel_.shared.held; ++i) {
@@ -121,13 +117,13 @@ class StartWriter {
     const std::vector<double> state(x.data(), x.data() + x.size());
     const std::vector<casadi::DM> in{t, state, known};
     const auto values = casadi::DM::densify(kernel_.indicator(in).front()).nonzeros();
-    return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    return linalg::ConstView(values);
   }
 
   const OcpStructure& made_;
   const OcpKernel::Implementation& kernel_;
   const OcpGuessValues& guess_;
-  Eigen::VectorXd& w_;
+  linalg::Vector& w_;
 };
 
 }  // namespace
@@ -150,11 +146,11 @@ void OcpProblem::set_start(const OcpGuessValues& guess) {
   StartWriter(*implementation_->structure, guess, implementation_->start).write();
 }
 
-void OcpProblem::set_start(Eigen::VectorXd w) {
+void OcpProblem::set_start(linalg::Vector w) {
   SALTUS_ASSERT(w.size() == variables());
   implementation_->start = std::move(w);
 }
 
-Eigen::VectorXd OcpProblem::start() const { return implementation_->start; }
+linalg::Vector OcpProblem::start() const { return implementation_->start; }
 
 }  // namespace saltus::discretization

@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 class StructureBuilder {
  public:
   StructureBuilder(std::shared_ptr<OcpKernel> kernel, const model::Ocp& ocp, const std::vector<int>& elements,
-                   Eigen::MatrixXd held)
+                   linalg::Matrix held)
       : made_(std::make_unique<OcpStructure>(std::move(kernel))),
         kernel_(made_->kernel),
         ocp_(ocp),
@@ -31,7 +31,7 @@ class StructureBuilder {
 
   std::unique_ptr<OcpStructure> run() {
     const auto& fixed = kernel_.fixed_parameters;
-    made_->local_parameters.resize(static_cast<Eigen::Index>(fixed.size()) + 1);
+    made_->local_parameters.resize(static_cast<linalg::Index>(fixed.size()) + 1);
     std::copy(fixed.begin(), fixed.end(), made_->local_parameters.data());
     made_->local_parameters[made_->local_parameters.size() - 1] = 1.0 / made_->intervals;
     add_border();
@@ -66,11 +66,11 @@ class StructureBuilder {
                                                              fmt::format("initial {}", system.state_names[i]))
                                        : variables_.constant(system.initial_state[i]));
     }
-    const Eigen::VectorXd lambda = constant_start_lambda();
+    const linalg::Vector lambda = constant_start_lambda();
     for (std::size_t k = 0; k < kernel_.pairs.size(); ++k) {
       const int selection = kernel_.pairs[k].selection;
       made_->start.lambda.push_back(kernel_.start_is_constant[at(selection)]
-                                        ? variables_.constant(lambda[static_cast<Eigen::Index>(k)])
+                                        ? variables_.constant(lambda[static_cast<linalg::Index>(k)])
                                         : variables_.variable(0.0, infinity, fmt::format("initial lambda[{}]", k)));
     }
     for (const auto& [part, count] : kernel_.simplex_parts) {
@@ -89,23 +89,22 @@ class StructureBuilder {
   }
 
   /// eq. (17): lambda_p = max(psi, 0), lambda_n = -min(psi, 0); lambda_i = g_i - min g.
-  [[nodiscard]] Eigen::VectorXd constant_start_lambda() const {
-    Eigen::VectorXd lambda = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(kernel_.pairs.size()));
+  [[nodiscard]] linalg::Vector constant_start_lambda() const {
+    linalg::Vector lambda = linalg::Vector::zero(static_cast<linalg::Index>(kernel_.pairs.size()));
     if (kernel_.pairs.empty()) return lambda;
     std::vector<double> known = ocp_.system.parameter_values;
-    for (Eigen::Index i = 0; i < held_.cols(); ++i) known.push_back(held_(0, i));
+    for (linalg::Index i = 0; i < held_.cols(); ++i) known.push_back(held_(0, i));
     known.resize(known.size() + static_cast<std::size_t>(kernel_.shared.controls), 0.0);
     const std::vector<casadi::DM> in{ocp_.from, ocp_.system.initial_state, known};
     const auto values = casadi::DM::densify(kernel_.indicator(in).front()).nonzeros();
-    Eigen::VectorXd indicator =
-        Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    linalg::Vector indicator = linalg::ConstView(values);
     for (const auto& [first, count] : kernel_.simplex_parts) {
-      indicator.segment(first, count).array() -= indicator.segment(first, count).minCoeff();
+      indicator.segment(first, count).add_to_all(-indicator.segment(first, count).min());
     }
     for (std::size_t k = 0; k < kernel_.pairs.size(); ++k) {
       const auto& pair = kernel_.pairs[k];
       const double value = indicator[pair.selection];
-      lambda[static_cast<Eigen::Index>(k)] = std::max(!pair.is_region && !pair.complement ? -value : value, 0.0);
+      lambda[static_cast<linalg::Index>(k)] = std::max(!pair.is_region && !pair.complement ? -value : value, 0.0);
     }
     return lambda;
   }
@@ -119,13 +118,13 @@ class StructureBuilder {
                                                     fmt::format("{}[{}]", system.control_names[i], k)));
     }
     interval.shared.insert(interval.shared.end(), made_->parameters.begin(), made_->parameters.end());
-    for (Eigen::Index i = 0; i < held_.cols(); ++i) interval.shared.push_back(variables_.constant(held_(k, i)));
+    for (linalg::Index i = 0; i < held_.cols(); ++i) interval.shared.push_back(variables_.constant(held_(k, i)));
     interval.shared.push_back(made_->horizon);
     interval.shared.push_back(ocp_.clock ? variables_.variable(ocp_.clock->speed_lower, ocp_.clock->speed_upper,
                                                                fmt::format("speed of time[{}]", k))
                                          : variables_.constant(1.0));
     for (const auto& term : ocp_.least_squares) {
-      for (Eigen::Index i = 0; i < term.samples.cols(); ++i)
+      for (linalg::Index i = 0; i < term.samples.cols(); ++i)
         interval.shared.push_back(variables_.constant(term.samples(k, i)));
     }
     interval.elements = elements_[at(k)];
@@ -190,7 +189,7 @@ class StructureBuilder {
   OcpKernel::Implementation& kernel_;
   const model::Ocp& ocp_;
   const std::vector<int>& elements_;
-  Eigen::MatrixXd held_;
+  linalg::Matrix held_;
   OcpVariables variables_;
   std::vector<int> largest_path_, largest_terminal_;
 };

@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/discretization/ocp/ocp_kernel_internal.hpp"
 #include "saltus/discretization/placed_function_internal.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/mpcc/chain.hpp"
 
 namespace saltus::discretization {
@@ -91,7 +90,7 @@ struct OcpStructure {
   mpcc::Bounds w_bounds, g_bounds;
   std::vector<mpcc::Sign> signs;
   std::vector<int> pair_group;
-  Eigen::VectorXd constants, local_parameters;
+  linalg::Vector constants, local_parameters;
   mpcc::Chain chain;
   double from = 0.0;
   std::vector<std::string> names;  ///< of variables
@@ -113,7 +112,7 @@ struct OcpStructure {
                                                                     const std::vector<int>& elements);
 
 /// Returns values of Dcs::held in every interval, rows; an error where one changes inside an interval.
-[[nodiscard]] Expected<Eigen::MatrixXd> held_in_intervals(const model::Ocp& ocp, const reformulation::Dcs& dcs,
-                                                          const casadi::Function& arguments, int intervals);
+[[nodiscard]] Expected<linalg::Matrix> held_in_intervals(const model::Ocp& ocp, const reformulation::Dcs& dcs,
+                                                         const casadi::Function& arguments, int intervals);
 
 }  // namespace saltus::discretization

@@ -64,16 +64,14 @@ class OcpVariables {
   /// Hands everything to the structure.
   void finish() {
     made_.n_w = next();
-    made_.constants =
-        Eigen::Map<const Eigen::VectorXd>(constants_.data(), static_cast<Eigen::Index>(constants_.size()));
-    made_.w_bounds = {Eigen::Map<const Eigen::VectorXd>(lower_.data(), made_.n_w),
-                      Eigen::Map<const Eigen::VectorXd>(upper_.data(), made_.n_w)};
+    made_.constants = linalg::ConstView(constants_);
+    made_.w_bounds = {linalg::ConstView(lower_), linalg::ConstView(upper_)};
   }
 
  private:
   int slack(const model::OcpConstraint& constraint, const std::string& what) {
-    const int v = variable(0.0, std::numeric_limits<double>::infinity(),
-                           fmt::format("{} of '{}'", what, constraint.name));
+    const int v =
+        variable(0.0, std::numeric_limits<double>::infinity(), fmt::format("{} of '{}'", what, constraint.name));
     made_.penalties.push_back({v, constraint.penalty, constraint.norm == model::ConstraintNorm::l2});
     return v;
   }

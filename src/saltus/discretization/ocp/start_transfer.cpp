@@ -25,7 +25,7 @@ struct Section {
 
 class StartTransfer {
  public:
-  StartTransfer(const EarlierPoint& earlier, const OcpStructure& made, Eigen::VectorXd& w)
+  StartTransfer(const EarlierPoint& earlier, const OcpStructure& made, linalg::Vector& w)
       : earlier_(earlier), made_(made), kernel_(made.kernel), w_(w) {}
 
   void write() {
@@ -115,7 +115,7 @@ class StartTransfer {
     const auto& layout = kernel_.layout;
     const auto& c = kernel_.tableau.c;
     const bool integral = kernel_.options.representation == Representation::integral;
-    const auto put = [&](const VariableBlock& block, int group, const Eigen::VectorXd& value) {
+    const auto put = [&](const VariableBlock& block, int group, const linalg::Vector& value) {
       w_.segment(made_.element[e].variable(block.at(group)), block.size) = value;
     };
     for (int point = 0; point < layout.points(); ++point) {
@@ -170,19 +170,19 @@ class StartTransfer {
       std::vector<double> rows(at(element.equations() + 2 * element.pairs()));
       double objective = 0.0;
       element.values(z.data(), made_.local_parameters.data(), &objective, rows.data());
-      return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(rows.data(), element.equations()));
+      return linalg::Vector(linalg::ConstView(rows.data(), element.equations()));
     };
-    const Eigen::VectorXd here = equations();
+    const linalg::Vector here = equations();
     z[z.size() - at(kernel_.layout.size) + at(kernel_.layout.h)] *= 2.0;
-    const Eigen::VectorXd change = equations() - here;
-    const double factor = 1.0 - here.dot(change) / change.squaredNorm();
+    const linalg::Vector change = equations() - here;
+    const double factor = 1.0 - here.dot(change) / change.squared_norm();
     return std::isfinite(factor) && factor > 0.0 ? factor : 1.0;
   }
 
   const EarlierPoint& earlier_;
   const OcpStructure& made_;
   OcpKernel::Implementation& kernel_;
-  Eigen::VectorXd& w_;
+  linalg::Vector& w_;
 };
 
 }  // namespace
@@ -199,7 +199,7 @@ void OcpProblem::set_start(const OcpProblem& earlier, ConstVectorView w) {
   }
   const EarlierPoint point(before, earlier.read(w), w);
   StartTransfer(point, made, start).write();
-  start = start.cwiseMax(made.w_bounds.lower).cwiseMin(made.w_bounds.upper);
+  start = start.at_least(made.w_bounds.lower).at_most(made.w_bounds.upper);
 }
 
 }  // namespace saltus::discretization

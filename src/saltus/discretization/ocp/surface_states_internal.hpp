@@ -48,7 +48,7 @@ class SurfaceStates {
 /// them is the same point.
 /// @param functions  rows of the problem at a point
 void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                    const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& functions,
+                    const std::function<linalg::Vector(const linalg::Vector&)>& functions,
                     std::vector<mpcc::BranchMove>& moves);
 
 /// Adds moves of modes in which the motion can go on from where an element ends: an element of them is inserted, or

@@ -148,8 +148,8 @@ class TouchedSides {
   }
 
   /// While time stands still: until one of the multipliers has come to 0. From rest they fall with the square of time.
-  [[nodiscard]] std::optional<Eigen::VectorXd> solve_to_end(const std::vector<double>& left, std::size_t interval,
-                                                            const Modes& modes, double& length) const {
+  [[nodiscard]] std::optional<linalg::Vector> solve_to_end(const std::vector<double>& left, std::size_t interval,
+                                                           const Modes& modes, double& length) const {
     constexpr int largest_steps = 60;
     constexpr double enough = 1e-9, largest_growth = 10.0;
     double low = 0.0, at_low = 1.0, high = std::numeric_limits<double>::infinity(), at_high = 0.0;

@@ -9,11 +9,11 @@
 namespace saltus::discretization {
 namespace {
 
-using Functions = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
+using Functions = std::function<linalg::Vector(const linalg::Vector&)>;
 
 class VoidSides {
  public:
-  VoidSides(const OcpStructure& made, const ElementSides& modes, const Eigen::VectorXd& w, const Functions& functions)
+  VoidSides(const OcpStructure& made, const ElementSides& modes, const linalg::Vector& w, const Functions& functions)
       : made_(made), modes_(modes), w_(w), functions_(functions), states_(made), elements_(made.element.size()) {}
 
   void add_to(std::vector<mpcc::BranchMove>& moves) const {
@@ -36,14 +36,14 @@ class VoidSides {
     for (std::size_t e = 0; e < elements_; ++e) is_void[e] = states_.is_held(e, surface, w_);
     if (!contains(is_void, true)) return is_void;
     for (const int state : {-1, 1}) {
-      const Eigen::VectorXd errors = errors_of(selected(surface, is_void, state));
+      const linalg::Vector errors = errors_of(selected(surface, is_void, state));
       for (std::size_t e = 0; e < elements_; ++e) is_void[e] = is_void[e] && errors[index(e)] <= on_surface;
     }
     return is_void;
   }
 
-  [[nodiscard]] Eigen::VectorXd selected(std::size_t surface, const std::vector<bool>& is_wanted, int state) const {
-    Eigen::VectorXd w = w_;
+  [[nodiscard]] linalg::Vector selected(std::size_t surface, const std::vector<bool>& is_wanted, int state) const {
+    linalg::Vector w = w_;
     for (std::size_t e = 0; e < elements_; ++e) {
       if (is_wanted[e]) states_.select(e, surface, state, w);
     }
@@ -57,10 +57,10 @@ class VoidSides {
                          [&](const Placed& placed) { return placed.function == &made_.kernel.element; });
   }
 
-  void lift(int k, Eigen::VectorXd& w) const {
+  void lift(int k, linalg::Vector& w) const {
     const auto& kernel = made_.kernel;
     const auto& layout = kernel.layout;
-    const Eigen::VectorXd c = functions_(w);
+    const linalg::Vector c = functions_(w);
     const int differential =
         kernel.states * (layout.stages + layout.end_state.count) + layout.end_time.count * layout.end_time.size;
     const int per_stage = kernel.selections + kernel.simplices + layout.lifted.size;
@@ -73,11 +73,11 @@ class VoidSides {
   }
 
   /// The largest error of an equation of each element.
-  [[nodiscard]] Eigen::VectorXd errors_of(const Eigen::VectorXd& w) const {
-    const Eigen::VectorXd c = functions_(w);
-    Eigen::VectorXd errors = Eigen::VectorXd::Zero(index(elements_));
+  [[nodiscard]] linalg::Vector errors_of(const linalg::Vector& w) const {
+    const linalg::Vector c = functions_(w);
+    linalg::Vector errors = linalg::Vector::zero(index(elements_));
     for (const auto& one : equations().copies) {
-      errors[one.element] = c.segment(one.first_row, equations().function->equations()).cwiseAbs().maxCoeff();
+      errors[one.element] = c.segment(one.first_row, equations().function->equations()).max_abs();
     }
     return errors;
   }
@@ -100,7 +100,7 @@ class VoidSides {
 
   const OcpStructure& made_;
   const ElementSides& modes_;
-  const Eigen::VectorXd& w_;
+  const linalg::Vector& w_;
   const Functions& functions_;
   SurfaceStates states_;
   std::size_t elements_;
@@ -110,7 +110,7 @@ class VoidSides {
 
 void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
                     const Functions& functions, std::vector<mpcc::BranchMove>& moves) {
-  const Eigen::VectorXd here = w;
+  const linalg::Vector here = w;
   VoidSides(made, modes, here, functions).add_to(moves);
 }
 

@@ -116,12 +116,12 @@ std::optional<Located> NestedZeroApproach::at_zeros(double end, const std::vecto
   set.set(held, alpha);
   set.differentiate(here_.t, here_.x.data());
   std::size_t on_set = 0;
-  for (Eigen::Index i = 0; i < set.rows().cols(); ++i) on_set += set.rows().col(i).isZero(0.0) ? 0U : 1U;
+  for (linalg::Index i = 0; i < set.rows().cols(); ++i) on_set += set.rows().col(i).is_zero() ? 0U : 1U;
   const bool fixed = on_set <= held.size();
   for (std::size_t i = 0; i < here_.x.size(); ++i) {
     const double bend = 0.5 * left * (here_.slope[i] - last_slope_[i]) * std::min(1.0, left / last_step_);
     located.x[i] += left * here_.slope[i] + bend;
-    const bool is_fixed = fixed && !set.rows().col(static_cast<Eigen::Index>(i)).isZero(0.0);
+    const bool is_fixed = fixed && !set.rows().col(static_cast<linalg::Index>(i)).is_zero();
     const double tolerance = tolerances_.mode().atol + tolerances_.mode().rtol * std::abs(here_.x[i]);
     if (!is_fixed && left > 16.0 * here_.smallest_step() && !(std::abs(bend) <= tolerance)) return std::nullopt;
   }

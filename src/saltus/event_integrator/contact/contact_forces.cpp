@@ -7,17 +7,15 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/QR>
-
 #include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::VectorXd;
-
-using Eigen::Vector2d;
+using linalg::Matrix;
+using linalg::Vector;
 
 /// Of margins: rounding of solves, and of the place where a mode was found to end.
 constexpr double holds = -1e-8;
@@ -26,7 +24,7 @@ std::vector<ContactMode> mode_options(const ContactPoint& point, int i) {
   if (point.friction[static_cast<std::size_t>(i)] == 0.0) return {ContactMode::closed, ContactMode::open};
   if (point.in_plane(i)) {
     std::vector<ContactMode> modes{ContactMode::slip};
-    if (point.along(point.velocity, i).isZero(0.0)) modes.insert(modes.begin(), ContactMode::stick);
+    if (point.along(point.velocity, i).is_zero()) modes.insert(modes.begin(), ContactMode::stick);
     if (point.has_gap[static_cast<std::size_t>(i)]) modes.push_back(ContactMode::open);
     return modes;
   }
@@ -44,10 +42,10 @@ struct Sizes {
 Sizes sizes_of(const ContactPoint& point, const ContactForces& found) {
   // Where a body leaves a gap, what is left of its force and acceleration is the rounding of their terms.
   constexpr double rounded = 1e-5;
-  const double largest = (point.acceleration.cwiseAbs() + (point.influence * found.forces).cwiseAbs()).maxCoeff();
-  const double response = point.influence.cwiseAbs().maxCoeff();
+  const double largest = (point.acceleration.abs() + (point.influence * found.forces).abs()).max();
+  const double response = point.influence.max_abs();
   const double force = response > 0.0 ? rounded * point.terms / response : 0.0;
-  return {std::max(rounded * point.terms, largest), std::max(force, found.forces.cwiseAbs().maxCoeff())};
+  return {std::max(rounded * point.terms, largest), std::max(force, found.forces.max_abs())};
 }
 
 /// The least margin of all conditions.
@@ -67,10 +65,10 @@ double margin_of(const ContactPoint& point, const std::vector<int>& resting, con
     if (!is_idle) note(found.forces(i), force);
     if (!is_idle && mode == ContactMode::stick) note(mu * found.forces(i) - point.along(found.forces, i).norm(), force);
     if (!slips(mode)) continue;
-    const Vector2d& direction = found.directions[static_cast<std::size_t>(i)];
-    const Vector2d velocity = point.along(point.velocity, i);
-    velocity.isZero(0.0) ? note(direction.dot(point.along(found.acceleration, i)), largest)
-                         : note(direction.dot(velocity), velocity.norm());
+    const Vector& direction = found.directions[static_cast<std::size_t>(i)];
+    const Vector velocity = point.along(point.velocity, i);
+    velocity.is_zero() ? note(direction.dot(point.along(found.acceleration, i)), largest)
+                       : note(direction.dot(velocity), velocity.norm());
   }
   return least;
 }
@@ -111,12 +109,12 @@ bool solve_forces(const ContactPoint& point, const std::vector<int>& resting, He
 
 /// Whether rows that are held hold others, too.
 bool hold(const ContactPoint& point, const std::vector<int>& held, const std::vector<int>& rows) {
-  const Eigen::MatrixXd between = point.influence(held, rows);
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
-  factors.setThreshold(HeldRows::dependent);
-  factors.compute(point.influence(held, held));
-  const Eigen::MatrixXd left = point.influence(rows, rows) - between.transpose() * factors.solve(between);
-  return left.diagonal().cwiseAbs().maxCoeff() <= 1e-9 * point.influence(rows, rows).diagonal().maxCoeff();
+  const Matrix between = point.influence.selected(held, rows);
+  linalg::OrthogonalFactors factors;
+  factors.set_threshold(HeldRows::dependent);
+  factors.compute(point.influence.selected(held, held));
+  const Matrix left = point.influence.selected(rows, rows) - between.transpose() * factors.solve(between);
+  return left.diagonal().max_abs() <= 1e-9 * point.influence.selected(rows, rows).diagonal().max();
 }
 
 /// Whether the normal forces of others keep a contact closed, and all of their forces keep it at rest if it sticks.
@@ -149,12 +147,12 @@ void drop_idle(const ContactPoint& point, const std::vector<int>& resting, HeldR
 }
 
 /// Goes along forces that do not change the motion to where the modes hold best: the margin is a concave function.
-void take_best_along(const VectorXd& open, const ContactPoint& point, const std::vector<int>& resting,
+void take_best_along(const Vector& open, const ContactPoint& point, const std::vector<int>& resting,
                      ContactForces& result) {
   constexpr double moved = 1e-9, widest = 1e6, golden = 0.6180339887498949;
   constexpr int refinements = 60;
-  const VectorXd way = open * (result.forces.cwiseAbs().maxCoeff() / open.cwiseAbs().maxCoeff());
-  if (!((point.influence * way).cwiseAbs().maxCoeff() <= moved * point.terms)) return;
+  const Vector way = open * (result.forces.max_abs() / open.max_abs());
+  if (!((point.influence * way).max_abs() <= moved * point.terms)) return;
   const ContactForces start = result;
   const auto margin_at = [&](double length) {
     result.forces = start.forces + length * way;
@@ -181,15 +179,14 @@ void take_best_along(const VectorXd& open, const ContactPoint& point, const std:
 /// no single one leads on.
 void take_best(const ContactPoint& point, const std::vector<int>& resting, ContactForces& result) {
   if (!result.is_open) return;
-  const Eigen::MatrixXd open = held_rows(point, resting, result).open(point.influence);
-  for (Eigen::Index k = 0; k < open.cols(); ++k) take_best_along(open.col(k), point, resting, result);
+  const Matrix open = held_rows(point, resting, result).open(point.influence);
+  for (linalg::Index k = 0; k < open.cols(); ++k) take_best_along(open.col(k), point, resting, result);
   constexpr int mixtures = 20;
   constexpr double golden_angle = 2.399963229728653;
-  for (Eigen::Index n = 1; n < mixtures * open.cols() && open.cols() > 1 && result.margin < holds; ++n) {
-    VectorXd mixture = VectorXd::Zero(open.rows());
-    for (Eigen::Index k = 0; k < open.cols(); ++k) {
-      mixture +=
-          std::sin(golden_angle * static_cast<double>(n * (k + 1))) / open.col(k).cwiseAbs().maxCoeff() * open.col(k);
+  for (linalg::Index n = 1; n < mixtures * open.cols() && open.cols() > 1 && result.margin < holds; ++n) {
+    Vector mixture = Vector::zero(open.rows());
+    for (linalg::Index k = 0; k < open.cols(); ++k) {
+      mixture += std::sin(golden_angle * static_cast<double>(n * (k + 1))) / open.col(k).max_abs() * open.col(k);
     }
     take_best_along(mixture, point, resting, result);
   }
@@ -204,10 +201,11 @@ void guess_directions(const ContactPoint& point, const std::vector<int>& resting
   const bool sticks = solve_forces(point, resting, rows, guess) && !guess.is_open;
   const bool moves = !sticks && solve_forces(point, resting, rows, guess = result);
   for (const int i : free) {
-    const Vector2d needed = sticks  ? Vector2d(-point.along(guess.forces, i))
-                            : moves ? point.along(guess.acceleration, i)
-                                    : point.along(point.acceleration, i);
-    result.directions[static_cast<std::size_t>(i)] = needed.norm() > 0.0 ? needed.normalized() : Vector2d(1.0, 0.0);
+    const Vector needed = sticks  ? Vector(-point.along(guess.forces, i))
+                          : moves ? point.along(guess.acceleration, i)
+                                  : point.along(point.acceleration, i);
+    result.directions[static_cast<std::size_t>(i)] =
+        needed.norm() > 0.0 ? Vector(needed.normalized()) : Vector{1.0, 0.0};
   }
 }
 
@@ -216,13 +214,13 @@ bool is_determined(const ContactPoint& point, const std::vector<int>& resting, c
   ContactForces base = found;
   base.idle.clear();
   if (!found.is_open && found.idle.empty()) return true;
-  const Eigen::MatrixXd open = held_rows(point, resting, base).open(point.influence);
-  const double response = point.influence.cwiseAbs().maxCoeff();
+  const Matrix open = held_rows(point, resting, base).open(point.influence);
+  const double response = point.influence.max_abs();
   constexpr double small = 1e-6, moved = 1e-12;
-  for (Eigen::Index k = 0; k < open.cols(); ++k) {
-    const Eigen::VectorXd forces = open.col(k) * (small * point.terms / (response * open.col(k).cwiseAbs().maxCoeff()));
-    const Eigen::VectorXd change = point.influence * forces;
-    if (!(change.cwiseAbs().maxCoeff() > moved * point.terms)) continue;
+  for (linalg::Index k = 0; k < open.cols(); ++k) {
+    const Vector forces = open.col(k) * (small * point.terms / (response * open.col(k).max_abs()));
+    const Vector change = point.influence * forces;
+    if (!(change.max_abs() > moved * point.terms)) continue;
     for (const double sign : {1.0, -1.0}) {
       ContactForces other = base;
       other.forces += sign * forces;
@@ -237,17 +235,17 @@ bool is_determined(const ContactPoint& point, const std::vector<int>& resting, c
 bool find_forces(const ContactPoint& point, const std::vector<int>& resting, const std::vector<ContactMode>& modes,
                  HeldRows& rows, ContactForces& result) {
   result.modes = modes;
-  result.directions.assign(modes.size(), Vector2d::Zero());
+  result.directions.assign(modes.size(), Vector::zero(2));
   result.idle.clear();
   std::vector<int> free;
   for (const int i : resting) {
     const auto mode = modes[static_cast<std::size_t>(i)];
     auto& direction = result.directions[static_cast<std::size_t>(i)];
-    const Vector2d velocity = point.along(point.velocity, i);
-    if (mode == ContactMode::slip_up) direction = {1.0, 0.0};
-    if (mode == ContactMode::slip_down) direction = {-1.0, 0.0};
+    const Vector velocity = point.along(point.velocity, i);
+    if (mode == ContactMode::slip_up) direction = Vector{1.0, 0.0};
+    if (mode == ContactMode::slip_down) direction = Vector{-1.0, 0.0};
     if (mode != ContactMode::slip) continue;
-    if (velocity.isZero(0.0)) {
+    if (velocity.is_zero()) {
       free.push_back(i);
     } else {
       direction = velocity.normalized();
@@ -270,7 +268,7 @@ bool find_forces(const ContactPoint& point, const std::vector<int>& resting, con
 bool find_only_forces(const ContactPoint& point, const std::vector<int>& resting, HeldRows& rows,
                       ContactForces& found) {
   found.modes.assign(point.friction.size(), ContactMode::open);
-  found.directions.assign(found.modes.size(), Vector2d::Zero());
+  found.directions.assign(found.modes.size(), Vector::zero(2));
   for (const int i : resting) found.modes[static_cast<std::size_t>(i)] = ContactMode::closed;
   for (std::size_t step = 0; step < 4 * resting.size(); ++step) {
     if (!solve_forces(point, resting, rows, found) || found.is_open) return false;
@@ -359,7 +357,7 @@ bool have_one_motion(const ContactPoint& point, const std::vector<int>& resting,
                      const std::vector<ContactForces>& found, std::size_t chosen) {
   constexpr double rounded = 1e-6;
   const auto moves_alike = [&](const ContactForces& other) {
-    return (other.acceleration - found[chosen].acceleration).cwiseAbs().maxCoeff() <= rounded * point.terms;
+    return (other.acceleration - found[chosen].acceleration).max_abs() <= rounded * point.terms;
   };
   return std::all_of(found.begin(), found.end(), moves_alike) && is_determined(point, resting, found[chosen]);
 }

@@ -3,9 +3,8 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/event_integrator/contact/contact_point.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
 
@@ -22,13 +21,13 @@ enum class ContactMode {
 /// Holds modes of all contacts, and their forces.
 struct ContactForces {
   std::vector<ContactMode> modes;
-  std::vector<Eigen::Vector2d> directions;  ///< by contact, of slip: unit vectors over its tangents; 0 without
+  std::vector<linalg::Vector> directions;  ///< by contact, of slip: unit vectors over its tangents; 0 without
   /// Closed contacts that others keep closed: of forces that the motion leaves open those are taken that need the
   /// fewest contacts.
   std::vector<int> idle;
-  bool is_open = false;          ///< other forces would do, those of idle contacts aside
-  Eigen::VectorXd forces;        ///< r
-  Eigen::VectorXd acceleration;  ///< r, with them
+  bool is_open = false;         ///< other forces would do, those of idle contacts aside
+  linalg::Vector forces;        ///< r
+  linalg::Vector acceleration;  ///< r, with them
   /// What is left until the first of the modes ends, relative to its terms: a normal force or acceleration, the
   /// distance to the edge of a friction cone. Negative: a mode does not hold.
   double margin = 0.0;

@@ -5,15 +5,13 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::event_integrator {
 
 void HeldRows::clear() {
-  given_.setZero();
+  given_.set_zero();
   held_.clear();
   shares_.clear();
 }
@@ -37,13 +35,12 @@ void HeldRows::add(const Unknowns& unknowns, Forces& forces) const {
   for (const auto& share : shares_) forces.row(share.row) += share.part * unknowns.row(share.unknown);
 }
 
-auto HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start, Eigen::VectorXd& forces)
-    -> Solution {
+auto HeldRows::solve(const linalg::Matrix& influence, const linalg::Vector& start, linalg::Vector& forces) -> Solution {
   forces = given_;
   if (held_.empty()) return Solution::one;
   const auto n = index(held_.size());
   right_.resize(n);
-  for (Eigen::Index k = 0; k < n; ++k) {
+  for (linalg::Index k = 0; k < n; ++k) {
     const int row = held_[at(k)];
     right_(k) = -(start(row) + influence.row(row).dot(given_));
   }
@@ -51,19 +48,19 @@ auto HeldRows::solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& st
     if (*solution != Solution::none) add(unknowns_, forces);
     return *solution;
   }
-  const Eigen::MatrixXd rows = rows_of(influence);
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
-  factors.setThreshold(dependent);
+  const linalg::Matrix rows = rows_of(influence);
+  linalg::OrthogonalFactors factors;
+  factors.set_threshold(dependent);
   factors.compute(rows);
   unknowns_ = factors.solve(right_);
-  const double size = rows.cwiseAbs().maxCoeff() * unknowns_.cwiseAbs().maxCoeff() + right_.cwiseAbs().maxCoeff();
-  if (!((rows * unknowns_ - right_).cwiseAbs().maxCoeff() <= contradiction * size)) return Solution::none;
+  const double size = rows.max_abs() * unknowns_.max_abs() + right_.max_abs();
+  if (!((rows * unknowns_ - right_).max_abs() <= contradiction * size)) return Solution::none;
   add(unknowns_, forces);
   return factors.rank() < n ? Solution::open : Solution::one;
 }
 
 /// By complete pivoting, in the memory that is there; nothing where the rank is not clear.
-auto HeldRows::eliminate(const Eigen::MatrixXd& influence) -> std::optional<Solution> {
+auto HeldRows::eliminate(const linalg::Matrix& influence) -> std::optional<Solution> {
   const std::size_t n = held_.size(), width = n + 1;
   table_.resize(n * width);
   order_.resize(n);
@@ -106,7 +103,7 @@ auto HeldRows::eliminate(const Eigen::MatrixXd& influence) -> std::optional<Solu
 /// The least solution of the rows behind an elimination, made orthogonal one after the other.
 auto HeldRows::solve_least(std::size_t rank, double largest) -> Solution {
   const std::size_t n = held_.size(), width = n + 1;
-  unknowns_.setZero(index(n));
+  unknowns_.set_zero(index(n));
   for (std::size_t i = 0; i < rank; ++i) {
     double* row = table_.data() + i * width;
     for (std::size_t j = 0; j < i; ++j) {
@@ -118,33 +115,34 @@ auto HeldRows::solve_least(std::size_t rank, double largest) -> Solution {
     for (std::size_t k = 0; k < width; ++k) row[k] /= size;
     for (std::size_t k = 0; k < n; ++k) unknowns_(order_[k]) += row[n] * row[k];
   }
-  const double size = largest * unknowns_.cwiseAbs().maxCoeff() + right_.cwiseAbs().maxCoeff();
+  const double size = largest * unknowns_.max_abs() + right_.max_abs();
   for (std::size_t i = rank; i < n; ++i) {
     if (!(std::abs(table_[i * width + n]) <= contradiction * size)) return Solution::none;
   }
   return rank < n ? Solution::open : Solution::one;
 }
 
-Eigen::MatrixXd HeldRows::rows_of(const Eigen::MatrixXd& influence) const {
-  Eigen::MatrixXd rows = influence(held_, held_);
-  for (const auto& share : shares_) rows.col(share.unknown) += share.part * influence(held_, share.row);
+linalg::Matrix HeldRows::rows_of(const linalg::Matrix& influence) const {
+  linalg::Matrix rows = influence.selected(held_, held_);
+  for (const auto& share : shares_)
+    rows.col(share.unknown) += share.part * influence.col(share.row).selected_rows(held_);
   return rows;
 }
 
-Eigen::MatrixXd HeldRows::open(const Eigen::MatrixXd& influence) const {
+linalg::Matrix HeldRows::open(const linalg::Matrix& influence) const {
   const auto n = index(held_.size());
-  Eigen::FullPivLU<Eigen::MatrixXd> factors;
-  factors.setThreshold(dependent);
+  linalg::FullLu factors;
+  factors.set_threshold(dependent);
   if (n > 0) factors.compute(rows_of(influence));
-  if (n == 0 || factors.rank() == n) return Eigen::MatrixXd(given_.size(), 0);
-  const Eigen::MatrixXd kernel = factors.kernel();
-  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(given_.size(), kernel.cols());
+  if (n == 0 || factors.rank() == n) return linalg::Matrix(given_.size(), 0);
+  const linalg::Matrix kernel = factors.kernel();
+  linalg::Matrix forces = linalg::Matrix::zero(given_.size(), kernel.cols());
   add(kernel, forces);
   return forces;
 }
 
-bool find_directions(const ContactPoint& point, const std::vector<int>& free, std::vector<Eigen::Vector2d>& directions,
-                     const Eigen::VectorXd& forces, const Eigen::VectorXd& rates, FunctionRef<bool()> solve) {
+bool find_directions(const ContactPoint& point, const std::vector<int>& free, std::vector<linalg::Vector>& directions,
+                     const linalg::Vector& forces, const linalg::Vector& rates, FunctionRef<bool()> solve) {
   // A step along the rate, as long as would turn friction around: one contact without other influences needs one. Where
   // the normal force depends on the direction, too, that may be too long.
   constexpr int most_steps = 500;
@@ -159,11 +157,11 @@ bool find_directions(const ContactPoint& point, const std::vector<int>& free, st
       const double push = point.friction[static_cast<std::size_t>(i)] * forces(i) *
                           std::max(point.influence(first, first), point.influence(second, second));
       auto& direction = directions[static_cast<std::size_t>(i)];
-      const Eigen::Vector2d rate = point.along(rates, i);
+      const linalg::Vector rate = point.along(rates, i);
       const auto behind = [&](double part) {
-        return push > 0.0 ? Eigen::Vector2d(direction + part * rate / push) : rate;
+        return push > 0.0 ? linalg::Vector(direction + part * rate / push) : rate;
       };
-      const Eigen::Vector2d next = behind(length);
+      const linalg::Vector next = behind(length);
       if (!(next.norm() > 0.0)) continue;
       change = std::max(change, (behind(1.0).normalized() - direction).norm());
       direction = next.normalized();

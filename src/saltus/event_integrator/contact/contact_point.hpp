@@ -4,18 +4,17 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/function_ref.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
 
 /// Holds m contacts. Vectors over them have the normal parts first, then those along first tangents, then those along
 /// second ones if a contact has two (0 where there is none); r = m, 2 m or 3 m.
 struct ContactPoint {
-  Eigen::MatrixXd influence;                  ///< r x r: d velocity / d impulse, (N, T)' M^-1 (N, T)
-  Eigen::VectorXd velocity;                   ///< r
-  Eigen::VectorXd acceleration;               ///< r, without contact forces
+  linalg::Matrix influence;                   ///< r x r: d velocity / d impulse, (N, T)' M^-1 (N, T)
+  linalg::Vector velocity;                    ///< r
+  linalg::Vector acceleration;                ///< r, without contact forces
   double free_terms = 0.0;                    ///< the largest sum of the sizes of the terms of `acceleration`
   double terms = 0.0;                         ///< likewise, or of what contact forces cancel of it
   std::vector<double> friction, restitution;  ///< m; friction 0: frictionless
@@ -28,8 +27,8 @@ struct ContactPoint {
   [[nodiscard]] int tangent_row(int i, int tangent) const { return (1 + tangent) * contacts() + i; }
   [[nodiscard]] double normal_velocity(int i) const { return velocity(i); }
   /// Returns the part of a vector along both tangents of a contact; 0 along those that it has not.
-  [[nodiscard]] Eigen::Vector2d along(const Eigen::VectorXd& vector, int i) const {
-    if (tangents[static_cast<std::size_t>(i)] == 0) return {0.0, 0.0};
+  [[nodiscard]] linalg::Vector along(const linalg::Vector& vector, int i) const {
+    if (tangents[static_cast<std::size_t>(i)] == 0) return linalg::Vector::zero(2);
     return {vector(tangent_row(i, 0)), in_plane(i) ? vector(tangent_row(i, 1)) : 0.0};
   }
 };
@@ -38,7 +37,7 @@ struct ContactPoint {
 /// forces at 0; the least ones where rows depend on each other.
 class HeldRows {
  public:
-  explicit HeldRows(Eigen::Index rows) : given_(Eigen::VectorXd::Zero(rows)) {}
+  explicit HeldRows(linalg::Index rows) : given_(linalg::Vector::zero(rows)) {}
   /// Forgets all rows, and keeps the memory.
   void clear();
   /// Adds one more unknown, the force of a row that is held; returns its number.
@@ -50,9 +49,9 @@ class HeldRows {
   [[nodiscard]] const std::vector<int>& held() const { return held_; }
   enum class Solution { none, one, open };
   /// Finds the forces; none where the rows contradict each other, one of many where they depend on each other.
-  [[nodiscard]] Solution solve(const Eigen::MatrixXd& influence, const Eigen::VectorXd& start, Eigen::VectorXd& forces);
+  [[nodiscard]] Solution solve(const linalg::Matrix& influence, const linalg::Vector& start, linalg::Vector& forces);
   /// Returns, as columns, forces that leave the held rows as they are.
-  [[nodiscard]] Eigen::MatrixXd open(const Eigen::MatrixXd& influence) const;
+  [[nodiscard]] linalg::Matrix open(const linalg::Matrix& influence) const;
 
   static constexpr double dependent = 1e-11;  ///< rows that depend on each other to rounding
 
@@ -62,18 +61,18 @@ class HeldRows {
     int row, unknown;
     double part;
   };
-  [[nodiscard]] Eigen::MatrixXd rows_of(const Eigen::MatrixXd& influence) const;
-  [[nodiscard]] std::optional<Solution> eliminate(const Eigen::MatrixXd& influence);
+  [[nodiscard]] linalg::Matrix rows_of(const linalg::Matrix& influence) const;
+  [[nodiscard]] std::optional<Solution> eliminate(const linalg::Matrix& influence);
   [[nodiscard]] Solution solve_least(std::size_t rank, double largest);
   template <class Unknowns, class Forces>
   void add(const Unknowns& unknowns, Forces& forces) const;
 
-  Eigen::VectorXd given_;
+  linalg::Vector given_;
   std::vector<int> held_;
   std::vector<Share> shares_;  ///< of what is unknown, by ascending unknowns
   std::vector<double> table_;  ///< memory of an elimination
   std::vector<int> order_;     ///< likewise
-  Eigen::VectorXd right_, unknowns_;
+  linalg::Vector right_, unknowns_;
 };
 
 /// Finds the directions in which contacts begin to slip from rest: along the rates of their tangential velocities,
@@ -83,7 +82,7 @@ class HeldRows {
 /// @param solve       finds forces and rates (r each) for the directions; returns false where there are none
 /// @return false where solve does, or nothing is found
 [[nodiscard]] bool find_directions(const ContactPoint& point, const std::vector<int>& free,
-                                   std::vector<Eigen::Vector2d>& directions, const Eigen::VectorXd& forces,
-                                   const Eigen::VectorXd& rates, FunctionRef<bool()> solve);
+                                   std::vector<linalg::Vector>& directions, const linalg::Vector& forces,
+                                   const linalg::Vector& rates, FunctionRef<bool()> solve);
 
 }  // namespace saltus::event_integrator

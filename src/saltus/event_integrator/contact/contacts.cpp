@@ -13,7 +13,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::VectorXd;
+using linalg::Vector;
 
 constexpr double small_velocity =
     1e-9;  ///< relative size of velocities that count as none at an event: location and projection
@@ -48,7 +48,7 @@ double Contacts::force_terms(const ContactPoint& point, double t, const std::vec
     const auto& contact = contacts_[i];
     if (!presses(contact)) continue;
     const double force = magnitude[at(kernel_.jump_guard(contact.jump, 0))] * x[at(contact.force_unit)];
-    const auto row = static_cast<Eigen::Index>(i);
+    const auto row = static_cast<linalg::Index>(i);
     if (std::isfinite(force)) largest = std::max(largest, force * point.influence(row, row));
   }
   return largest;
@@ -73,7 +73,7 @@ double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, 
   rate.resize(x.size());
   kernel_.field(t, open.data(), alpha.data(), rate.data());
   double largest = 0.0;
-  for (Eigen::Index row = 0; row < values_.acceleration.size(); ++row) {
+  for (linalg::Index row = 0; row < values_.acceleration.size(); ++row) {
     double terms = 0.0, along = 0.0;
     for (std::size_t k = 0; k < layout_.velocities.size(); ++k) {
       const double term = values_.rows(row, index(k)) * rate[at(layout_.velocities[k])];
@@ -104,7 +104,8 @@ void Contacts::read_point(double t, const std::vector<double>& alpha, const std:
 void Contacts::read_motion(double t, const std::vector<double>& alpha, const std::vector<double>& x,
                            ContactPoint& point) {
   kernel_.contacts(t, x.data(), alpha.data(), values_);
-  point.influence.noalias() = values_.rows * values_.responses;
+  point.influence.resize(values_.rows.rows(), values_.responses.cols());
+  linalg::multiply(values_.rows, values_.responses, point.influence);
   point.velocity = values_.velocity;
   point.acceleration = values_.acceleration;
   point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
@@ -112,7 +113,7 @@ void Contacts::read_motion(double t, const std::vector<double>& alpha, const std
   point.has_gap.clear();
   point.tangents.clear();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<Eigen::Index>(i)) : 0.0);
+    point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<linalg::Index>(i)) : 0.0);
     point.has_gap.push_back(contacts_[i].has_gap);
     point.tangents.push_back(!contacts_[i].has_friction ? 0 : contacts_[i].in_plane ? 2 : 1);
   }
@@ -216,7 +217,7 @@ std::vector<int> Contacts::without_slip(const ContactMoment& moment, const std::
   clean(moment, point, x, {});
   std::vector<int> found;
   for (int i = 0; i < point.contacts(); ++i) {
-    if (point.along(point.velocity, i).isZero(0.0)) found.push_back(i);
+    if (point.along(point.velocity, i).is_zero()) found.push_back(i);
   }
   return found;
 }
@@ -257,7 +258,7 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const B
   // What follows from velocities that are 0 is 0, too: a slip there would have the direction of a rounding. Along gaps
   // that move with time it is not.
   const double small = small_velocity * fastest(moment, point, x);
-  change_velocities(still, -values_.velocity(still), x);
+  change_velocities(still, -values_.velocity.selected_rows(still), x);
   kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
   stop_slips([&](int i) {
     bool follows = point.along(values_.velocity, i).norm() <= small;
@@ -351,7 +352,7 @@ std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint
     for (const int i : resting) {
       // The sign of the slip is that of the mode; where it begins without an acceleration, that of a rounding.
       const auto mode = found[k].modes[at(i)];
-      const bool begins = slips(mode) && !point.in_plane(i) && point.along(point.velocity, i).isZero(0.0);
+      const bool begins = slips(mode) && !point.in_plane(i) && point.along(point.velocity, i).is_zero();
       if (mode != ContactMode::stick && !begins) continue;
       for (int tangent = 0; tangent < later.tangents[at(i)]; ++tangent) {
         later.velocity(later.tangent_row(i, tangent)) = 0.0;
@@ -427,7 +428,7 @@ void Contacts::set_units(const ContactMoment& moment, const ContactPoint& point,
 void Contacts::enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
                           bool is_free, std::vector<double>& x) {
   const auto& contact = contacts_[at(i)];
-  const bool is_still = point.along(point.velocity, i).isZero(0.0);
+  const bool is_still = point.along(point.velocity, i).is_zero();
   const bool moves = is_free || !is_still || point.along(found.acceleration, i).norm() > 1e-9 * point.terms;
   for (int k = 0; k < contact.tangents() && !(moves && contact.in_plane); ++k) {
     x[at(contact.share + k)] = found.directions[at(i)](k);
@@ -454,7 +455,7 @@ std::optional<std::string> Contacts::jam(const ContactMoment& moment, const std:
   ContactForces forces;
   if (closed.empty() || !forces_in(point, closed, modes, forces)) return std::nullopt;
   constexpr double without_bound = 1e4;
-  const double largest = without_bound * point.acceleration.cwiseAbs().maxCoeff();
+  const double largest = without_bound * point.acceleration.max_abs();
   std::erase_if(closed, [&](int i) {
     return point.friction[at(i)] == 0.0 || !slips(modes[at(i)]) || forces.forces(i) * point.influence(i, i) <= largest;
   });

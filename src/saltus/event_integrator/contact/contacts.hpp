@@ -5,12 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/contact/contact_forces.hpp"
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/layout.hpp"
 #include "saltus/ode/stepper.hpp"
 
@@ -168,8 +167,8 @@ class Contacts {
                          const std::vector<double>& x);
   [[nodiscard]] bool comes_to_rest(const ContactMoment& moment, int contact, const ContactPoint& point,
                                    const std::vector<double>& x) const;
-  void set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity, std::vector<double>& x);
-  void start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction, std::vector<double>& x);
+  void set_slip(const ContactPoint& point, int contact, const linalg::Vector& velocity, std::vector<double>& x);
+  void start_slip(const ContactMoment& moment, int contact, const linalg::Vector& direction, std::vector<double>& x);
   void copy_impulses(const std::vector<double>& from, std::vector<double>& x) const;
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
              const std::vector<int>& ended) const;
@@ -180,10 +179,10 @@ class Contacts {
   [[nodiscard]] std::optional<ContactMode> way_back(const ContactMoment& moment, int contact, bool ends,
                                                     const std::vector<double>& x) const;
   [[nodiscard]] bool touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const;
-  [[nodiscard]] std::optional<Eigen::VectorXd> push(const ContactMoment& moment, const std::vector<int>& touching,
-                                                    std::optional<int> pushed, ContactPoint& point,
-                                                    std::vector<double>& x);
-  void compare_orders(const ContactPoint& before, const std::vector<int>& touching, const Eigen::VectorXd& impulses);
+  [[nodiscard]] std::optional<linalg::Vector> push(const ContactMoment& moment, const std::vector<int>& touching,
+                                                   std::optional<int> pushed, ContactPoint& point,
+                                                   std::vector<double>& x);
+  void compare_orders(const ContactPoint& before, const std::vector<int>& touching, const linalg::Vector& impulses);
   bool collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
                ContactPoint& point, std::vector<double>& x);
   [[nodiscard]] std::optional<std::string> find_modes(const ContactMoment& moment, const std::vector<int>& touching,
@@ -197,9 +196,9 @@ class Contacts {
   void set_units(const ContactMoment& moment, const ContactPoint& point, int i, std::vector<double>& x) const;
   void enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
                   bool is_free, std::vector<double>& x);
-  [[nodiscard]] const Eigen::VectorXd& least_change(const std::vector<int>& rows, const Eigen::VectorXd& change);
+  [[nodiscard]] const linalg::Vector& least_change(const std::vector<int>& rows, const linalg::Vector& change);
   bool correct_positions(const std::vector<int>& touching, std::vector<double>& x);
-  void change_velocities(const std::vector<int>& rows, const Eigen::VectorXd& change, std::vector<double>& x);
+  void change_velocities(const std::vector<int>& rows, const linalg::Vector& change, std::vector<double>& x);
   void correct_velocities(Slips slips, std::vector<double>& x);
   void put_at_rest(const ContactPoint& point, const std::vector<int>& resting, std::vector<double>& x);
   void drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
@@ -215,14 +214,14 @@ class Contacts {
   struct ProjectionStart {
     std::vector<int> held;  ///< rows that the modes hold
     std::vector<double> x;
-    Eigen::VectorXd velocity;  ///< of all rows
+    linalg::Vector velocity;  ///< of all rows
   };
   struct Projection {
     ProjectionStart start;
     std::vector<int> rows;
-    Eigen::VectorXd change, pushes, least;
-    Eigen::MatrixXd influence;
-    Eigen::LDLT<Eigen::MatrixXd> factors;
+    linalg::Vector change, pushes, least;
+    linalg::Matrix influence;
+    linalg::Ldl factors;
   };
   Projection projection_;  ///< work space: steps allocate nothing
   struct Terms {

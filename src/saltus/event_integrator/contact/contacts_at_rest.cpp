@@ -52,7 +52,7 @@ double Contacts::pull_on(int contact, const ContactPoint& point, const std::vect
     if (i != contact && point.has_gap[at(i)] && point.velocity(i) == 0.0 && touches(i, x, {})) rows.hold(i);
   }
   double acceleration = point.acceleration(contact);
-  Eigen::VectorXd forces;
+  linalg::Vector forces;
   if (!rows.held().empty() && rows.solve(point.influence, point.acceleration, forces) != HeldRows::Solution::none)
     acceleration = std::min(acceleration, acceleration + point.influence.row(contact).dot(forces));
   return std::max(0.0, -acceleration);
@@ -99,7 +99,7 @@ bool Contacts::close_by_rounding(const ContactMoment& moment, const std::vector<
 /// Contacts that an impact has closed as slowly as nothing would be left to rise by.
 void Contacts::note_last_bounces(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint before,
                                  const std::vector<double>& x) {
-  const double none = 64.0 * rounding_unit * before.velocity.cwiseAbs().maxCoeff();
+  const double none = 64.0 * rounding_unit * before.velocity.max_abs();
   for (const int i : touching) {
     double& speed = before.velocity(i);
     if (!(speed < 0.0) || before.restitution[at(i)] == 0.0 || mode_of(i, x) == ContactMode::open) continue;

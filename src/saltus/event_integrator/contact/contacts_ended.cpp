@@ -23,7 +23,7 @@ std::vector<std::vector<ContactMode>> Contacts::modes_that_end(const ContactMome
   };
   for (int i = 0; i < point.contacts(); ++i) {
     const auto mode = mode_of(i, x);
-    const bool slowly = mode == ContactMode::slip && point.along(point.velocity, i).isZero(0.0),
+    const bool slowly = mode == ContactMode::slip && point.along(point.velocity, i).is_zero(),
                ends = contains(ended, i);
     if (ends && !slowly && !is_shared(i) && !reaches_a_speed(moment, i, point, x)) result[at(i)].push_back(mode);
     if (const auto back = way_back(moment, i, ends, x)) result[at(i)].push_back(*back);

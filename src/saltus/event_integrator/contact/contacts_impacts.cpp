@@ -15,11 +15,11 @@
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::VectorXd;
+using linalg::Vector;
 
 /// Of velocities behind an impact, from the size of those before it: slips end as they do in the process.
 void drop_roundings(double size, ContactPoint& point) {
-  for (Eigen::Index row = 0; row < point.velocity.size(); ++row) {
+  for (linalg::Index row = 0; row < point.velocity.size(); ++row) {
     const double rounding = row < point.contacts() ? 64.0 * rounding_unit : slip_rounding;
     if (std::abs(point.velocity(row)) <= rounding * size) point.velocity(row) = 0.0;
   }
@@ -37,27 +37,27 @@ void end_turning_slips(double fastest, ContactPoint& point) {
 }  // namespace
 
 /// The impulses, and the velocities behind them.
-std::optional<VectorXd> Contacts::push(const ContactMoment& moment, const std::vector<int>& touching,
-                                       std::optional<int> pushed, ContactPoint& point, std::vector<double>& x) {
+std::optional<Vector> Contacts::push(const ContactMoment& moment, const std::vector<int>& touching,
+                                     std::optional<int> pushed, ContactPoint& point, std::vector<double>& x) {
   auto impulses = impact(point, touching, pushed);
   if (!impulses) return impulses;
   const int m = point.contacts();
-  const VectorXd change = values_.responses * *impulses;
+  const Vector change = values_.responses * *impulses;
   for (std::size_t k = 0; k < layout_.velocities.size(); ++k) {
-    x[at(layout_.velocities[k])] += change(static_cast<Eigen::Index>(k));
+    x[at(layout_.velocities[k])] += change(static_cast<linalg::Index>(k));
   }
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
     x[at(contact.impulse)] += (*impulses)(i);
     for (int k = 0; k < point.tangents[at(i)]; ++k) x[at(contact.impulse) + 1 + at(k)] += (*impulses)(m * (1 + k) + i);
   }
-  const double size = point.velocity.cwiseAbs().maxCoeff();
+  const double size = point.velocity.max_abs();
   read_point(moment.t, moment.alpha, x, point);
   drop_roundings(size, point);
   return impulses;
 }
 
-void Contacts::compare_orders(const ContactPoint& before, const std::vector<int>& touching, const VectorXd& impulses) {
+void Contacts::compare_orders(const ContactPoint& before, const std::vector<int>& touching, const Vector& impulses) {
   const auto other = find_other_end(before, touching, impulses);
   if (!other) return;
   const std::string axis =
@@ -71,7 +71,7 @@ void Contacts::compare_orders(const ContactPoint& before, const std::vector<int>
 /// An impact. What would rise by nothing has no restitution: its impulses, too, are those of bodies that come to rest.
 bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
                        ContactPoint& point, std::vector<double>& x) {
-  const double fastest = point.velocity.cwiseAbs().maxCoeff();
+  const double fastest = point.velocity.max_abs();
   const auto x_before = x;
   auto before = point;
   for (bool again = true; again;) {
@@ -102,9 +102,9 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
         if (point.velocity(row) == 0.0 && basis.takes(row)) still.push_back(row);
       }
     }
-    change_velocities(still, -values_.velocity(still), x);
+    change_velocities(still, -values_.velocity.selected_rows(still), x);
     read_point(moment.t, moment.alpha, x, point);
-    point.velocity(still).setZero();
+    for (const int row : still) point.velocity(row) = 0.0;
     drop_roundings(fastest, point);
   }
   end_turning_slips(fastest, point);

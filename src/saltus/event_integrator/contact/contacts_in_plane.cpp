@@ -9,10 +9,10 @@
 
 namespace saltus::event_integrator {
 
-using Eigen::VectorXd;
+using linalg::Vector;
 
 double Contacts::fastest(const ContactMoment& moment, const ContactPoint& point, const std::vector<double>& x) const {
-  double speed = moment.time_scale * point.acceleration.cwiseAbs().maxCoeff();
+  double speed = moment.time_scale * point.acceleration.max_abs();
   for (const int velocity : layout_.velocities) speed = std::max(speed, std::abs(x[at(velocity)]));
   return speed;
 }
@@ -68,7 +68,7 @@ bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>
   constexpr double steps = 30.0, limit = 1.0;
   return std::any_of(closed.begin(), closed.end(), [&](int i) {
     if (modes[at(i)] != ContactMode::slip) return false;
-    const Eigen::Vector2d velocity = point.along(point.velocity, i);
+    const Vector velocity = point.along(point.velocity, i);
     const int first = point.tangent_row(i, 0), second = point.tangent_row(i, 1);
     const double push = point.friction[at(i)] * forces.forces(i) *
                         std::max(point.influence(first, first), point.influence(second, second));
@@ -90,8 +90,7 @@ ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vecto
     const double wanted = std::sqrt(x[at(contacts_[at(i)].speeds)]);
     for (int k = 0; k < 2; ++k) {
       const int row = point.tangent_row(i, k);
-      const double terms = terms_of(values_.rows, row, layout_.velocities, x),
-                   slope = values_.rows.row(row).cwiseAbs().sum();
+      const double terms = terms_of(values_.rows, row, layout_.velocities, x), slope = values_.rows.row(row).sum_abs();
       parts.rtol = std::min(parts.rtol, part_of_slip * wanted / (moment.tolerances.rtol * terms));
       parts.atol = std::min(parts.atol, part_of_slip * wanted / (moment.tolerances.atol * slope));
     }
@@ -100,22 +99,20 @@ ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vecto
 }
 
 /// Gives it a slip of this velocity, its gap as it is.
-void Contacts::set_slip(const ContactPoint& point, int contact, const Eigen::Vector2d& velocity,
-                        std::vector<double>& x) {
+void Contacts::set_slip(const ContactPoint& point, int contact, const Vector& velocity, std::vector<double>& x) {
   std::vector<int> rows{point.tangent_row(contact, 0), point.tangent_row(contact, 1)};
-  VectorXd change = velocity;
+  Vector change = velocity;
   if (x[at(contacts_[at(contact)].active)] != 0.0) {
     rows.push_back(contact);
-    change.conservativeResize(3);
+    change.resize_and_keep(3);
     change(2) = 0.0;
   }
-  change_velocities(rows, change - values_.velocity(rows), x);
+  change_velocities(rows, change - values_.velocity.selected_rows(rows), x);
 }
 
 /// At rest the force of a slip has no direction: it begins with a speed that is none, but one whose direction is known
 /// to more than its rounding. The rounding is that of velocities over the speed: what is enough is between both.
-void Contacts::start_slip(const ContactMoment& moment, int contact, const Eigen::Vector2d& direction,
-                          std::vector<double>& x) {
+void Contacts::start_slip(const ContactMoment& moment, int contact, const Vector& direction, std::vector<double>& x) {
   constexpr double clear = 4.0;
   constexpr int most_speeds = 20;
   ContactPoint point = point_at(moment.t, moment.alpha, x);

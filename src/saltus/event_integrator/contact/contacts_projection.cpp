@@ -3,35 +3,34 @@
 #include <cmath>
 #include <iterator>
 
-#include <Eigen/Cholesky>
-
 #include "saltus/base/at.hpp"
 #include "saltus/base/rounding_unit.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::event_integrator {
 
-using Eigen::VectorXd;
+using linalg::Vector;
 
 /// The smallest change of velocities that changes these rows by so much; they do not depend on each other.
-const VectorXd& Contacts::least_change(const std::vector<int>& rows, const VectorXd& change) {
+const Vector& Contacts::least_change(const std::vector<int>& rows, const Vector& change) {
   auto& work = projection_;
   const auto n = index(rows.size());
   work.influence.resize(n, n);  // its lower half: the other one is not read
-  for (Eigen::Index k = 0; k < n; ++k) {
+  for (linalg::Index k = 0; k < n; ++k) {
     const auto response = values_.responses.col(rows[at(k)]);
-    for (Eigen::Index i = k; i < n; ++i) work.influence(i, k) = values_.rows.row(rows[at(i)]).dot(response);
+    for (linalg::Index i = k; i < n; ++i) work.influence(i, k) = values_.rows.row(rows[at(i)]).dot(response);
   }
   work.pushes = change;
   if (n == 1 && work.influence(0, 0) > 0.0) {
     work.pushes /= work.influence(0, 0);
   } else {
     work.factors.compute(work.influence);
-    work.factors.solveInPlace(work.pushes);
+    work.factors.solve_in_place(work.pushes);
   }
-  work.least.setZero(values_.responses.rows());
-  for (Eigen::Index k = 0; k < n; ++k) work.least += work.pushes(k) * values_.responses.col(rows[at(k)]);
+  work.least.set_zero(values_.responses.rows());
+  for (linalg::Index k = 0; k < n; ++k) work.least.add_scaled(work.pushes(k), values_.responses.col(rows[at(k)]));
   return work.least;
 }
 
@@ -73,21 +72,21 @@ bool Contacts::correct_positions(const std::vector<int>& touching, std::vector<d
   if (std::all_of(rows.begin(), rows.end(), [&](int row) { return values_.gap(row) == 0.0; })) return false;
   projection_.change.resize(index(rows.size()));
   for (std::size_t k = 0; k < rows.size(); ++k) projection_.change(index(k)) = values_.gap(rows[k]);
-  const VectorXd& moved = least_change(rows, projection_.change);
+  const Vector& moved = least_change(rows, projection_.change);
   bool changed = false;
   for (std::size_t k = 0; k < layout_.positions.size(); ++k) {
     double& position = x[at(layout_.positions[k])];
-    const double next = position - moved(static_cast<Eigen::Index>(k));
+    const double next = position - moved(static_cast<linalg::Index>(k));
     changed = changed || next != position;
     position = next;
   }
   return changed;
 }
 
-void Contacts::change_velocities(const std::vector<int>& rows, const VectorXd& change, std::vector<double>& x) {
-  const VectorXd& velocities = least_change(rows, change);
+void Contacts::change_velocities(const std::vector<int>& rows, const Vector& change, std::vector<double>& x) {
+  const Vector& velocities = least_change(rows, change);
   for (std::size_t k = 0; k < layout_.velocities.size(); ++k) {
-    x[at(layout_.velocities[k])] += velocities(static_cast<Eigen::Index>(k));
+    x[at(layout_.velocities[k])] += velocities(static_cast<linalg::Index>(k));
   }
 }
 
@@ -116,9 +115,8 @@ void Contacts::drop_own_roundings(const std::vector<int>& rows, const std::vecto
                                   std::vector<double>& x) const {
   for (const int r : rows) {
     const auto row = values_.rows.row(r);
-    if ((row.array() != 0.0).count() != 1) continue;
-    Eigen::Index only = 0;
-    static_cast<void>(row.cwiseAbs().maxCoeff(&only));
+    if (row.nonzeros() != 1) continue;
+    const linalg::Index only = row.abs().index_of_max();
     const auto k = at(layout_.velocities[static_cast<std::size_t>(only)]);
     const double own = row(only) * before[k], moving = values_.velocity(r) - own;
     if (std::abs(moving) <= 4.0 * rounding_unit * std::abs(own)) x[k] = 0.0;
@@ -136,9 +134,9 @@ void Contacts::put_at_rest(const ContactPoint& point, const std::vector<int>& re
       if (counts && point.velocity(row) == 0.0 && basis.takes(row)) rows.push_back(row);
     }
   }
-  if (values_.velocity(rows).isZero(0.0)) return;
+  if (values_.velocity.selected_rows(rows).is_zero()) return;
   const auto before = x;
-  change_velocities(rows, -values_.velocity(rows), x);
+  change_velocities(rows, -values_.velocity.selected_rows(rows), x);
   drop_own_roundings(rows, before, x);
 }
 

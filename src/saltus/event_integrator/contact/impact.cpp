@@ -10,15 +10,14 @@
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::Vector2d;
-using Eigen::VectorXd;
+using linalg::Vector;
 
 /// What a contact does in a piece of the process.
 struct Branch {
   enum class Normal { open, held, pushed } normal = Normal::open;
   bool sticks = false;
   /// Of slip: a unit vector over the tangents, 0 without; not known yet where a slip in a plane begins.
-  Vector2d direction = Vector2d::Zero();
+  Vector direction = Vector::zero(2);
   bool begins = false;
 };
 
@@ -33,13 +32,13 @@ class Process {
         touching_(touching),
         m_(point.contacts()),
         velocity_(point.velocity),
-        impulse_(VectorXd::Zero(velocity_.size())),
+        impulse_(Vector::zero(velocity_.size())),
         stored_(touching.size(), 0.0),
         releasing_(touching.size(), false),
         options_(touching.size()),
         branches_(touching.size()),
         rows_(velocity_.size()),
-        none_(VectorXd::Zero(velocity_.size())) {
+        none_(Vector::zero(velocity_.size())) {
     for (const int i : touching) {
       size_ = std::max({size_, std::abs(velocity_(i)), slip(i).norm()});
       strength_ = std::max(strength_, point.influence(i, i));
@@ -47,7 +46,7 @@ class Process {
     note_closing();
   }
 
-  [[nodiscard]] std::optional<VectorXd> run(std::optional<int> pushed) {
+  [[nodiscard]] std::optional<Vector> run(std::optional<int> pushed) {
     forced_ = pushed;
     constexpr int most_pieces = 2000;
     for (int piece = 0; piece < most_pieces; ++piece) {
@@ -62,7 +61,7 @@ class Process {
       const double length = piece_length();
       if (!(length <= largest_impulse * size_ / strength_)) {
         // Friction that holds everything at rest keeps the work back that is left to give.
-        const bool holds = !closes() && change_.cwiseAbs().maxCoeff() <= process_rounding * strength_;
+        const bool holds = !closes() && change_.max_abs() <= process_rounding * strength_;
         return holds ? std::optional(impulse_) : std::nullopt;
       }
       advance(length);
@@ -73,7 +72,7 @@ class Process {
  private:
   [[nodiscard]] double friction(int i) const { return point_.friction[static_cast<std::size_t>(i)]; }
 
-  [[nodiscard]] Vector2d slip(int i) const { return point_.along(velocity_, i); }
+  [[nodiscard]] Vector slip(int i) const { return point_.along(velocity_, i); }
   [[nodiscard]] int tangents(int i) const { return point_.tangents[static_cast<std::size_t>(i)]; }
 
   void stop_slip(int i) {
@@ -115,8 +114,8 @@ class Process {
   void note_options(std::size_t k) {
     using Normal = Branch::Normal;
     const int i = touching_[k];
-    const Vector2d along = slip(i);
-    const bool slips = !along.isZero(0.0);
+    const Vector along = slip(i);
+    const bool slips = !along.is_zero();
     auto& options = options_[k];
     options.clear();
     const auto note = [&](Normal normal) {
@@ -127,9 +126,9 @@ class Process {
       } else {
         options.push_back({normal, true});
         if (point_.in_plane(i)) {
-          options.push_back({normal, false, Vector2d::Zero(), true});
+          options.push_back({normal, false, Vector::zero(2), true});
         } else {
-          for (const double sign : {1.0, -1.0}) options.push_back({normal, false, {sign, 0.0}});
+          for (const double sign : {1.0, -1.0}) options.push_back({normal, false, Vector{sign, 0.0}});
         }
       }
     };
@@ -150,10 +149,10 @@ class Process {
     auto sticking = branches;
     for (auto& branch : sticking) branch.sticks = branch.sticks || branch.begins;
     const bool solved = solve_impulses(sticking);
-    std::vector<Vector2d> directions(static_cast<std::size_t>(m_), Vector2d::Zero());
+    std::vector<Vector> directions(static_cast<std::size_t>(m_), Vector::zero(2));
     for (const int i : beginning) {
-      const Vector2d needed = solved ? Vector2d(-point_.along(rate_, i)) : Vector2d::Zero();
-      directions[static_cast<std::size_t>(i)] = needed.norm() > 0.0 ? needed.normalized() : Vector2d(1.0, 0.0);
+      const Vector needed = solved ? Vector(-point_.along(rate_, i)) : Vector::zero(2);
+      directions[static_cast<std::size_t>(i)] = needed.norm() > 0.0 ? Vector(needed.normalized()) : Vector{1.0, 0.0};
     }
     return find_directions(point_, beginning, directions, rate_, change_, [&] {
       for (std::size_t k = 0; k < touching_.size(); ++k) {
@@ -184,7 +183,10 @@ class Process {
     return rows_.solve(point_.influence, none_, rate_) != HeldRows::Solution::none;
   }
 
-  void find_change() { change_.noalias() = point_.influence * rate_; }
+  void find_change() {
+    change_.resize(rate_.size());
+    linalg::multiply(point_.influence, rate_, change_);
+  }
 
   bool solve_rates(const std::vector<Branch>& branches) {
     if (!solve_impulses(branches)) return false;
@@ -215,7 +217,7 @@ class Process {
       if (branch.normal == Branch::Normal::open && at_rest && change_(i) < -slow) return false;
       if (branch.normal == Branch::Normal::pushed && at_rest && change_(i) > slow) return false;
       const bool from_rest = branch.normal != Branch::Normal::open && friction(i) > 0.0 && !branch.sticks;
-      if (from_rest && slip(i).isZero(0.0) && branch.direction.dot(point_.along(change_, i)) < -slow) return false;
+      if (from_rest && slip(i).is_zero() && branch.direction.dot(point_.along(change_, i)) < -slow) return false;
     }
     return true;
   }
@@ -253,9 +255,9 @@ class Process {
 
   /// Up to where a slip that does not turn ends.
   [[nodiscard]] double slip_length(int i) const {
-    const Vector2d along = slip(i), change = point_.along(change_, i);
+    const Vector along = slip(i), change = point_.along(change_, i);
     const double closing = -along.dot(change);
-    return closing > 0.0 ? along.squaredNorm() / closing : std::numeric_limits<double>::infinity();
+    return closing > 0.0 ? along.squared_norm() / closing : std::numeric_limits<double>::infinity();
   }
 
   /// (v + v' p/2) p = work.
@@ -271,8 +273,8 @@ class Process {
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       if (branches_[k].normal == Branch::Normal::open || !point_.in_plane(i)) continue;
-      const Vector2d along = slip(i), change = point_.along(change_, i);
-      const double across = along.x() * change.y() - along.y() * change.x();
+      const Vector along = slip(i), change = point_.along(change_, i);
+      const double across = along[0] * change[1] - along[1] * change[0];
       if (std::abs(across) > 1e-14 * strength_ * along.norm()) return true;
     }
     return false;
@@ -289,8 +291,8 @@ class Process {
       if (ends) stored_[k] = 0.0;
       if (!(stored_[k] > 0.0)) stored_[k] = 0.0;
     }
-    velocity_ += length * change_;
-    impulse_ += length * rate_;
+    velocity_.add_scaled(length, change_);
+    impulse_.add_scaled(length, rate_);
     keep_at_rest();
   }
 
@@ -314,31 +316,31 @@ class Process {
 
   void take(const double* y) {
     const auto n = velocity_.size();
-    velocity_ = Eigen::Map<const VectorXd>(y, n);
-    impulse_ = Eigen::Map<const VectorXd>(y + n, n);
+    velocity_ = linalg::ConstView(y, n);
+    impulse_ = linalg::ConstView(y + n, n);
     std::copy_n(y + 2 * n, stored_.size(), stored_.begin());
   }
 
   /// Their rates in these branches, with the directions of slip there.
   void differentiate(const double* y, double* rate) {
     const auto n = velocity_.size();
-    const VectorXd velocity = Eigen::Map<const VectorXd>(y, n);
+    const Vector velocity = linalg::ConstView(y, n);
     auto branches = branches_;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
-      const Vector2d along = point_.along(velocity, touching_[k]);
-      if (!branches[k].sticks && point_.in_plane(touching_[k]) && !along.isZero(0.0))
+      const Vector along = point_.along(velocity, touching_[k]);
+      if (!branches[k].sticks && point_.in_plane(touching_[k]) && !along.is_zero())
         branches[k].direction = along.normalized();
     }
     const bool solved = solve_rates(branches);
     const double undefined = std::numeric_limits<double>::quiet_NaN();
-    for (Eigen::Index row = 0; row < n; ++row) {
+    for (linalg::Index row = 0; row < n; ++row) {
       rate[row] = solved ? change_(row) : undefined;
       rate[n + row] = rate_(row);
     }
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const double e = point_.restitution[static_cast<std::size_t>(touching_[k])];
       const double speed = branches[k].normal == Branch::Normal::pushed ? y[touching_[k]] : 0.0;
-      rate[2 * n + static_cast<Eigen::Index>(k)] = speed > 0.0 ? -speed : -e * e * speed;
+      rate[2 * n + static_cast<linalg::Index>(k)] = speed > 0.0 ? -speed : -e * e * speed;
     }
   }
 
@@ -346,7 +348,7 @@ class Process {
   [[nodiscard]] double left(const double* y, const double* rate) const {
     double least = std::numeric_limits<double>::infinity();
     const auto n = velocity_.size();
-    const VectorXd impulses = Eigen::Map<const VectorXd>(rate + n, n);
+    const Vector impulses = linalg::ConstView(rate + n, n);
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const auto note = [&](double now, double then) {
@@ -358,7 +360,7 @@ class Process {
       if (branches_[k].sticks) {
         least = std::min(least, friction(i) * impulses(i) + share_rounding - point_.along(impulses, i).norm());
       }
-      if (releasing_[k]) note(stored_[k], y[2 * n + static_cast<Eigen::Index>(k)]);
+      if (releasing_[k]) note(stored_[k], y[2 * n + static_cast<linalg::Index>(k)]);
       const bool slips = branches_[k].normal != Branch::Normal::open && tangents(i) == 1 && !branches_[k].sticks;
       if (slips) note(velocity_(m_ + i), y[m_ + i]);
     }
@@ -400,7 +402,7 @@ class Process {
 
   /// What has changed its sign there is 0.
   void end_branches(const double* y) {
-    const VectorXd before = velocity_;
+    const Vector before = velocity_;
     take(y);
     for (const int i : touching_) {
       for (const int row : {i, m_ + i}) {
@@ -414,15 +416,15 @@ class Process {
   const ContactPoint& point_;
   const std::vector<int>& touching_;
   int m_;
-  VectorXd velocity_, impulse_;
-  VectorXd rate_, change_;      ///< of impulses and velocities in the piece
+  Vector velocity_, impulse_;
+  Vector rate_, change_;        ///< of impulses and velocities in the piece
   std::vector<double> stored_;  ///< by touching contact: work to give back
   std::vector<bool> releasing_;
   std::vector<std::vector<Branch>> options_;  ///< by touching contact
   std::vector<std::size_t> numbers_;          ///< of those that are tried
   std::vector<Branch> branches_;
   HeldRows rows_;
-  VectorXd none_;  ///< nothing is given but the impulses
+  Vector none_;  ///< nothing is given but the impulses
   std::optional<int> forced_;
   double size_ = 0.0, strength_ = 0.0;  ///< of velocities; of the influence of a normal impulse
   double closing_ = 0.0;                ///< of normal velocities up to here
@@ -430,10 +432,10 @@ class Process {
 
 }  // namespace
 
-std::optional<VectorXd> impact(const ContactPoint& point, const std::vector<int>& touching, std::optional<int> pushed) {
+std::optional<Vector> impact(const ContactPoint& point, const std::vector<int>& touching, std::optional<int> pushed) {
   if (touching.size() == 1 && point.friction[static_cast<std::size_t>(touching.front())] == 0.0) {
     const int i = touching.front();
-    VectorXd impulse = VectorXd::Zero(point.velocity.size());
+    Vector impulse = Vector::zero(point.velocity.size());
     impulse(i) = -(1.0 + point.restitution[static_cast<std::size_t>(i)]) * point.velocity(i) / point.influence(i, i);
     return impulse;
   }

@@ -4,9 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/event_integrator/contact/contact_point.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
 
@@ -27,7 +26,7 @@ inline constexpr double slip_rounding = 1e-11;
 /// @param pushed    a contact that presses on although nothing closes: an impact without a collision
 /// @return r impulses; nothing where the process has no continuation or no end
 /// Cost: a dense solve per piece; at most three pieces for one contact with one tangent.
-[[nodiscard]] std::optional<Eigen::VectorXd> impact(const ContactPoint& point, const std::vector<int>& touching,
-                                                    std::optional<int> pushed = std::nullopt);
+[[nodiscard]] std::optional<linalg::Vector> impact(const ContactPoint& point, const std::vector<int>& touching,
+                                                   std::optional<int> pushed = std::nullopt);
 
 }  // namespace saltus::event_integrator

@@ -11,7 +11,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::VectorXd;
+using linalg::Vector;
 
 constexpr double same = 1e-9;        ///< relative, of velocities
 constexpr double settled = 1e-12;    ///< likewise, of what a sequence leaves
@@ -24,17 +24,17 @@ class Orders {
     const auto friction = [&](int i) { return point.friction[at(i)]; };
     has_friction_ = std::any_of(touching.begin(), touching.end(), [&](int i) { return friction(i) > 0.0; });
     const auto groups = has_friction_ ? point.velocity.size() / point.contacts() : 1;
-    for (Eigen::Index group = 0; group < groups; ++group) {
+    for (linalg::Index group = 0; group < groups; ++group) {
       for (const int i : touching) rows_.push_back(static_cast<int>(group) * point.contacts() + i);
     }
-    point_.influence = point.influence(rows_, rows_);
-    point_.velocity = start_ = point.velocity(rows_);
+    point_.influence = point.influence.selected(rows_, rows_);
+    point_.velocity = start_ = point.velocity.selected_rows(rows_);
     for (const int i : touching) {
       point_.friction.push_back(friction(i));
       point_.restitution.push_back(point.restitution[at(i)]);
       point_.tangents.push_back(point.tangents[at(i)]);
     }
-    size_ = start_.cwiseAbs().maxCoeff();
+    size_ = start_.max_abs();
     find_involved();
   }
 
@@ -42,8 +42,8 @@ class Orders {
   [[nodiscard]] const std::vector<int>& involved() const { return involved_; }
   [[nodiscard]] const std::vector<int>& rows() const { return rows_; }
   [[nodiscard]] bool closes(int i) const { return start_(i) < -settled * size_; }
-  [[nodiscard]] bool is_same(const VectorXd& velocity, const VectorXd& other) const {
-    return (velocity - other).cwiseAbs().maxCoeff() <= same * size_;
+  [[nodiscard]] bool is_same(const Vector& velocity, const Vector& other) const {
+    return (velocity - other).max_abs() <= same * size_;
   }
 
   /// Whether all orders end alike, as the signs of what contacts do to each other say. Without restitution, and where
@@ -64,12 +64,12 @@ class Orders {
   }
 
   /// Velocities behind all impacts; nothing where they have no end.
-  [[nodiscard]] std::optional<VectorXd> follow(const std::vector<int>& order) {
+  [[nodiscard]] std::optional<Vector> follow(const std::vector<int>& order) {
     constexpr int most_rounds = 400;
     sequence_.clear();
-    VectorXd& velocity = point_.velocity;
+    Vector& velocity = point_.velocity;
     velocity = start_;
-    VectorXd before = start_, change, change_before, limit, limit_before;
+    Vector before = start_, change, change_before, limit, limit_before;
     for (int round = 0; round < most_rounds; ++round) {
       bool any = false;
       for (const int i : order) {
@@ -81,10 +81,10 @@ class Orders {
       change = velocity - before;
       before = velocity;
       if (round > 0) {
-        const double ratio = change.dot(change_before) / change_before.squaredNorm();
+        const double ratio = change.dot(change_before) / change_before.squared_norm();
         limit = velocity + ratio / (1.0 - ratio) * change;
         const bool stays = round > 2 && ratio > 0.0 && ratio < 1.0 && is_within(settled, limit, limit_before);
-        if (stays && limit.head(index(point_.friction.size())).minCoeff() >= -same * size_) return limit;
+        if (stays && limit.head(index(point_.friction.size())).min() >= -same * size_) return limit;
       }
       std::swap(limit, limit_before);
       std::swap(change, change_before);
@@ -96,8 +96,8 @@ class Orders {
   [[nodiscard]] const std::vector<int>& sequence() const { return sequence_; }
 
  private:
-  [[nodiscard]] bool is_within(double tolerance, const VectorXd& a, const VectorXd& b) const {
-    return (a - b).cwiseAbs().maxCoeff() <= tolerance * size_;
+  [[nodiscard]] bool is_within(double tolerance, const Vector& a, const Vector& b) const {
+    return (a - b).max_abs() <= tolerance * size_;
   }
 
   [[nodiscard]] double coupling(int i, int k) const {
@@ -123,7 +123,7 @@ class Orders {
   bool push(int i) {
     sequence_.push_back(i);
     const double restitution = point_.restitution[at(i)];
-    VectorXd& velocity = point_.velocity;
+    Vector& velocity = point_.velocity;
     if (point_.friction[at(i)] == 0.0) {
       budget_ -= 1.0;
       const double speed = velocity(i);
@@ -141,7 +141,7 @@ class Orders {
 
   ContactPoint point_;
   std::vector<int> rows_;  ///< by those of this point, of the one with all contacts
-  VectorXd start_;
+  Vector start_;
   double size_ = 0.0;
   bool has_friction_ = false;
   std::vector<int> involved_, sequence_, alone_;
@@ -167,16 +167,15 @@ std::vector<std::vector<int>> orders_of(const Orders& orders) {
 }  // namespace
 
 std::optional<OtherEnd> find_other_end(const ContactPoint& point, const std::vector<int>& touching,
-                                       const VectorXd& impulses) {
+                                       const Vector& impulses) {
   if (touching.size() < 2) return std::nullopt;
   Orders orders(point, touching);
   if (orders.agree_by_signs()) return std::nullopt;
-  const VectorXd together = (point.velocity + point.influence * impulses)(orders.rows());
+  const Vector together = (point.velocity + point.influence * impulses).selected_rows(orders.rows());
   for (const auto& order : orders_of(orders)) {
     const auto velocity = orders.follow(order);
     if (!velocity || orders.is_same(*velocity, together)) continue;
-    Eigen::Index row = 0;
-    (*velocity - together).cwiseAbs().maxCoeff(&row);
+    const linalg::Index row = (*velocity - together).abs().index_of_max();
     constexpr std::size_t most_named = 4;
     OtherEnd end;
     for (const int i : orders.sequence()) {

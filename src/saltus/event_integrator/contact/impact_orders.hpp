@@ -4,9 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/event_integrator/contact/contact_point.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
 
@@ -27,6 +26,6 @@ struct OtherEnd {
 /// @param impulses  r, of the process of all contacts
 /// @return nothing where velocities behind all orders agree to nine digits
 [[nodiscard]] std::optional<OtherEnd> find_other_end(const ContactPoint& point, const std::vector<int>& touching,
-                                                     const Eigen::VectorXd& impulses);
+                                                     const linalg::Vector& impulses);
 
 }  // namespace saltus::event_integrator

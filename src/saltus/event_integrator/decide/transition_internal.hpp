@@ -185,7 +185,7 @@ class Decider {
                  switching::RegionSet& set);
   std::vector<switching::RegionSet> sets_that_go_on(const MeetingRegions& meeting);
   MeetingRegions meeting_of(std::vector<int> candidates);
-  Eigen::MatrixXd region_gradients(const std::vector<int>& candidates, double t, const double* x);
+  linalg::Matrix region_gradients(const std::vector<int>& candidates, double t, const double* x);
   switching::RegionTie tie_at(const MeetingRegions& meeting, double t, const double* x);
   bool is_lost(const MeetingRegions& meeting, const switching::RegionSet& set);
   bool stays_tied(const MeetingRegions& meeting, const switching::RegionSet& set);

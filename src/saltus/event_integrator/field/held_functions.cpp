@@ -12,7 +12,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::Index;
+using linalg::Index;
 
 /// Width of central differences, a power of two relative to 1 + |x|: truncation and rounding are both about 1e-11.
 double width_at(double x) { return std::ldexp(std::exp2(std::ceil(std::log2(std::abs(x) + 1.0))), -17); }
@@ -32,11 +32,11 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
   functions_ = std::move(functions);
   alpha_ = std::move(alpha);
   const auto m = index(functions_.size());
-  rows_.setZero(m, kernel_.states());
-  basis_.setZero(m, kernel_.states());
-  rates_.setZero(m);
-  parts_.setZero(m);
-  step_.setZero(kernel_.states());
+  rows_.set_zero(m, kernel_.states());
+  basis_.set_zero(m, kernel_.states());
+  rates_.set_zero(m);
+  parts_.set_zero(m);
+  step_.set_zero(kernel_.states());
   const auto of_order_zero = std::count_if(functions_.begin(), functions_.end(),
                                            [](const HeldFunction& function) { return function.order == 0; });
   rooted_ = std::any_of(functions_.begin(), functions_.end(),
@@ -45,10 +45,10 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
   normals_[0].count = static_cast<Index>(of_order_zero);
   normals_[1].count = m;
   for (auto& normal : normals_) {
-    normal.matrix.setZero(normal.count, normal.count);
-    normal.residual.setZero(normal.count);
+    normal.matrix.set_zero(normal.count, normal.count);
+    normal.residual.set_zero(normal.count);
     // Allocates, and leaves nothing undefined that a copy would read.
-    normal.cholesky.compute(Eigen::MatrixXd::Identity(normal.count, normal.count));
+    normal.cholesky.compute(linalg::Matrix::identity(normal.count, normal.count));
   }
 }
 
@@ -115,12 +115,12 @@ double HeldFunctions::value_along(std::size_t i, double t, const double* x, doub
 void HeldFunctions::extend_basis(std::size_t i) {
   const auto row = rows_.row(index(i));
   basis_.row(index(i)) = row;
-  Eigen::Index from = 0, to = row.size();
+  Index from = 0, to = row.size();
   while (from < to && row(from) == 0.0) ++from;
   while (to > from && row(to - 1) == 0.0) --to;
   for (std::size_t k = 0; k < i; ++k) {
     // Of many surfaces most have no states in common: their product is 0 without forming it.
-    if ((basis_.row(index(k)).segment(from, to - from).array() == 0.0).all()) continue;
+    if (basis_.row(index(k)).segment(from, to - from).is_zero()) continue;
     basis_.row(index(i)) -= rows_.row(index(i)).dot(basis_.row(index(k))) * basis_.row(index(k));
   }
   const double size = basis_.row(index(i)).norm();
@@ -177,11 +177,12 @@ double HeldFunctions::velocity_terms(std::size_t i, const std::vector<double>& f
   return sum;
 }
 
-bool HeldFunctions::Normal::solve(const Eigen::MatrixXd& rows) {
-  matrix.noalias() = rows.topRows(count) * rows.topRows(count).transpose();
+bool HeldFunctions::Normal::solve(const linalg::Matrix& rows) {
+  const linalg::ConstView held = rows.top_rows(count);
+  linalg::multiply(held, held.transpose(), matrix);
   cholesky.compute(matrix);
-  if (cholesky.info() != Eigen::Success) return false;
-  cholesky.solveInPlace(residual);
+  if (!cholesky.is_positive()) return false;
+  cholesky.solve_in_place(residual);
   return true;
 }
 
@@ -192,13 +193,12 @@ void HeldFunctions::remove_normal_part(std::vector<double>& f) {
     std::fill(f.begin(), f.end(), std::numeric_limits<double>::quiet_NaN());
     return;
   }
-  step_.noalias() = rows_.transpose() * normal.residual;
+  linalg::multiply(rows_.transpose(), normal.residual, step_);
   for (std::size_t k = 0; k < f.size(); ++k) f[k] -= step_[index(k)];
   // A function of one state fixes its rate: a coordinate stays exactly where it is.
   for (Index r = 0; r < rows_.rows(); ++r) {
-    if ((rows_.row(r).array() != 0.0).count() != 1) continue;
-    Index only = 0;
-    rows_.row(r).cwiseAbs().maxCoeff(&only);
+    if (rows_.row(r).nonzeros() != 1) continue;
+    const Index only = rows_.row(r).abs().index_of_max();
     double& rate = f[at(only)];
     if (std::isfinite(rate)) rate = rates_[r] == 0.0 ? 0.0 : -rates_[r] / rows_(r, only);
   }
@@ -212,11 +212,11 @@ bool HeldFunctions::correct(std::size_t part, double t, double* x) {
     normal.residual[r] = value(static_cast<std::size_t>(r), t, x);
     away = away || normal.residual[r] != 0.0;
   }
-  if (!away || !normal.residual.allFinite()) return false;
+  if (!away || !normal.residual.all_finite()) return false;
   differentiate(t, x);
   if (!normal.solve(rows_)) return false;
-  step_.noalias() = rows_.topRows(normal.count).transpose() * normal.residual;
-  if (!step_.allFinite()) return false;
+  linalg::multiply(rows_.top_rows(normal.count).transpose(), normal.residual, step_);
+  if (!step_.all_finite()) return false;
   bool moved = false;
   for (std::size_t k = 0; k < row_.size(); ++k) {
     const double next = x[k] - step_[index(k)];

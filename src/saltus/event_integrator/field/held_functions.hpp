@@ -5,10 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
 
@@ -38,11 +37,11 @@ class HeldFunctions {
   [[nodiscard]] double value(std::size_t i, double t, const double* x) const;
   /// Finds the gradients and d c/dt at a point.
   void differentiate(double t, const double* x);
-  [[nodiscard]] const Eigen::MatrixXd& rows() const { return rows_; }
-  [[nodiscard]] const Eigen::VectorXd& rates() const { return rates_; }
+  [[nodiscard]] const linalg::Matrix& rows() const { return rows_; }
+  [[nodiscard]] const linalg::Vector& rates() const { return rates_; }
   /// Returns, behind differentiate(), the part of gradient i that the ones before do not span, relative to it; 0 if it
   /// is 0.
-  [[nodiscard]] double independent_part(std::size_t i) const { return parts_[static_cast<Eigen::Index>(i)]; }
+  [[nodiscard]] double independent_part(std::size_t i) const { return parts_[static_cast<linalg::Index>(i)]; }
   /// Returns, behind differentiate(), grad c_i . f + d c_i/dt; and the sum of the sizes of its terms.
   [[nodiscard]] double velocity(std::size_t i, const std::vector<double>& f) const;
   [[nodiscard]] double velocity_terms(std::size_t i, const std::vector<double>& f) const;
@@ -73,15 +72,15 @@ class HeldFunctions {
   std::vector<bool> beside_root_;
   bool rooted_ = false;  ///< whether f has a root of one of the surfaces' functions
   mutable std::vector<double> values_;
-  Eigen::MatrixXd rows_, basis_;  ///< gradients; an orthonormal basis of their span, row by row
-  Eigen::VectorXd rates_, parts_, step_;
+  linalg::Matrix rows_, basis_;  ///< gradients; an orthonormal basis of their span, row by row
+  linalg::Vector rates_, parts_, step_;
   /// Of the first functions, the switching functions themselves, and of all: J J^T and what it is solved for.
   struct Normal {
-    Eigen::Index count = 0;
-    Eigen::MatrixXd matrix;
-    Eigen::VectorXd residual;
-    Eigen::LLT<Eigen::MatrixXd> cholesky;
-    [[nodiscard]] bool solve(const Eigen::MatrixXd& rows);
+    linalg::Index count = 0;
+    linalg::Matrix matrix;
+    linalg::Vector residual;
+    linalg::Cholesky cholesky;
+    [[nodiscard]] bool solve(const linalg::Matrix& rows);
   };
   std::array<Normal, 2> normals_;
 };

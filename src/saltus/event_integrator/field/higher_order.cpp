@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/QR>
-
 #include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::event_integrator {
 
@@ -109,18 +108,18 @@ void HigherOrderField::balance_beside_roots() {
 }
 
 /// f with the selections of a balance at 0, and what each of them adds to it at 1.
-void HigherOrderField::find_jumps(const Balance& balance, Eigen::MatrixXd& jumps, double t, const double* x) {
-  const auto q = static_cast<Eigen::Index>(balance.rows.size());
+void HigherOrderField::find_jumps(const Balance& balance, linalg::Matrix& jumps, double t, const double* x) {
+  const auto q = static_cast<linalg::Index>(balance.rows.size());
   trial_ = functions_.alpha();
   for (const std::size_t row : balance.rows) trial_[at(sliding_[row])] = 0.0;
   kernel_.field(t, x, trial_.data(), base_.data());
   jumps.resize(kernel_.states(), q);
-  for (Eigen::Index i = 0; i < q; ++i) {
+  for (linalg::Index i = 0; i < q; ++i) {
     double& selection = trial_[at(sliding_[balance.rows[at(i)]])];
     selection = 1.0;
     kernel_.field(t, x, trial_.data(), f_.data());
     selection = 0.0;
-    for (Eigen::Index k = 0; k < jumps.rows(); ++k) jumps(k, i) = f_[at(k)] - base_[at(k)];
+    for (linalg::Index k = 0; k < jumps.rows(); ++k) jumps(k, i) = f_[at(k)] - base_[at(k)];
   }
 }
 
@@ -130,11 +129,11 @@ bool HigherOrderField::Coupled::determines_motion() {
   if (decided && jumps == decided_jumps && effects == decided_effects) return determined;
   decided_jumps = jumps;
   decided_effects = effects;
-  const Eigen::MatrixXd rest =
-      jumps - effects.transpose().completeOrthogonalDecomposition().solve(jumps.transpose()).transpose() * effects;
+  const linalg::Matrix rest =
+      jumps - linalg::least_squares(effects.transpose(), jumps.transpose()).transpose() * effects;
   determined = true;
-  for (Eigen::Index i = 0; i < rest.rows() && determined; ++i) {
-    determined = rest.row(i).cwiseAbs().maxCoeff() <= 1e-8 * jumps.row(i).cwiseAbs().maxCoeff();
+  for (linalg::Index i = 0; i < rest.rows() && determined; ++i) {
+    determined = rest.row(i).max_abs() <= 1e-8 * jumps.row(i).max_abs();
   }
   return determined;
 }
@@ -143,17 +142,17 @@ bool HigherOrderField::Coupled::determines_motion() {
 bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
   const auto& balance = set_.balances[b];
   auto& coupled = coupled_[b];
-  const auto q = static_cast<Eigen::Index>(balance.rows.size());
-  const auto r = static_cast<Eigen::Index>(balance.functions.size());
+  const auto q = static_cast<linalg::Index>(balance.rows.size());
+  const auto r = static_cast<linalg::Index>(balance.functions.size());
   coupled.effects.resize(r, q);
   coupled.constant.resize(r);
   find_jumps(balance, coupled.jumps, t, x);
-  for (Eigen::Index k = 0; k < r; ++k) {
+  for (linalg::Index k = 0; k < r; ++k) {
     coupled.constant[k] = functions_.velocity(balance.functions[at(k)], base_);
   }
-  for (Eigen::Index k = 0; k < r; ++k) {
-    const auto row = functions_.rows().row(static_cast<Eigen::Index>(balance.functions[at(k)]));
-    coupled.effects.row(k).noalias() = row * coupled.jumps;
+  for (linalg::Index k = 0; k < r; ++k) {
+    const auto row = functions_.rows().row(static_cast<linalg::Index>(balance.functions[at(k)]));
+    linalg::multiply(row, coupled.jumps, coupled.effects.row(k));
   }
   const bool known = coupled.range.set(coupled.effects);
   too_many_ = too_many_ || !known;
@@ -195,7 +194,7 @@ bool HigherOrderField::hold_several(std::size_t b, double t, const double* x) {
 
 /// Those of a balance of several functions.
 void HigherOrderField::take_selections(std::size_t b) {
-  Eigen::Index i = 0;
+  linalg::Index i = 0;
   for (const std::size_t row : set_.balances[b].rows) alpha_[at(sliding_[row])] = coupled_[b].selections[i++];
 }
 

@@ -70,15 +70,15 @@ class HigherOrderField {
  private:
   /// Several functions: what each selection adds to f and to their velocities.
   struct Coupled {
-    Eigen::MatrixXd jumps;    ///< n_x x q
-    Eigen::MatrixXd effects;  ///< r x q
-    Eigen::VectorXd constant;
+    linalg::Matrix jumps;    ///< n_x x q
+    linalg::Matrix effects;  ///< r x q
+    linalg::Vector constant;
     switching::SelectionRange range;
     switching::CentralSelections central;
-    Eigen::VectorXd selections;
+    linalg::Vector selections;
     /// Whether the motion is determined, and where that was looked at: the same jumps and effects have one answer.
     [[nodiscard]] bool determines_motion();
-    Eigen::MatrixXd decided_jumps, decided_effects;
+    linalg::Matrix decided_jumps, decided_effects;
     bool determined = false;
   };
 
@@ -87,7 +87,7 @@ class HigherOrderField {
   bool hold_several(std::size_t b, double t, const double* x);
   void evaluate(const Balance& balance, BalanceRange& range, double t, const double* x);
   [[nodiscard]] bool determines(const Balance& balance, const BalanceRange& range) const;
-  void find_jumps(const Balance& balance, Eigen::MatrixXd& jumps, double t, const double* x);
+  void find_jumps(const Balance& balance, linalg::Matrix& jumps, double t, const double* x);
   void take_selections(std::size_t b);
   [[nodiscard]] double selection(std::size_t corner, std::size_t bit) const { return corner >> bit & 1U ? 1.0 : 0.0; }
 

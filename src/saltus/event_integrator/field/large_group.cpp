@@ -4,34 +4,34 @@
 #include <cmath>
 #include <span>
 
-#include <Eigen/SparseLU>
-
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/switching/sparse/attraction.hpp"
 #include "saltus/switching/table/matrix_stability.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-using EffectMatrix = Eigen::SparseMatrix<double>;
+using EffectMatrix = linalg::SparseColumns;
 
 /// Rows and columns of `part`, each row in its size.
 EffectMatrix part_of(const EffectMatrix& effects, const std::vector<int>& part) {
   std::vector<int> place(at(effects.rows()), -1);
   for (std::size_t k = 0; k < part.size(); ++k) place[at(part[k])] = static_cast<int>(k);
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::VectorXd square = Eigen::VectorXd::Zero(index(part.size()));
+  std::vector<linalg::Triplet> entries;
+  linalg::Vector square = linalg::Vector::zero(index(part.size()));
   for (const int column : part) {
-    for (EffectMatrix::InnerIterator entry(effects, column); entry; ++entry) {
-      if (place[at(entry.row())] < 0) continue;
-      entries.emplace_back(place[at(entry.row())], place[at(column)], entry.value());
-      square[place[at(entry.row())]] += entry.value() * entry.value();
+    for (const auto [effect_row, value] : effects.along(column)) {
+      const int row = place[at(effect_row)];
+      if (row < 0) continue;
+      entries.push_back({row, place[at(column)], value});
+      square[row] += value * value;
     }
   }
-  EffectMatrix result(square.size(), square.size());
-  result.setFromTriplets(entries.begin(), entries.end());
-  return square.cwiseSqrt().cwiseInverse().asDiagonal() * result;
+  EffectMatrix result(square.size(), square.size(), entries);
+  result.scale_rows(square.square_roots().inverses());
+  return result;
 }
 
 }  // namespace
@@ -40,16 +40,16 @@ std::pair<double, double> loss_and_stability(const EffectMatrix& effects, const 
   const EffectMatrix own = part_of(effects, part);
   const auto m = static_cast<int>(part.size());
   double stability = switching::attraction_margin(switching::comparison_of(own));
-  Eigen::SparseLU<EffectMatrix> lu(own);
-  if (lu.info() != Eigen::Success) return {0.0, stability};
+  const linalg::SparseLu lu(own);
+  if (!lu.is_factorised()) return {0.0, stability};
   // Stable matrices of m rows have det G of the sign (-1)^m.
-  const double sign = (m % 2 == 0 ? 1.0 : -1.0) * lu.signDeterminant();
-  const double loss = sign * std::exp(lu.logAbsDeterminant() / m);
+  const double sign = (m % 2 == 0 ? 1.0 : -1.0) * lu.sign_of_determinant();
+  const double loss = sign * std::exp(lu.log_abs_determinant() / m);
   // Beyond these the other conditions cost more than they are worth.
   constexpr int most = 24;
   if (stability <= 0.0 && m <= most) {
-    const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> dense(own);
-    const std::span<const double> entries(dense.data(), at(dense.size()));
+    const linalg::Matrix transposed = own.dense().transpose();  // entries row by row
+    const std::span<const double> entries(transposed.data(), at(transposed.size()));
     stability = std::max(switching::fisher_fuller_margin(entries, m), switching::hurwitz_margin(entries, m));
   }
   return {loss, stability};

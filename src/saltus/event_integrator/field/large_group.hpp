@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/SparseCore>
-
+#include "saltus/linalg/sparse.hpp"
 #include "saltus/switching/hidden/group_modes.hpp"
 #include "saltus/switching/sparse/influence.hpp"
 #include "saltus/switching/sparse/sparse_newton.hpp"
@@ -30,7 +29,7 @@ struct LargeGroup {
 /// Returns two numbers of several surfaces that depend on each other, from the G of their group. The first keeps its
 /// sign while their root exists (det G in the size of its rows, its root of the number of surfaces). The second is
 /// positive while some scaling is known that makes the root stable, that of the certificate first.
-[[nodiscard]] std::pair<double, double> loss_and_stability(const Eigen::SparseMatrix<double>& effects,
+[[nodiscard]] std::pair<double, double> loss_and_stability(const linalg::SparseColumns& effects,
                                                            const std::vector<int>& part);
 
 }  // namespace saltus::event_integrator

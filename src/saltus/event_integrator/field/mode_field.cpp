@@ -29,11 +29,11 @@ void ModeField::gradients(double t, const double* x) {
     if (!rows_.take_known(row, at(sliding_[row]))) {
       // With the mode's selections, not the last ones: the field must not depend on what was evaluated before.
       kernel_.gradient(sliding_[row], t, x, start_alpha_.data(), f_[0].data(),
-                       &rows_.rates[static_cast<Eigen::Index>(row)]);
+                       &rows_.rates[static_cast<linalg::Index>(row)]);
       take_row(row);
     }
     if (sliding_.size() != 1) continue;
-    rows_.square = rows_.dense.squaredNorm();
+    rows_.square = rows_.dense.squared_norm();
     refer_to_constants();
   }
   find_ties();
@@ -94,7 +94,7 @@ const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region,
 
 double ModeField::normal_terms(std::size_t row) const {
   if (solve_ == SlidingSolve::coupled || solve_ == SlidingSolve::higher_order) return groups_.condition[row];
-  const auto r = static_cast<Eigen::Index>(row);
+  const auto r = static_cast<linalg::Index>(row);
   double sum = std::abs(rows_.rates[r]);
   const auto& [column, value] = rows_.normal[row];
   for (std::size_t k = 0; k < column.size(); ++k) {

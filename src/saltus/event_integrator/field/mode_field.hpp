@@ -100,7 +100,7 @@ class ModeField {
   /// Returns the state that sliding on a surface keeps constant, if there is one.
   [[nodiscard]] evaluation::FixedState kept_state(std::size_t row, const double* x) const {
     const int only = rows_.coordinate[row];
-    if (only < 0 || rows_.rates[static_cast<Eigen::Index>(row)] != 0.0) return {};
+    if (only < 0 || rows_.rates[static_cast<linalg::Index>(row)] != 0.0) return {};
     return {only, x[only]};
   }
   /// Returns, behind exits(), the size of the terms whose sum an exit function of a sliding surface is, which bounds

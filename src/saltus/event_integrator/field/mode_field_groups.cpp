@@ -159,7 +159,7 @@ void ModeField::find_independent_rows() {
     return std::none_of(base.begin(), base.end(), [&](auto k) { return regions->rows[at(k)] == row; });
   };
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    if (!is_dependent(row)) rows_.independent.rows.push_back(static_cast<Eigen::Index>(row));
+    if (!is_dependent(row)) rows_.independent.rows.push_back(static_cast<linalg::Index>(row));
   }
   if (rows_.independent.rows.size() == sliding_.size()) rows_.independent.rows.clear();
 }
@@ -279,12 +279,12 @@ void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::
 void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions) {
   const auto& rows = regions.rows;
   const auto& base = regions.basis.base;
-  const auto velocities = [&](const std::vector<double>& f, Eigen::Index column) {
+  const auto velocities = [&](const std::vector<double>& f, linalg::Index column) {
     for (std::size_t k = 0; k < base.size(); ++k) {
-      ties_.rates(static_cast<Eigen::Index>(k), column) = rows_.velocity(rows[at(base[k])], f);
+      ties_.rates(static_cast<linalg::Index>(k), column) = rows_.velocity(rows[at(base[k])], f);
     }
   };
-  ties_.rates.resize(static_cast<Eigen::Index>(base.size()), static_cast<Eigen::Index>(rows.size()) + 1);
+  ties_.rates.resize(static_cast<linalg::Index>(base.size()), static_cast<linalg::Index>(rows.size()) + 1);
   ties_.theta.assign(1, start_alpha_[at(regions.reference)]);
   velocities(f_[0], 0);
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -292,7 +292,7 @@ void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions)
     trial_[j] = 1.0;
     kernel_.field(t, x, trial_.data(), f_[1].data());
     trial_[j] = 0.0;
-    velocities(f_[1], static_cast<Eigen::Index>(k) + 1);
+    velocities(f_[1], static_cast<linalg::Index>(k) + 1);
     ties_.theta.push_back(start_alpha_[j]);
   }
   const bool found = regions.tie->solve(ties_.rates, ties_.theta.data());

@@ -34,13 +34,13 @@ void ModeField::balance_beside_roots(double t, const double* x) {
 
 void ModeField::remove_normal_part(double* xdot) {
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    rows_.residual[static_cast<Eigen::Index>(row)] = rows_.velocity(row, f_[0]);
+    rows_.residual[static_cast<linalg::Index>(row)] = rows_.velocity(row, f_[0]);
   }
   if (!rows_.solve_normal_equations()) return static_cast<void>(std::fill_n(xdot, f_[0].size(), not_a_number));
   std::copy(f_[0].begin(), f_[0].end(), xdot);
   rows_.normal.subtract_transposed(rows_.residual, xdot);
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
-    const auto r = static_cast<Eigen::Index>(row);
+    const auto r = static_cast<linalg::Index>(row);
     if (const int only = rows_.coordinate[row]; only >= 0 && std::isfinite(xdot[only])) {
       xdot[only] = rows_.rates[r] == 0.0 ? 0.0 : -rows_.rates[r] / rows_.factor[row];
     }
@@ -57,7 +57,7 @@ bool ModeField::project(double t, double* x) {
     double largest = 0.0;
     for (std::size_t row = 0; row < sliding_.size(); ++row) {
       const double psi = values_[at(sliding_[row])];
-      rows_.residual[static_cast<Eigen::Index>(row)] = psi;
+      rows_.residual[static_cast<linalg::Index>(row)] = psi;
       largest = std::max(largest, std::abs(psi));
     }
     if (largest == 0.0 || !std::isfinite(largest)) return changed;

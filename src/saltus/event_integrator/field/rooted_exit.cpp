@@ -4,10 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/LU>
-
 #include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -100,10 +99,10 @@ bool RootedExit::residual(double t, double h, const std::vector<double>& unknown
 /// From from_ to t, which is h later: Newton's method with differences, from `unknowns`, which are improved.
 bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknowns) {
   const std::size_t n = unknowns.size();
-  const auto size = static_cast<Eigen::Index>(n);
+  const auto size = static_cast<linalg::Index>(n);
   std::vector<double> here(n), there(n);
-  Eigen::MatrixXd jacobian(size, size);
-  Eigen::VectorXd change(size);
+  linalg::Matrix jacobian(size, size);
+  linalg::Vector change(size);
   constexpr int most_iterations = 40;
   // Differences of this part of 1 + |x| are good to eight digits. Those of v are good to four, and so is every
   // iteration. In v the equations are nearly linear, and it may be little more than rounding of the terms of dpsi/dt.
@@ -123,15 +122,15 @@ bool RootedExit::implicit_euler(double t, double h, std::vector<double>& unknown
       if (!residual(t, h, unknowns, there)) return false;
       unknowns[k] = kept;
       for (std::size_t i = 0; i < n; ++i) {
-        jacobian(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) = (there[i] - here[i]) / taken;
+        jacobian(static_cast<linalg::Index>(i), static_cast<linalg::Index>(k)) = (there[i] - here[i]) / taken;
       }
     }
-    for (std::size_t i = 0; i < n; ++i) change[static_cast<Eigen::Index>(i)] = -here[i];
-    change = jacobian.partialPivLu().solve(change).eval();
-    if (!change.allFinite()) return false;
+    for (std::size_t i = 0; i < n; ++i) change[static_cast<linalg::Index>(i)] = -here[i];
+    linalg::Lu(jacobian).solve_in_place(change);
+    if (!change.all_finite()) return false;
     double largest = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      double step = change[static_cast<Eigen::Index>(i)];
+      double step = change[static_cast<linalg::Index>(i)];
       const double scale = i == replaced_ ? unknowns[i] : 1.0 + std::abs(unknowns[i]);
       const double rounding = i == replaced_ ? noise_ * std::pow(unknowns[i], 1.0 - degree_) : 0.0;
       largest = std::max(largest, (std::abs(step) - rounding) / scale);

@@ -5,10 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/event_integrator/field/large_group.hpp"
 #include "saltus/event_integrator/mode/region_ties.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/switching/plane/bilinear_root.hpp"
 #include "saltus/switching/regions/region_weights.hpp"
 #include "saltus/switching/selections/selection_newton.hpp"
@@ -47,14 +46,14 @@ struct SlidingRegions {
   /// Where the gradients of `rows` depend on each other.
   std::optional<switching::RegionWeights> tie = {};
   RegionBasis basis = {};
-  Eigen::MatrixXd gradients = {};  ///< that the tie was made of
-  bool constant = false;           ///< gradients of all rows
+  linalg::Matrix gradients = {};  ///< that the tie was made of
+  bool constant = false;          ///< gradients of all rows
 };
 
 struct SlidingTies {
   std::vector<SlidingRegions> regions;
   bool known = false;  ///< of this mode: once gradients are
-  Eigen::MatrixXd rows, rates;
+  linalg::Matrix rows, rates;
   std::vector<double> theta;
 };
 

@@ -122,7 +122,7 @@ std::vector<double> Holding::free_field(double t, const std::vector<double>& alp
 }
 
 void Holding::resize_rows() {
-  const auto m = static_cast<Eigen::Index>(held_.guards.size());
+  const auto m = static_cast<linalg::Index>(held_.guards.size());
   rows_.resize(m, kernel_.states());
   residual_.resize(m);
   normal_.resize(m, m);
@@ -213,7 +213,7 @@ bool Holding::find_positions(double t, const std::vector<double>& alpha, const s
   kernel_.functions(t, x.data(), alpha.data(), values_.data());
   bool away = false;
   for (std::size_t k = 0; k < held_.guards.size(); ++k) {
-    const auto r = static_cast<Eigen::Index>(k);
+    const auto r = static_cast<linalg::Index>(k);
     residual_[r] = values_[at(held_.guards[k].hold.function)];
     away = away || residual_[r] != 0.0;
   }
@@ -222,7 +222,7 @@ bool Holding::find_positions(double t, const std::vector<double>& alpha, const s
     double rate = 0.0;
     kernel_.gradient(held_.guards[k].hold.function, t, x.data(), alpha.data(), row_.data(), &rate);
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = layout_.discrete_states[i] ? 0.0 : row_[i];
+      rows_(static_cast<linalg::Index>(k), static_cast<linalg::Index>(i)) = layout_.discrete_states[i] ? 0.0 : row_[i];
     }
   }
   return true;
@@ -232,7 +232,7 @@ bool Holding::find_positions(double t, const std::vector<double>& alpha, const s
 bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x) {
   bool away = false;
   for (std::size_t k = 0; k < held_.guards.size(); ++k) {
-    const auto r = static_cast<Eigen::Index>(k);
+    const auto r = static_cast<linalg::Index>(k);
     residual_[r] = kernel_.lie_derivative(held_.guards[k].hold.function, 1, t, x.data(), alpha.data());
     away = away || residual_[r] != 0.0;
   }
@@ -241,7 +241,7 @@ bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector
     const auto& targets = layout_.jumps[at(held_.guards[k].hold.jump)].targets;
     static_cast<void>(find_rate_row(held_.guards[k].hold, targets, t, alpha, x));
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      rows_(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = row_[i];
+      rows_(static_cast<linalg::Index>(k), static_cast<linalg::Index>(i)) = row_[i];
     }
   }
   return true;
@@ -250,19 +250,19 @@ bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector
 /// x less the shortest vector that makes the residuals 0; returns whether x changed.
 bool Holding::correct(std::vector<double>& x) {
   if (held_.guards.size() == 1) {
-    residual_ /= rows_.squaredNorm();  // one division: a guard that is a coordinate becomes exactly 0
+    residual_ /= rows_.squared_norm();  // one division: a guard that is a coordinate becomes exactly 0
   } else {
-    normal_.noalias() = rows_ * rows_.transpose();
+    linalg::multiply(rows_, rows_.transpose(), normal_);
     cholesky_.compute(normal_);
-    if (cholesky_.info() != Eigen::Success) return false;
-    cholesky_.solveInPlace(residual_);
+    if (!cholesky_.is_positive()) return false;
+    cholesky_.solve_in_place(residual_);
   }
-  if (!residual_.allFinite()) return false;
+  if (!residual_.all_finite()) return false;
   bool moved = false;
   for (std::size_t i = 0; i < x.size(); ++i) {
     double correction = 0.0;
-    for (Eigen::Index r = 0; r < residual_.size(); ++r) {
-      correction += rows_(r, static_cast<Eigen::Index>(i)) * residual_[r];
+    for (linalg::Index r = 0; r < residual_.size(); ++r) {
+      correction += rows_(r, static_cast<linalg::Index>(i)) * residual_[r];
     }
     const double next = x[i] - correction;
     moved = moved || next != x[i];

@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/layout.hpp"
 
 namespace saltus::event_integrator {
@@ -92,9 +91,9 @@ class Holding {
   std::vector<int> absorbing_;  ///< states that the jumps in question set
   std::vector<std::vector<double>> basis_;  ///< of the rows of rates of guards(), orthonormal
   std::vector<double> values_, row_;
-  Eigen::MatrixXd rows_, normal_;  ///< of all held guards
-  Eigen::VectorXd residual_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  linalg::Matrix rows_, normal_;  ///< of all held guards
+  linalg::Vector residual_;
+  linalg::Cholesky cholesky_;
 };
 
 }  // namespace saltus::event_integrator

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
 
@@ -11,17 +11,17 @@ bool is_kept_by_sliding(const evaluation::ModelKernel& kernel, const ModeState& 
   constexpr double none = 1e-10;
   if (state.sliding.empty()) return false;
   const auto gradient = [&](int of) {
-    Eigen::VectorXd row(kernel.states() + 1);
+    linalg::Vector row(kernel.states() + 1);
     kernel.gradient(of, t, x, state.alpha.data(), row.data(), row.data() + kernel.states());
     return row;
   };
-  Eigen::VectorXd left = gradient(function);
-  const Eigen::VectorXd whole = left;
-  std::vector<Eigen::VectorXd> basis;
+  linalg::Vector left = gradient(function);
+  const linalg::Vector whole = left;
+  std::vector<linalg::Vector> basis;
   for (const int surface : state.sliding) {
-    Eigen::VectorXd row = gradient(surface);
+    linalg::Vector row = gradient(surface);
     const double size = row.norm();
-    if (!(row.cwiseProduct(whole).cwiseAbs().maxCoeff() > 0.0)) continue;
+    if (!(row.times_each(whole).max_abs() > 0.0)) continue;
     for (int pass = 0; pass < 2; ++pass) {
       for (const auto& before : basis) row -= before.dot(row) * before;
     }

@@ -3,36 +3,53 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/factors.hpp"
 #include "saltus/switching/table/independent_rows.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
+using linalg::Index;
+using linalg::Matrix;
 
-MatrixXd rows_of(const RegionBasis& basis, const MatrixXd& rows) {
-  MatrixXd spanning(static_cast<Index>(basis.base.size()), rows.cols());
+Matrix rows_of(const RegionBasis& basis, const Matrix& rows) {
+  Matrix spanning(static_cast<Index>(basis.base.size()), rows.cols());
   for (std::size_t k = 0; k < basis.base.size(); ++k) spanning.row(static_cast<Index>(k)) = rows.row(basis.base[k]);
   return spanning;
 }
 
+/// Makes of a right side R the solution of N Y = R, N symmetric and positive definite, in the memory of both.
+void solve_positive(Matrix& normal, Matrix& right) {
+  const Index m = normal.rows();
+  for (Index k = 0; k < m; ++k) {
+    for (Index i = k + 1; i < m; ++i) {
+      const double factor = normal(i, k) / normal(k, k);
+      for (Index l = k; l < m; ++l) normal(i, l) -= factor * normal(k, l);
+      for (Index l = 0; l < right.cols(); ++l) right(i, l) -= factor * right(k, l);
+    }
+  }
+  for (Index l = 0; l < right.cols(); ++l) {
+    for (Index i = m - 1; i >= 0; --i) {
+      for (Index k = i + 1; k < m; ++k) right(i, l) -= normal(i, k) * right(k, l);
+      right(i, l) /= normal(i, i);
+    }
+  }
+}
+
 }  // namespace
 
-RegionBasis basis_of(const MatrixXd& rows) {
-  MatrixXd rest = rows;
+RegionBasis basis_of(const Matrix& rows) {
+  Matrix rest = rows;
   for (Index i = 0; i < rest.rows(); ++i) {
     if (const double length = rest.row(i).norm(); length > 0.0) rest.row(i) /= length;
   }
   RegionBasis basis;
   while (basis.base.size() < static_cast<std::size_t>(std::min(rest.rows(), rest.cols()))) {
-    Index best = 0;
-    if (!(rest.rowwise().norm().maxCoeff(&best) > switching::dependent_part)) break;
-    const Eigen::RowVectorXd direction = rest.row(best).normalized();
+    const linalg::Vector norms = rest.row_norms();
+    const Index best = norms.index_of_max();
+    if (!(norms[best] > switching::dependent_part)) break;
+    const Matrix direction = rest.row(best).normalized();
     rest -= (rest * direction.transpose()) * direction;
     basis.base.push_back(best);
   }
@@ -40,9 +57,9 @@ RegionBasis basis_of(const MatrixXd& rows) {
   return basis;
 }
 
-RegionCoordinates coordinates_in(const RegionBasis& basis, const MatrixXd& rows) {
+RegionCoordinates coordinates_in(const RegionBasis& basis, const Matrix& rows) {
   const auto m = static_cast<Index>(basis.base.size());
-  RegionCoordinates coordinates = RegionCoordinates::Zero(rows.rows() + 1, m);
+  RegionCoordinates coordinates = RegionCoordinates::zero(rows.rows() + 1, m);
   if (m == 0) return coordinates;
   RegionCoordinates normal(m, m), right(m, rows.rows());
   for (Index k = 0; k < m; ++k) {
@@ -50,18 +67,18 @@ RegionCoordinates coordinates_in(const RegionBasis& basis, const MatrixXd& rows)
     for (Index l = 0; l < m; ++l) normal(k, l) = row.dot(rows.row(basis.base[at(l)]));
     for (Index i = 0; i < rows.rows(); ++i) right(k, i) = row.dot(rows.row(i));
   }
-  const Eigen::LDLT<RegionCoordinates> factors(normal);
-  coordinates.bottomRows(rows.rows()) = factors.solve(right).transpose();
+  solve_positive(normal, right);
+  coordinates.bottom_rows(rows.rows()) = right.transpose();
   for (Index k = 0; k < m; ++k) {  // exactly what they are
-    coordinates.row(basis.base[at(k)] + 1).setZero();
+    coordinates.row(basis.base[at(k)] + 1).set_zero();
     coordinates(basis.base[at(k)] + 1, k) = 1.0;
   }
   return coordinates;
 }
 
-double remainder(const RegionBasis& basis, const MatrixXd& rows) {
+double remainder(const RegionBasis& basis, const Matrix& rows) {
   if (basis.base.empty()) return rows.size() > 0 ? 1.0 : 0.0;
-  const MatrixXd rest = rows - coordinates_in(basis, rows).bottomRows(rows.rows()) * rows_of(basis, rows);
+  const Matrix rest = rows - coordinates_in(basis, rows).bottom_rows(rows.rows()) * rows_of(basis, rows);
   double largest = 0.0;
   for (Index i = 0; i < rows.rows(); ++i) {
     const double length = rows.row(i).norm();
@@ -73,14 +90,14 @@ double remainder(const RegionBasis& basis, const MatrixXd& rows) {
 namespace {
 
 /// The coefficients of an affine function and its rate in t; false if it is none.
-bool affine_row(const evaluation::AffineRows& rows, int function, Eigen::MatrixXd& matrix, Index place) {
+bool affine_row(const evaluation::AffineRows& rows, int function, linalg::Matrix& matrix, Index place) {
   const auto j = at(function);
-  matrix.row(place).setZero();
+  matrix.row(place).set_zero();
   matrix(place, matrix.cols() - 1) = rows.rate[j];
   for (std::size_t k = rows.start[j]; k < rows.start[j + 1]; ++k) {
     matrix(place, static_cast<Index>(rows.column[k])) = rows.coefficient[k];
   }
-  return std::isfinite(rows.offset[j]) && matrix.row(place).allFinite();
+  return std::isfinite(rows.offset[j]) && matrix.row(place).all_finite();
 }
 
 }  // namespace
@@ -90,20 +107,20 @@ std::vector<bool> constant_beside_held(const evaluation::ModelKernel& kernel, co
   std::vector<bool> constant;
   if (state.sliding.empty()) return constant;
   const Index columns = kernel.states() + 1;
-  MatrixXd held(static_cast<Index>(state.sliding.size()), columns), row(1, columns);
+  Matrix held(static_cast<Index>(state.sliding.size()), columns), row(1, columns);
   Index count = 0;
   for (const int j : state.sliding) count += kernel.inner(j).empty() && affine_row(rows, j, held, count) ? 1 : 0;
   if (count == 0) return constant;
-  held.conservativeResize(count, Eigen::NoChange);
+  held.resize_and_keep(count, columns);
   const RegionBasis basis = basis_of(held);
-  const MatrixXd spanning = rows_of(basis, held);
+  const Matrix spanning = rows_of(basis, held);
   // The rows of a basis are independent to a millionth, so that coefficients of 16 digits leave ten of a combination.
   constexpr double rounding = 1e-10;
   for (const auto& group : kernel.region_groups()) {
     for (int j = group.first; j < group.first + group.count; ++j) {
       if (state.mode[at(j)] != -1 || !kernel.inner(j).empty() || !affine_row(rows, j, row, 0)) continue;
       const double length = row.norm();
-      const Eigen::VectorXd part = spanning.transpose().colPivHouseholderQr().solve(row.transpose());
+      const linalg::Vector part = linalg::PivotedQr(spanning.transpose()).solve(row.transpose());
       if (!((row - part.transpose() * spanning).norm() <= rounding * length)) continue;
       constant.resize(state.mode.size(), false);
       constant[at(j)] = true;

@@ -83,34 +83,34 @@ void NormalRows::find_components() {
   components_known_ = true;
 }
 
-bool NormalRows::solve(Eigen::VectorXd& residual) {
+bool NormalRows::solve(linalg::Vector& residual) {
   if (!components_known_) find_components();
   for (const std::size_t row : alone_) {
     // As a Cholesky factorisation does it.
     const double size = size_[row];
     if (!(size > 0.0)) return false;
-    auto& r = residual[static_cast<Eigen::Index>(row)];
+    auto& r = residual[static_cast<linalg::Index>(row)];
     r = r / size / size;
   }
   return std::all_of(together_.begin(), together_.end(),
                      [&](const auto& rows) { return solve_component(rows, residual); });
 }
 
-bool NormalRows::solve_component(const std::vector<std::size_t>& rows, Eigen::VectorXd& residual) {
-  const auto n = static_cast<Eigen::Index>(rows.size());
+bool NormalRows::solve_component(const std::vector<std::size_t>& rows, linalg::Vector& residual) {
+  const auto n = static_cast<linalg::Index>(rows.size());
   matrix_.resize(n, n);
   part_.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    part_[i] = residual[static_cast<Eigen::Index>(rows[static_cast<std::size_t>(i)])];
-    for (Eigen::Index j = 0; j <= i; ++j) {
+  for (linalg::Index i = 0; i < n; ++i) {
+    part_[i] = residual[static_cast<linalg::Index>(rows[static_cast<std::size_t>(i)])];
+    for (linalg::Index j = 0; j <= i; ++j) {
       matrix_(i, j) = product(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(j)]);
     }
   }
   cholesky_.compute(matrix_);
-  if (cholesky_.info() != Eigen::Success) return false;
-  cholesky_.solveInPlace(part_);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    residual[static_cast<Eigen::Index>(rows[static_cast<std::size_t>(i)])] = part_[i];
+  if (!cholesky_.is_positive()) return false;
+  cholesky_.solve_in_place(part_);
+  for (linalg::Index i = 0; i < n; ++i) {
+    residual[static_cast<linalg::Index>(rows[static_cast<std::size_t>(i)])] = part_[i];
   }
   return true;
 }
@@ -131,7 +131,7 @@ double NormalRows::product(std::size_t a, std::size_t b) const {
   return sum;
 }
 
-bool NormalRows::subtract_transposed(const Eigen::VectorXd& z, double* x) {
+bool NormalRows::subtract_transposed(const linalg::Vector& z, double* x) {
   if (!components_known_) find_components();
   bool changed = false;
   const auto take = [&](std::size_t column) {
@@ -140,7 +140,7 @@ bool NormalRows::subtract_transposed(const Eigen::VectorXd& z, double* x) {
     changed = changed || x[column] != before;
   };
   const auto add = [&](std::size_t row) {
-    const double factor = z[static_cast<Eigen::Index>(row)];
+    const double factor = z[static_cast<linalg::Index>(row)];
     const auto& [column, value] = *rows_[row];
     for (std::size_t k = 0; k < column.size(); ++k) sum_[column[k]] += value[k] * factor;
   };

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
 
@@ -34,13 +34,13 @@ class NormalRows {
   [[nodiscard]] double size(std::size_t row) const { return size_[row]; }
 
   /// Solves J J^T z = r for z, in place; false where the rows of a component depend on each other.
-  [[nodiscard]] bool solve(Eigen::VectorXd& residual);
+  [[nodiscard]] bool solve(linalg::Vector& residual);
   /// Takes J^T z from x (columns); returns whether that has changed it. Cost: the entries of all rows.
-  bool subtract_transposed(const Eigen::VectorXd& z, double* x);
+  bool subtract_transposed(const linalg::Vector& z, double* x);
 
  private:
   void find_components();
-  [[nodiscard]] bool solve_component(const std::vector<std::size_t>& rows, Eigen::VectorXd& residual);
+  [[nodiscard]] bool solve_component(const std::vector<std::size_t>& rows, linalg::Vector& residual);
   [[nodiscard]] double product(std::size_t a, std::size_t b) const;
 
   std::size_t columns_ = 0;
@@ -52,9 +52,9 @@ class NormalRows {
   std::vector<std::vector<std::size_t>> together_;  ///< the other components
   std::vector<std::size_t> first_of_column_;
   std::vector<double> sum_;  ///< columns, 0 between two calls
-  Eigen::MatrixXd matrix_;
-  Eigen::VectorXd part_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  linalg::Matrix matrix_;
+  linalg::Vector part_;
+  linalg::Cholesky cholesky_;
 };
 
 }  // namespace saltus::event_integrator

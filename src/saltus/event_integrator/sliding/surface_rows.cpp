@@ -4,23 +4,24 @@
 
 namespace saltus::event_integrator {
 
-bool IndependentRows::solve(const Eigen::MatrixXd& gradients, Eigen::VectorXd& residual) {
+bool IndependentRows::solve(const linalg::Matrix& gradients, linalg::Vector& residual) {
   take_rows(gradients, rows, part_);
   part_residual_.resize(part_.rows());
-  for (Eigen::Index k = 0; k < part_residual_.size(); ++k) part_residual_[k] = residual[rows[at(k)]];
-  matrix_.noalias() = part_ * part_.transpose();
+  for (linalg::Index k = 0; k < part_residual_.size(); ++k) part_residual_[k] = residual[rows[at(k)]];
+  matrix_.resize(part_.rows(), part_.rows());
+  linalg::multiply(part_, part_.transpose(), matrix_);
   cholesky_.compute(matrix_);
-  if (cholesky_.info() != Eigen::Success) return false;
-  cholesky_.solveInPlace(part_residual_);
-  residual.setZero();
-  for (Eigen::Index k = 0; k < part_residual_.size(); ++k) residual[rows[at(k)]] = part_residual_[k];
+  if (!cholesky_.is_positive()) return false;
+  cholesky_.solve_in_place(part_residual_);
+  residual.set_zero();
+  for (linalg::Index k = 0; k < part_residual_.size(); ++k) residual[rows[at(k)]] = part_residual_[k];
   return true;
 }
 
 void SurfaceRows::resize(std::size_t m, std::size_t states, bool with_dense) {
-  const auto rows = static_cast<Eigen::Index>(m);
+  const auto rows = static_cast<linalg::Index>(m);
   normal.resize(m, states);
-  dense.resize(with_dense ? rows : 0, static_cast<Eigen::Index>(states));
+  dense.resize(with_dense ? rows : 0, static_cast<linalg::Index>(states));
   rates.resize(rows);
   residual.resize(rows);
   coordinate.assign(m, -1);
@@ -40,16 +41,16 @@ bool SurfaceRows::take_known(std::size_t row, std::size_t surface) {
   const auto& known = known_[surface];
   if (!known.known || coordinate.size() == 1) return false;
   normal.set(row, known.row, known.size);
-  rates[static_cast<Eigen::Index>(row)] = known.rate;
+  rates[static_cast<linalg::Index>(row)] = known.rate;
   note(row, true);
   return true;
 }
 
 void SurfaceRows::take(std::size_t row, std::size_t surface, const std::vector<double>& gradient, bool constant,
                        bool keep) {
-  const auto r = static_cast<Eigen::Index>(row);
+  const auto r = static_cast<linalg::Index>(row);
   normal.set(row, gradient);
-  if (dense.rows() > 0) dense.row(r) = Eigen::Map<const Eigen::RowVectorXd>(gradient.data(), dense.cols());
+  if (dense.rows() > 0) dense.row(r) = linalg::ConstView(gradient.data(), dense.cols());
   note(row, constant);
   if (constant && keep) known_[surface] = {true, normal[row], rates[r], normal.size(row)};
 }

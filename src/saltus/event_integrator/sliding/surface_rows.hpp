@@ -4,26 +4,25 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
-
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/sliding/normal_rows.hpp"
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
 
 /// Solves the normal equations of rows of which some depend on others, for those that do not.
 class IndependentRows {
  public:
-  std::vector<Eigen::Index> rows;  ///< ascending; empty = all
+  std::vector<linalg::Index> rows;  ///< ascending; empty = all
 
   /// Sets residual = (J J^T)^-1 residual of these rows of J, 0 of the others; false where they depend on each other.
-  [[nodiscard]] bool solve(const Eigen::MatrixXd& gradients, Eigen::VectorXd& residual);
+  [[nodiscard]] bool solve(const linalg::Matrix& gradients, linalg::Vector& residual);
 
  private:
-  Eigen::MatrixXd part_, matrix_;
-  Eigen::VectorXd part_residual_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  linalg::Matrix part_, matrix_;
+  linalg::Vector part_residual_;
+  linalg::Cholesky cholesky_;
 };
 
 /// Holds J by rows, d psi_I/dt beside it; gradients that no mode changes are kept.
@@ -32,9 +31,9 @@ class SurfaceRows {
   explicit SurfaceRows(std::size_t surfaces) : known_(surfaces) {}
 
   NormalRows normal;
-  Eigen::MatrixXd dense;          ///< m x n_x where it is asked for
-  Eigen::VectorXd rates;          ///< d psi_I/dt
-  Eigen::VectorXd residual;       ///< of the normal equations
+  linalg::Matrix dense;           ///< m x n_x where it is asked for
+  linalg::Vector rates;           ///< d psi_I/dt
+  linalg::Vector residual;        ///< of the normal equations
   double square = 0.0;            ///< |J|^2 of one row
   std::vector<bool> is_constant;  ///< in this mode
   std::size_t varying = 0;        ///< rows that are not
@@ -49,7 +48,7 @@ class SurfaceRows {
   void take(std::size_t row, std::size_t surface, const std::vector<double>& gradient, bool constant, bool keep);
   /// Returns grad psi . f + d psi/dt.
   [[nodiscard]] double velocity(std::size_t row, const std::vector<double>& f) const {
-    const auto r = static_cast<Eigen::Index>(row);
+    const auto r = static_cast<linalg::Index>(row);
     if (const int only = coordinate[row]; only >= 0) return factor[row] * f[at(only)] + rates[r];
     return normal[row].dot(f, rates[r]);
   }

@@ -6,15 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/QR>
-
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
 
-using Eigen::Index;
+using linalg::Index;
 
 /// Columns that are independent of each other but for this are not taken together.
 constexpr double dependent = 1e-10;
@@ -22,21 +21,20 @@ constexpr double dependent = 1e-10;
 /// The unknowns that are free, and their values.
 class FreeUnknowns {
  public:
-  FreeUnknowns(const Eigen::MatrixXd& A, const Eigen::VectorXd& b)
-      : A_(A), b_(b), x_(Eigen::VectorXd::Zero(A.cols())) {}
+  FreeUnknowns(const linalg::Matrix& A, const linalg::Vector& b) : A_(A), b_(b), x_(linalg::Vector::zero(A.cols())) {}
 
-  [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
+  [[nodiscard]] const linalg::Vector& x() const { return x_; }
   [[nodiscard]] bool is_free(int j) const { return contains(free_, j); }
 
   /// Frees one, and binds those that come to 0 on the way to the least residual; false if that is no way.
   [[nodiscard]] bool add(int j) {
     free_.push_back(j);
     while (!free_.empty()) {
-      const Eigen::MatrixXd columns = A_(Eigen::all, free_);
-      Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(columns);
-      factors.setThreshold(dependent);
+      const linalg::Matrix columns = A_.selected_cols(free_);
+      linalg::PivotedQr factors(columns);
+      factors.set_threshold(dependent);
       if (factors.rank() < columns.cols()) return leave(j);
-      const Eigen::VectorXd wanted = factors.solve(b_);
+      const linalg::Vector wanted = factors.solve(b_);
       if (x_[j] == 0.0 && free_.back() == j && !(wanted[wanted.size() - 1] > 0.0)) return leave(j);
       if (go_towards(wanted)) return true;
     }
@@ -49,7 +47,7 @@ class FreeUnknowns {
     return false;
   }
   /// @return true if it got there
-  bool go_towards(const Eigen::VectorXd& wanted) {
+  bool go_towards(const linalg::Vector& wanted) {
     double part = 1.0;
     for (std::size_t k = 0; k < free_.size(); ++k) {
       const double from = x_[free_[k]], to = wanted[index(k)];
@@ -68,26 +66,26 @@ class FreeUnknowns {
     return arrived;
   }
 
-  const Eigen::MatrixXd& A_;
-  const Eigen::VectorXd& b_;
-  Eigen::VectorXd x_;
+  const linalg::Matrix& A_;
+  const linalg::Vector& b_;
+  linalg::Vector x_;
   std::vector<int> free_;
 };
 
 }  // namespace
 
-Eigen::VectorXd nonnegative_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b) {
+linalg::Vector nonnegative_solution(const linalg::Matrix& A, const linalg::Vector& b) {
   std::vector<int> order(at(A.cols()));
   std::iota(order.begin(), order.end(), 0);
-  const Eigen::VectorXd lengths = A.colwise().norm().transpose();
+  const linalg::Vector lengths = A.col_norms();
   // Equal but for roundings: in the order of their numbers.
-  const double unit = 1e-9 * lengths.maxCoeff();
+  const double unit = 1e-9 * lengths.max();
   std::stable_sort(order.begin(), order.end(),
                    [&](int i, int j) { return std::round(lengths[i] / unit) < std::round(lengths[j] / unit); });
   FreeUnknowns unknowns(A, b);
   const Index most_steps = 3 * A.cols();
   for (Index step = 0; step < most_steps; ++step) {
-    const Eigen::VectorXd residual = b - A * unknowns.x();
+    const linalg::Vector residual = b - A * unknowns.x();
     const bool found = std::any_of(order.begin(), order.end(), [&](int j) {
       const bool decreases = A.col(j).dot(residual) > dependent * lengths[j] * b.norm();
       return decreases && !unknowns.is_free(j) && unknowns.add(j);

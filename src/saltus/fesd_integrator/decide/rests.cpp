@@ -4,19 +4,18 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Core>
-
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
 #include "saltus/fesd_integrator/decide/surface_modes.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
 
-using Eigen::VectorXd;
+using linalg::Vector;
 
-VectorXd gradient_of(const Surface& surface, const discretization::StageValues& at_point) {
-  VectorXd gradient = VectorXd::Zero(index(at_point.f.size()));
+Vector gradient_of(const Surface& surface, const discretization::StageValues& at_point) {
+  Vector gradient = Vector::zero(index(at_point.f.size()));
   const auto add = [&](int row, double factor) {
     visit_row(at_point.pattern->indicator_x, at_point.indicator_x, at(row),
               [&](std::size_t i, double value) { gradient[index(i)] += factor * value; });
@@ -27,8 +26,8 @@ VectorXd gradient_of(const Surface& surface, const discretization::StageValues& 
 }
 
 /// f in region a less f in region b.
-VectorXd jump_of(int a, int b, const discretization::StageValues& at_point) {
-  VectorXd jump = VectorXd::Zero(index(at_point.f.size()));
+Vector jump_of(int a, int b, const discretization::StageValues& at_point) {
+  Vector jump = Vector::zero(index(at_point.f.size()));
   for (const auto& [selection, factor] : {std::pair{a, 1.0}, std::pair{b, -1.0}}) {
     visit_column(at_point.pattern->f_selection, at_point.f_selection, at(selection),
                  [&jump, factor = factor](std::size_t i, double value) { jump[index(i)] += factor * value; });
@@ -100,24 +99,24 @@ void Rests::find_slopes(const Place& place) {
 /// Whether d psi_j / dt is zero and has the gradient of psi_r times c > 0, but for a multiple of that of psi_j.
 bool Rests::follows(int j, int r, double size) const {
   const Surface& surface = functions_[at(j)].surface;
-  const VectorXd own = gradient_of(surface, values_), other = gradient_of(functions_[at(r)].surface, values_);
-  VectorXd slope = VectorXd::Zero(own.size());
+  const Vector own = gradient_of(surface, values_), other = gradient_of(functions_[at(r)].surface, values_);
+  Vector slope = Vector::zero(own.size());
   if (step_ > 0.0) slope = (gradient_of(surface, ahead_) - gradient_of(surface, behind_)) / (2.0 * step_);
-  for (Eigen::Index k = 0; k < own.size(); ++k) {
+  for (linalg::Index k = 0; k < own.size(); ++k) {
     visit_column(values_.pattern->f_x, values_.f_x, static_cast<std::size_t>(k),
                  [&](std::size_t i, double value) { slope[k] += own[index(i)] * value; });
   }
-  const double rate = own.dot(Eigen::Map<const VectorXd>(values_.f.data(), own.size()));
+  const double rate = own.dot(linalg::ConstView(values_.f));
   constexpr double zero = 1e-9;
-  if (std::abs(rate) > zero * size * slope.cwiseAbs().maxCoeff()) return false;
-  const double oo = own.squaredNorm(), ou = own.dot(other), uu = other.squaredNorm();
+  if (std::abs(rate) > zero * size * slope.max_abs()) return false;
+  const double oo = own.squared_norm(), ou = own.dot(other), uu = other.squared_norm();
   const double determinant = oo * uu - ou * ou;
   if (!(determinant > 1e-12 * oo * uu)) return false;
   const double of_own = (uu * own.dot(slope) - ou * other.dot(slope)) / determinant;
   const double of_other = (oo * other.dot(slope) - ou * own.dot(slope)) / determinant;
   constexpr double rounding = 1e-6;  // of differences
-  const VectorXd rest = slope - of_own * own - of_other * other;
-  return of_other > 0.0 && rest.cwiseAbs().maxCoeff() <= rounding * slope.cwiseAbs().maxCoeff();
+  const Vector rest = slope - of_own * own - of_other * other;
+  return of_other > 0.0 && rest.max_abs() <= rounding * slope.max_abs();
 }
 
 /// The sides of `of` on which the selection of `other` acts on nothing.
@@ -146,7 +145,7 @@ bool Rests::acts_on(int side, int of, int other) const {
   const int own = functions_[at(of)].number, across = functions_[at(other)].number;
   for (int region = part.first; region < part.first + part.count; ++region) {
     if (part.side(region, own) != side || part.side(region, across) != 1) continue;
-    if (!jump_of(region, region_on(part, region, across, -1), values_).isZero(0.0)) return true;
+    if (!jump_of(region, region_on(part, region, across, -1), values_).is_zero()) return true;
   }
   return false;
 }
@@ -156,7 +155,7 @@ double Rests::jump_on(int side, int j, int r) const {
   const Part& part = parts_[at(functions_[at(j)].part)];
   const int own = functions_[at(j)].number;
   const int above = region_on(part, part.first, functions_[at(r)].number, side);
-  const VectorXd gradient = gradient_of(functions_[at(r)].surface, values_);
+  const Vector gradient = gradient_of(functions_[at(r)].surface, values_);
   return std::abs(gradient.dot(jump_of(above, region_on(part, above, own, -1), values_)));
 }
 

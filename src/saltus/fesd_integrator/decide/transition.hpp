@@ -15,6 +15,7 @@
 #include "saltus/fesd_integrator/element/projected_field.hpp"
 #include "saltus/fesd_integrator/element/selection_margins.hpp"
 #include "saltus/fesd_integrator/watch/watch.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -139,8 +140,8 @@ class Transition {
   };
   /// Equations of weights; `negligible` is what they may be missed by.
   struct WeightEquations {
-    Eigen::MatrixXd matrix;
-    Eigen::VectorXd right, negligible;
+    linalg::Matrix matrix;
+    linalg::Vector right, negligible;
   };
   /// Weights of regions, and the motion they make.
   struct Weights {

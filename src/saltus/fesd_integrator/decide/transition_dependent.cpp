@@ -16,19 +16,19 @@
 namespace saltus::fesd_integrator {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using linalg::Index;
+using linalg::Matrix;
+using linalg::Vector;
 
 /// The functions at zero at a point, taken for zero: d psi / dt of all members from f.
 struct Gradients {
-  MatrixXd rows;  ///< members x n_x
-  VectorXd rates;
+  Matrix rows;  ///< members x n_x
+  Vector rates;
 };
 
 Gradients gradients_of(const discretization::StageValues& values, const std::vector<int>& members) {
   const auto count = index(members.size());
-  Gradients gradients{MatrixXd::Zero(count, index(values.f.size())), VectorXd(count)};
+  Gradients gradients{Matrix::zero(count, index(values.f.size())), Vector(count)};
   for (std::size_t k = 0; k < members.size(); ++k) {
     gradients.rates[index(k)] = values.indicator_t[at(members[k])];
     visit_row(values.pattern->indicator_x, values.indicator_x, at(members[k]),
@@ -57,20 +57,19 @@ ActiveSet Transition::make_set(const Decision& decision, std::vector<int> modes)
 /// The members of a group that move the state, by their jumps of f; kinks, and functions of outputs alone, follow.
 Transition::Dependent Transition::split_by_action(const Decision& decision, const std::vector<int>& modes,
                                                   const Group& group) {
-  const std::size_t n_x = kernel_.states();
   Dependent split;
   split.selections.resize(kernel_.selections());
   const std::vector<double> nothing(kernel_.selections(), 0.0);
   ActiveSet(parts_, modes).selections(nothing.data(), split.selections.data());
   for (const int j : group.members) split.selections[at(j)] = side_before(decision, j) < 0 ? 0.0 : 1.0;
   kernel_.evaluate(decision.t, decision.x.data(), split.selections.data(), decision.held, values_);
-  VectorXd terms = Eigen::Map<const VectorXd>(values_.f.data(), index(n_x)).cwiseAbs();
+  Vector terms = linalg::ConstView(values_.f).abs();
   DenseMatrices memory;
-  const Eigen::Map<const MatrixXd> jumps(field_view(values_, memory).f_selection, index(n_x),
-                                         index(kernel_.selections()));
-  for (const int j : group.members) terms += jumps.col(j).cwiseAbs();
+  const linalg::ConstView jumps(field_view(values_, memory).f_selection, index(kernel_.states()),
+                                index(kernel_.selections()));
+  for (const int j : group.members) terms += jumps.col(j).abs();
   for (const int j : group.members) {
-    const bool acts = (jumps.col(j).cwiseAbs().array() > switching::field_accuracy * terms.array()).any();
+    const bool acts = linalg::any_beyond(jumps.col(j), switching::field_accuracy * terms);
     (acts ? split.acting : split.followers).push_back(j);
   }
   return split;
@@ -86,18 +85,18 @@ std::optional<std::vector<double>> Transition::solve_dependent(const Decision& d
                                                                const std::vector<double>& x, Dependent& split,
                                                                Group& group) {
   std::vector<double> f(x.size());
-  const auto field = [&](const std::vector<double>& alpha, VectorXd& value) {
+  const auto field = [&](const std::vector<double>& alpha, Vector& value) {
     for (std::size_t i = 0; i < split.acting.size(); ++i) split.selections[at(split.acting[i])] = alpha[i];
     kernel_.field(t, x.data(), split.selections.data(), decision.held, f.data());
-    value = Eigen::Map<const VectorXd>(f.data(), index(f.size()));
+    value = linalg::ConstView(f);
   };
   const auto map = switching::additive_map(split.acting.size(), field);
-  if (!map || !map->constant.allFinite() || !map->effects.allFinite()) return std::nullopt;
+  if (!map || !map->constant.all_finite() || !map->effects.all_finite()) return std::nullopt;
   kernel_.evaluate(t, x.data(), split.selections.data(), decision.held, values_);
   const auto gradients = gradients_of(values_, split.acting);
   const auto solution = switching::solve_complementarity(
       gradients.rows * map->effects, gradients.rows * map->constant + gradients.rates, switching::field_accuracy);
-  const VectorXd moves = map->constant + map->effects * solution.lambda;
+  const Vector moves = map->constant + map->effects * solution.lambda;
   const auto follow = gradients_of(values_, split.followers);
   std::vector<int> pattern;
   for (const int j : group.members) {
@@ -107,8 +106,8 @@ std::optional<std::vector<double>> Transition::solve_dependent(const Decision& d
       continue;
     }
     const auto k = std::find(split.followers.begin(), split.followers.end(), j) - split.followers.begin();
-    const double velocity = follow.rows.row(k) * moves + follow.rates[k];
-    const double size = follow.rows.row(k).cwiseAbs() * moves.cwiseAbs() + std::abs(follow.rates[k]);
+    const double velocity = follow.rows.row(k).dot(moves) + follow.rates[k];
+    const double size = follow.rows.row(k).abs().dot(moves.abs()) + std::abs(follow.rates[k]);
     const bool goes = std::abs(velocity) > switching::field_accuracy * size;
     pattern.push_back(goes ? (velocity > 0.0 ? 1 : -1) : side_before(decision, j) < 0 ? -1 : 1);
   }

@@ -4,19 +4,18 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/QR>
-
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
 #include "saltus/fesd_integrator/decide/nonnegative_solution.hpp"
 #include "saltus/fesd_integrator/decide/transition.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using linalg::Index;
+using linalg::Matrix;
+using linalg::Vector;
 
 /// Whether regions are on the two sides of one surface; all other differences are sums of these.
 bool are_beside(const Part& part, int a, int b) {
@@ -38,15 +37,15 @@ std::vector<int> active_regions(std::span<const Part> parts, const ActiveSet& se
 /// How many of the surfaces of a set are independent.
 Index independent_surfaces(const ActiveSet& set, const FieldView& view) {
   constexpr double unequal = 1e-9;
-  MatrixXd gradients(index(set.sliding().size()), index(view.n_x));
+  Matrix gradients(index(set.sliding().size()), index(view.n_x));
   for (std::size_t k = 0; k < set.sliding().size(); ++k) {
     for (std::size_t i = 0; i < view.n_x; ++i) {
       gradients(index(k), index(i)) = set.surface(k, view.indicator_x + i * view.n);
     }
   }
-  gradients.rowwise().normalize();
-  Eigen::ColPivHouseholderQR<MatrixXd> factors(gradients);
-  factors.setThreshold(unequal);
+  for (Index k = 0; k < gradients.rows(); ++k) gradients.row(k) = gradients.row(k).normalized();
+  linalg::PivotedQr factors(gradients);
+  factors.set_threshold(unequal);
   return factors.rank();
 }
 
@@ -64,20 +63,20 @@ Transition::WeightEquations Transition::weight_equations(const Decision& decisio
   kernel_.evaluate(t, x.data(), middle.data(), decision.held, values_);
   DenseMatrices memory;
   const FieldView view = field_view(values_, memory);
-  const Eigen::Map<const MatrixXd> fields(view.f_selection, index(n_x), index(n));
-  VectorXd constant = Eigen::Map<const VectorXd>(view.f, index(n_x));
-  for (const int j : active) constant -= middle[at(j)] * fields.col(j);
+  const linalg::ConstView fields(view.f_selection, index(n_x), index(n));
+  Vector constant = linalg::ConstView(view.f, index(n_x));
+  for (const int j : active) constant.add_scaled(-middle[at(j)], fields.col(j));
   WeightEquations equations;
   const auto add = [&](double right, double negligible) {
     const Index row = equations.matrix.rows();
-    equations.matrix.conservativeResize(row + 1, index(active.size()));
-    equations.right.conservativeResize(row + 1);
-    equations.negligible.conservativeResize(row + 1);
+    equations.matrix.resize_and_keep(row + 1, index(active.size()));
+    equations.right.resize_and_keep(row + 1);
+    equations.negligible.resize_and_keep(row + 1);
     equations.right[row] = right;
     equations.negligible[row] = negligible;
     return row;
   };
-  VectorXd gradient(index(n_x));
+  Vector gradient(index(n_x));
   for (std::size_t k = 0; k < set.sliding().size(); ++k) {
     const Sliding& entry = set.sliding()[k];
     const double size = std::max(size_[at(entry.selection)], size_[at(entry.reference)]);
@@ -113,11 +112,11 @@ std::vector<int> Transition::without_negative(const Decision& decision, const Gr
   std::iota(columns.begin(), columns.end(), Index{0});
   auto fewer = pattern;
   while (columns.size() > 1) {
-    const MatrixXd some = matrix(Eigen::all, columns);
-    const VectorXd weights = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(some).solve(right);
-    if (((some * weights - right).cwiseAbs().array() > negligible.array()).any()) return pattern;
-    Index least = 0;
-    if (weights.minCoeff(&least) >= -undecided) return fewer;
+    const Matrix some = matrix.selected_cols(columns);
+    const Vector weights = linalg::least_squares(some, right);
+    if (linalg::any_beyond(some * weights - right, negligible)) return pattern;
+    const Index least = weights.index_of_min();
+    if (weights[least] >= -undecided) return fewer;
     const auto place = std::find(group.members.begin(), group.members.end(), active[at(columns[at(least)])]);
     if (place == group.members.end()) return pattern;
     fewer[at(place - group.members.begin())] = -1;
@@ -132,9 +131,9 @@ std::optional<Transition::Weights> Transition::find_weights(const Decision& deci
   Weights weights{std::vector<double>(kernel_.selections(), 0.0), std::vector<double>(x.size())};
   const auto active = active_regions(parts_, set);
   const auto [matrix, right, negligible] = weight_equations(decision, t, x, set, active);
-  if (!matrix.allFinite() || !right.allFinite()) return std::nullopt;
-  const VectorXd found = nonnegative_solution(matrix, right);
-  if (((matrix * found - right).cwiseAbs().array() > negligible.array()).any()) return std::nullopt;
+  if (!matrix.all_finite() || !right.all_finite()) return std::nullopt;
+  const Vector found = nonnegative_solution(matrix, right);
+  if (linalg::any_beyond(matrix * found - right, negligible)) return std::nullopt;
   for (std::size_t c = 0; c < active.size(); ++c) weights.selections[at(active[c])] = found[index(c)];
   kernel_.field(t, x.data(), weights.selections.data(), decision.held, weights.motion.data());
   return weights;

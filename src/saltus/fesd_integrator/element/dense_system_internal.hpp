@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Core>
-#include <Eigen/QR>
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -13,7 +13,7 @@ namespace saltus::fesd_integrator {
 /// solution of least norm, where A is singular to rounding (weights that are not unique).
 class DenseSystem {
  public:
-  void reserve(Eigen::Index n) {
+  void reserve(linalg::Index n) {
     memory_.resize(n * n);
     copy_.resize(n * n);
     right_.resize(n);
@@ -22,14 +22,14 @@ class DenseSystem {
     pivots_.resize(static_cast<std::size_t>(n));
   }
   /// Sets the size, and everything to 0.
-  void reset(Eigen::Index n) {
+  void reset(linalg::Index n) {
     n_ = n;
     factorised_ = false;
-    matrix().setZero();
-    right().setZero();
+    matrix().set_zero();
+    right().set_zero();
   }
-  [[nodiscard]] Eigen::Map<Eigen::MatrixXd> matrix() { return {memory_.data(), n_, n_}; }
-  [[nodiscard]] Eigen::Map<Eigen::VectorXd> right() { return {right_.data(), n_}; }
+  [[nodiscard]] linalg::View matrix() { return {memory_.data(), n_, n_}; }
+  [[nodiscard]] linalg::View right() { return {right_.data(), n_}; }
   /// Leaves the solution in right(); false if something is not finite, or a singular system has none but for an error
   /// beyond `negligible` (the rounding level of the right side, as it is or in units of the largest entry of each row).
   /// Cost: n^3 / 3.
@@ -40,19 +40,19 @@ class DenseSystem {
   [[nodiscard]] bool solve_again();
   /// Returns what the matrix of the last solve() maps to 0: an orthonormal basis, one column each; none if it was
   /// regular.
-  [[nodiscard]] Eigen::MatrixXd null_space() const;
+  [[nodiscard]] linalg::Matrix null_space() const;
 
  private:
   [[nodiscard]] bool keep_copy();
   [[nodiscard]] bool eliminate();
   void substitute();
 
-  Eigen::Index n_ = 0;
+  linalg::Index n_ = 0;
   bool factorised_ = false;
-  Eigen::VectorXd memory_, copy_, right_, right_copy_;
-  Eigen::VectorXd column_sizes_;      ///< largest entry of each column of the matrix as it was given
-  std::vector<Eigen::Index> pivots_;  ///< rows that were exchanged, in turn
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> orthogonal_;
+  linalg::Vector memory_, copy_, right_, right_copy_;
+  linalg::Vector column_sizes_;        ///< largest entry of each column of the matrix as it was given
+  std::vector<linalg::Index> pivots_;  ///< rows that were exchanged, in turn
+  linalg::OrthogonalFactors orthogonal_;
 };
 
 }  // namespace saltus::fesd_integrator

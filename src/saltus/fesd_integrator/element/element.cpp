@@ -4,18 +4,17 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Core>
-
 #include "saltus/base/contracts.hpp"
 #include "saltus/fesd_integrator/element/element_equations_internal.hpp"
 #include "saltus/fesd_integrator/element/element_polynomial_internal.hpp"
 #include "saltus/fesd_integrator/element/rest_projection.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
 
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-using Eigen::Index;
+using ConstVector = linalg::ConstView;
+using linalg::Index;
 
 constexpr int most_newton_steps = 40;
 
@@ -85,16 +84,16 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
   }
   if (!equations.finish(held, element)) return Outcome::not_converged;
   implementation_->put_to_rest(sets, held, element);
-  return ConstVector(element.end.data(), static_cast<Index>(element.end.size())).allFinite() ? Outcome::solved
-                                                                                             : Outcome::not_finite;
+  return ConstVector(element.end.data(), static_cast<Index>(element.end.size())).all_finite() ? Outcome::solved
+                                                                                              : Outcome::not_finite;
 }
 
 bool ElementSolver::determined() const {
   const auto& equations = implementation_->equations;
-  const Eigen::MatrixXd free = equations.free_directions();
+  const linalg::Matrix free = equations.free_directions();
   constexpr double rounding = 1e-6;  // of columns of length 1
   for (Index m = 0; m < tableau().stages() && free.cols() > 0; ++m) {
-    if (free.middleRows(equations.place(m), implementation_->n_x).cwiseAbs().maxCoeff() > rounding) return false;
+    if (free.middle_rows(equations.place(m), implementation_->n_x).max_abs() > rounding) return false;
   }
   return true;
 }

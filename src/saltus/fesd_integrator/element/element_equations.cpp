@@ -8,10 +8,10 @@
 namespace saltus::fesd_integrator {
 namespace {
 
-using Vector = Eigen::Map<Eigen::VectorXd>;
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
-using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
-using Eigen::Index;
+using ConstVector = linalg::ConstView;
+using ConstMatrix = linalg::ConstView;
+using linalg::Index;
+using linalg::View;
 
 /// Of Newton's method that puts an end onto the surfaces.
 constexpr int most_steps_onto_surfaces = 40;
@@ -77,8 +77,8 @@ void ElementEquations::find_directions(Index stage, const discretization::StageV
 void ElementEquations::surface_row(const ActiveSet& active, std::size_t k, const discretization::StageValues& at) {
   const ConstMatrix psi_x(at.indicator_x.data(), n_psi_, n_x_);
   const Surface& surface = active.sliding()[k].surface;
-  row_ = psi_x.row(surface.indicator).transpose();
-  if (surface.reference >= 0) row_ = psi_x.row(surface.reference).transpose() - row_;
+  row_ = psi_x.row(surface.reference >= 0 ? surface.reference : surface.indicator);
+  if (surface.reference >= 0) row_ -= psi_x.row(surface.indicator);
 }
 
 /// What the states are rounded at: the largest one or, near zero, the terms of h f that cancel in sliding. The rounding
@@ -88,11 +88,11 @@ double ElementEquations::size(const Element& element) const {
   for (Index m = 0; m < n_s_; ++m) {
     if (system_.is_sparse()) {
       const SparseColumns& entries = sparse_.directions[at(m)];
-      if (unknowns(m) > 0 && entries.nonZeros() > 0) terms = std::max(terms, entries.coeffs().abs().maxCoeff());
+      if (unknowns(m) > 0) terms = std::max(terms, ConstVector(entries.values()).max_abs());
       continue;
     }
     for (Index k = 0; k < unknowns(m); ++k) {
-      terms = std::max(terms, directions_.col(m * n_psi_ + k).cwiseAbs().maxCoeff());
+      terms = std::max(terms, directions_.col(m * n_psi_ + k).max_abs());
     }
   }
   return std::max(element.size, element.h * terms);
@@ -158,7 +158,9 @@ void ElementEquations::assemble_matrix(const Element& element) {
         for (Index i = 0; i < n_x_; ++i) block[i] = -weight * f_x[i];
       }
       if (unknowns(l) > 0) {
-        matrix.block(place(m), place(l) + n_x_, n_x_, unknowns(l)) = -A_(m, l) * directions_of(l);
+        auto of_selections = matrix.block(place(m), place(l) + n_x_, n_x_, unknowns(l));
+        of_selections = directions_of(l);
+        of_selections *= -A_(m, l);
       }
     }
     for (Index i = 0; i < n_x_; ++i) matrix(place(m) + i, place(m) + i) += 1.0;
@@ -168,33 +170,35 @@ void ElementEquations::assemble_matrix(const Element& element) {
     const auto& here = values_[at(point)];
     for (Index k = 0; k < unknowns(m); ++k) {
       const Index equation = place(m) + n_x_ + k;
+      const auto set_rate = [&](double weight, ConstMatrix by, Index column) {
+        auto rate = matrix.block(equation, column, 1, by.cols());
+        linalg::multiply(row_.transpose(), by, rate);
+        rate *= weight;
+      };
       surface_row(set(m), static_cast<std::size_t>(k), here);
       if (point < n_s_) {
-        matrix.block(equation, place(point), 1, n_x_) = row_.transpose();
+        matrix.block(equation, place(point), 1, n_x_) = row_;
         continue;
       }
       for (Index l = 0; l < n_s_; ++l) {
         const auto& stage = values_[at(l)];
-        matrix.block(equation, place(l), 1, n_x_) =
-            element.h * b_(l) * row_.transpose() * ConstMatrix(stage.f_x.data(), n_x_, n_x_);
-        if (unknowns(l) > 0) {
-          matrix.block(equation, place(l) + n_x_, 1, unknowns(l)) = b_(l) * row_.transpose() * directions_of(l);
-        }
+        set_rate(element.h * b_(l), ConstMatrix(stage.f_x.data(), n_x_, n_x_), place(l));
+        if (unknowns(l) > 0) set_rate(b_(l), directions_of(l), place(l) + n_x_);
       }
     }
   }
 }
 
 double ElementEquations::update(Element& element) {
-  Eigen::Map<Eigen::MatrixXd> states(element.stage_states.data(), n_x_, n_s_);
+  View states(element.stage_states.data(), n_x_, n_s_);
   const auto step = system_.right();
   double change = 0.0, root_change = 0.0;
   for (Index m = 0; m < n_s_; ++m) {
     const Index begin = offset_[at(m)];
-    change = std::max(change, step.segment(begin, n_x_).cwiseAbs().maxCoeff());
+    change = std::max(change, step.segment(begin, n_x_).max_abs());
     states.col(m) += step.segment(begin, n_x_);
     if (!roots_.empty()) {
-      const bool felt = A_.col(m).cwiseAbs().maxCoeff() > 0.0;  // behind a warp nothing depends on the last stage
+      const bool felt = A_.col(m).max_abs() > 0.0;  // behind a warp nothing depends on the last stage
       root_change = std::max(root_change, roots_.update(static_cast<std::size_t>(m), step.data() + begin, felt));
     }
     double* all = element.stage_selections.data() + m * n_psi_;
@@ -206,7 +210,7 @@ double ElementEquations::update(Element& element) {
       if (entry.reference >= 0) all[entry.reference] -= correction;
     }
   }
-  const double scale = std::max(size(element), states.cwiseAbs().maxCoeff());
+  const double scale = std::max(size(element), states.max_abs());
   // Roots by their own size: near the surface they are small, and all that moves the state there.
   return std::max(scale > 0.0 ? change / scale : change, root_change);
 }
@@ -214,9 +218,10 @@ double ElementEquations::update(Element& element) {
 /// Stages of Euler's method from the left end.
 void ElementEquations::guess_by_euler(const Point& left, const double* held, Element& element) {
   kernel_.field(left.t, left.x.data(), left.selections.data(), held, end_.data());
-  Eigen::Map<Eigen::MatrixXd> states(element.stage_states.data(), n_x_, n_s_);
+  View states(element.stage_states.data(), n_x_, n_s_);
   for (Index m = 0; m < n_s_; ++m) {
-    states.col(m) = ConstVector(left.x.data(), n_x_) + element.h * c_(m) * end_;
+    states.col(m) = ConstVector(left.x);
+    states.col(m).add_scaled(element.h * c_(m), end_);
   }
 }
 
@@ -225,20 +230,20 @@ std::optional<double> ElementEquations::move_onto_surfaces(const ActiveSet& acti
   if (projection_.is_sparse()) return move_onto_surfaces_by_entries(active, element);
   const auto& here = values_[at(n_s_)];
   const auto count = static_cast<Index>(active.sliding().size());
-  const auto along = directions_.middleCols(n_s_ * n_psi_, count);
+  const auto along = directions_.middle_cols(n_s_ * n_psi_, count);
   projection_.reset(count);
   auto matrix = projection_.matrix();
   auto right = projection_.right();
   double steepest = 0.0;
   for (Index k = 0; k < count; ++k) {
     surface_row(active, static_cast<std::size_t>(k), here);
-    steepest = std::max(steepest, row_.cwiseAbs().maxCoeff());
+    steepest = std::max(steepest, row_.max_abs());
     for (Index l = 0; l < count; ++l) matrix(k, l) = row_.dot(along.col(l));
     right(k) = -active.surface(static_cast<std::size_t>(k), here.indicator.data());
   }
   if (!projection_.solve(negligible(element) * steepest)) return std::nullopt;
-  Vector x_1(element.end.data(), n_x_);
-  for (Index l = 0; l < count; ++l) x_1 += right(l) * along.col(l);
+  View x_1(element.end);
+  for (Index l = 0; l < count; ++l) x_1.add_scaled(right(l), along.col(l));
   double change = 0.0;
   for (Index i = 0; i < n_x_; ++i) {
     double moved = 0.0;
@@ -280,7 +285,7 @@ void ElementEquations::set_guess(std::size_t stage, const Point& left, ElementSo
   if (guess != ElementSolver::Guess::stages) {
     std::copy_n(left.x.begin(), n_x_, element.stage_states.data() + static_cast<Index>(stage) * n_x_);
   }
-  mu_.head(count).setZero();
+  mu_.head(count).set_zero();
   sets_[stage]->unknowns(selections, mu_.data());
   for (Index k = 0; k < count && !is_known; ++k) {
     const bool region = sets_[stage]->sliding()[at(k)].reference >= 0;
@@ -298,7 +303,7 @@ void ElementEquations::begin(const Point& left, double h, std::span<const Active
   element.t = left.t;
   element.h = h;
   element.x = left.x;
-  element.size = std::max(left.size, ConstVector(left.x.data(), n_x_).cwiseAbs().maxCoeff());
+  element.size = std::max(left.size, ConstVector(left.x).max_abs());
   element.stage_states.resize(n_x * n_s);
   element.stage_slopes.resize(n_x * n_s);
   element.stage_selections.resize(static_cast<std::size_t>(n_psi_) * n_s);
@@ -321,9 +326,9 @@ void ElementEquations::begin(const Point& left, double h, std::span<const Active
 /// f and the indicators behind the last stage.
 void ElementEquations::evaluate_end(const Element& element, const double* held) {
   const auto last = static_cast<std::size_t>(n_s_);
-  end_ = ConstVector(element.x.data(), n_x_);
+  end_ = ConstVector(element.x);
   for (std::size_t m = 0; m < last; ++m) {
-    end_ += element.h * b_(static_cast<Index>(m)) * ConstVector(values_[m].f.data(), n_x_);
+    end_.add_scaled(element.h * b_(static_cast<Index>(m)), ConstVector(values_[m].f));
   }
   kernel_.evaluate(element.t + element.h, end_.data(), element.stage_selections.data() + (n_s_ - 1) * n_psi_, held,
                    values_[last]);
@@ -351,17 +356,18 @@ bool ElementEquations::finish(const double* held, Element& element) {
       continue;
     }
     roots_.field(static_cast<std::size_t>(m), t, state, selections, held, slope);
-    Vector(slope, n_x_) *= warp_.slope(tableau_.c(m));
+    View(slope, n_x_) *= warp_.slope(tableau_.c(m));
   }
   const ConstMatrix states(element.stage_states.data(), n_x_, n_s_);
-  element.size = std::max(size(element), states.cwiseAbs().maxCoeff());
-  Vector end(element.end.data(), n_x_);
+  element.size = std::max(size(element), states.max_abs());
+  View end(element.end);
   if (tableau_.ends_at_last_stage() && !explicit_method_) {
     end = states.col(n_s_ - 1);
     return true;
   }
-  end = ConstVector(element.x.data(), n_x_) +
-        element.h * ConstMatrix(element.stage_slopes.data(), n_x_, n_s_) * tableau_.b;
+  linalg::multiply(ConstMatrix(element.stage_slopes.data(), n_x_, n_s_), tableau_.b, end);
+  end *= element.h;
+  end += ConstVector(element.x);
   return !(one_set_ && slides_) || project(element.t, held, element);
 }
 

@@ -5,13 +5,12 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/element/element.hpp"
 #include "saltus/fesd_integrator/element/newton_system_internal.hpp"
 #include "saltus/fesd_integrator/element/root_unknowns_internal.hpp"
 #include "saltus/fesd_integrator/element/sliding_matrices_internal.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -42,11 +41,11 @@ class ElementEquations {
   [[nodiscard]] bool finish(const double* held, Element& element);
 
   /// Returns the directions in which the unknowns of the last step may move without changing any equation.
-  [[nodiscard]] Eigen::MatrixXd free_directions() const { return system_.null_space(); }
+  [[nodiscard]] linalg::Matrix free_directions() const { return system_.null_space(); }
   /// Returns where the unknowns of a stage begin; the states come first.
-  [[nodiscard]] Eigen::Index place(Eigen::Index stage) const { return offset_[at(stage)]; }
+  [[nodiscard]] linalg::Index place(linalg::Index stage) const { return offset_[at(stage)]; }
   /// Returns whether the selections of a stage are known: taken from the left end.
-  [[nodiscard]] bool known(Eigen::Index stage) const { return left_limit_ && stage == 0; }
+  [[nodiscard]] bool known(linalg::Index stage) const { return left_limit_ && stage == 0; }
   [[nodiscard]] bool explicit_method() const { return explicit_method_; }
 
  private:
@@ -54,23 +53,23 @@ class ElementEquations {
   void set_warp(const TimeWarp& wanted);
   void set_guess(std::size_t stage, const Point& left, ElementSolver::Guess guess, Element& element);
   void guess_by_euler(const Point& left, const double* held, Element& element);
-  [[nodiscard]] const ActiveSet& set(Eigen::Index stage) const { return *sets_[at(stage)]; }
-  [[nodiscard]] Eigen::Index unknowns(Eigen::Index stage) const {
-    return known(stage) ? 0 : static_cast<Eigen::Index>(set(stage).sliding().size());
+  [[nodiscard]] const ActiveSet& set(linalg::Index stage) const { return *sets_[at(stage)]; }
+  [[nodiscard]] linalg::Index unknowns(linalg::Index stage) const {
+    return known(stage) ? 0 : static_cast<linalg::Index>(set(stage).sliding().size());
   }
-  void find_directions(Eigen::Index stage, const discretization::StageValues& at);
-  [[nodiscard]] auto directions_of(Eigen::Index stage) {
-    return directions_.middleCols(stage * n_psi_, unknowns(stage));
+  void find_directions(linalg::Index stage, const discretization::StageValues& at);
+  [[nodiscard]] auto directions_of(linalg::Index stage) {
+    return directions_.middle_cols(stage * n_psi_, unknowns(stage));
   }
   void surface_row(const ActiveSet& active, std::size_t k, const discretization::StageValues& at);
   [[nodiscard]] double size(const Element& element) const;
   [[nodiscard]] double negligible(const Element& element) const { return 1e-13 * size(element); }
-  [[nodiscard]] Eigen::Index point_of(Eigen::Index stage) const;
+  [[nodiscard]] linalg::Index point_of(linalg::Index stage) const;
   void evaluate(const Element& element, const double* held, Parts parts);
   void evaluate_end(const Element& element, const double* held);
   void assemble_matrix(const Element& element);
   void assemble_entries(const Element& element);
-  void assemble_surface_entries(const Element& element, Eigen::Index stage);
+  void assemble_surface_entries(const Element& element, linalg::Index stage);
   void assemble_right(const Element& element);
   [[nodiscard]] double update(Element& element);
   [[nodiscard]] bool project(double t, const double* held, Element& element);
@@ -79,26 +78,26 @@ class ElementEquations {
 
   const discretization::StageKernel& kernel_;
   const discretization::ButcherTableau& tableau_;
-  Eigen::Index n_x_, n_s_, n_psi_;
+  linalg::Index n_x_, n_s_, n_psi_;
   bool explicit_method_, left_limit_;
   bool one_set_ = true, slides_ = false;
   bool at_end_ = false;  ///< the surfaces of an explicit method vanish at the right end
 
   NewtonSystem system_, projection_;
   std::vector<discretization::StageValues> values_;  ///< of the stages; one more for the end
-  Eigen::MatrixXd directions_;                       ///< n_x by n_psi per stage: f_alpha of what slides
+  linalg::Matrix directions_;                        ///< n_x by n_psi per stage: f_alpha of what slides
   /// The same where systems are sparse, and what the matrix of the last step was made for.
   struct Sparse {
     std::vector<SparseColumns> directions;
     std::vector<ActiveSet> sets;
     double h = 0.0;
   } sparse_;
-  std::vector<Eigen::Index> offset_;  ///< of the unknowns of each stage
+  std::vector<linalg::Index> offset_;  ///< of the unknowns of each stage
   std::vector<const ActiveSet*> sets_;
-  Eigen::VectorXd end_, row_, mu_;
+  linalg::Vector end_, row_, mu_;
   RootUnknowns roots_;
-  Eigen::MatrixXd A_;  ///< of the tableau, with the factors of the element's warp
-  Eigen::VectorXd b_, c_;
+  linalg::Matrix A_;  ///< of the tableau, with the factors of the element's warp
+  linalg::Vector b_, c_;
   TimeWarp warp_;
 };
 

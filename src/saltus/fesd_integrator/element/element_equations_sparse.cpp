@@ -6,7 +6,7 @@
 
 namespace saltus::fesd_integrator {
 
-using Eigen::Index;
+using linalg::Index;
 
 ElementEquations::Matrix ElementEquations::first_matrix(double h) const {
   constexpr double near = 0.3;  // less than that times h |f_x| of a step is left by the next one
@@ -27,13 +27,11 @@ void ElementEquations::assemble_entries(const Element& element) {
       if (weight == 0.0) continue;
       const auto f_x = field_by_state(values_[at(l)]);
       for (Index j = 0; j < n_x_; ++j) {
-        for (Eigen::Map<const SparseColumns>::InnerIterator entry(f_x, j); entry; ++entry) {
-          system_.add(place(m) + entry.row(), place(l) + j, -weight * entry.value());
-        }
+        for (const auto [row, value] : f_x.along(j)) system_.add(place(m) + row, place(l) + j, -weight * value);
       }
       for (Index k = 0; k < unknowns(l); ++k) {
-        for (SparseColumns::InnerIterator entry(sparse_.directions[at(l)], k); entry; ++entry) {
-          system_.add(place(m) + entry.row(), place(l) + n_x_ + k, -A_(m, l) * entry.value());
+        for (const auto [row, value] : sparse_.directions[at(l)].along(k)) {
+          system_.add(place(m) + row, place(l) + n_x_ + k, -A_(m, l) * value);
         }
       }
     }
@@ -48,17 +46,15 @@ void ElementEquations::assemble_surface_entries(const Element& element, Index st
   const Index point = point_of(stage);
   const SparseRows surfaces = sliding_surfaces(set(stage), values_[at(point)]);
   const Index first = place(stage) + n_x_;
-  const auto add = [&](const auto& rows, Index column, double factor) {
+  const auto add = [&](const SparseRows& rows, Index first_column, double factor) {
     for (Index k = 0; k < rows.rows(); ++k) {
-      for (SparseRows::InnerIterator entry(rows, k); entry; ++entry) {
-        system_.add(first + k, column + entry.col(), factor * entry.value());
-      }
+      for (const auto [column, value] : rows.along(k)) system_.add(first + k, first_column + column, factor * value);
     }
   };
   if (point < n_s_) return add(surfaces, place(point), 1.0);
   for (Index l = 0; l < n_s_; ++l) {
-    add(SparseRows(surfaces * SparseRows(field_by_state(values_[at(l)]))), place(l), element.h * b_(l));
-    if (unknowns(l) > 0) add(SparseRows(surfaces * SparseRows(sparse_.directions[at(l)])), place(l) + n_x_, b_(l));
+    add(surfaces * linalg::by_rows(field_by_state(values_[at(l)])), place(l), element.h * b_(l));
+    if (unknowns(l) > 0) add(surfaces * linalg::by_rows(sparse_.directions[at(l)]), place(l) + n_x_, b_(l));
   }
 }
 
@@ -66,18 +62,18 @@ std::optional<double> ElementEquations::move_onto_surfaces_by_entries(const Acti
   const auto& here = values_[at(n_s_)];
   const SparseColumns& along = sparse_.directions[at(n_s_)];
   const SparseRows surfaces = sliding_surfaces(active, here);
-  const SparseRows matrix = surfaces * SparseRows(along);
+  const SparseRows matrix = surfaces * linalg::by_rows(along);
   projection_.reset(matrix.rows());
   auto right = projection_.right();
   for (Index k = 0; k < matrix.rows(); ++k) {
-    for (SparseRows::InnerIterator entry(matrix, k); entry; ++entry) projection_.add(k, entry.col(), entry.value());
+    for (const auto [column, value] : matrix.along(k)) projection_.add(k, column, value);
     right(k) = -active.surface(static_cast<std::size_t>(k), here.indicator.data());
   }
-  const double steepest = surfaces.nonZeros() > 0 ? surfaces.coeffs().abs().maxCoeff() : 0.0;
+  const double steepest = linalg::ConstView(surfaces.values()).max_abs();
   if (!projection_.solve(negligible(element) * steepest)) return std::nullopt;
-  const Eigen::VectorXd moved = along * projection_.right();
-  Eigen::Map<Eigen::VectorXd>(element.end.data(), n_x_) += moved;
-  return moved.cwiseAbs().maxCoeff();
+  const linalg::Vector moved = along * projection_.right();
+  linalg::View(element.end.data(), n_x_) += moved;
+  return moved.max_abs();
 }
 
 }  // namespace saltus::fesd_integrator

@@ -1,13 +1,12 @@
 #include <algorithm>
 
-#include <Eigen/LU>
-
 #include "saltus/fesd_integrator/element/element.hpp"
 #include "saltus/fesd_integrator/element/element_polynomial_internal.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::fesd_integrator {
 
-using Eigen::Index;
+using linalg::Index;
 
 ElementPolynomial::ElementPolynomial(const discretization::ButcherTableau& tableau) {
   const Index s = tableau.stages();
@@ -15,12 +14,12 @@ ElementPolynomial::ElementPolynomial(const discretization::ButcherTableau& table
   last_node_ = tableau.c(s - 1);
   stages_on_polynomial_ = tableau.is_collocation();
   if (!hermite_) {
-    Eigen::MatrixXd powers(s, s);  // of the nodes
+    linalg::Matrix powers(s, s);  // of the nodes
     for (Index i = 0; i < s; ++i) {
       double power = 1.0;
       for (Index k = 0; k < s; ++k, power *= tableau.c(i)) powers(i, k) = power;
     }
-    integrals_ = powers.fullPivLu().inverse();
+    integrals_ = linalg::FullLu(powers).inverse();
     for (Index k = 0; k < s; ++k) integrals_.row(k) /= static_cast<double>(k + 1);
   }
   const auto add = [&](double theta, int stage) {

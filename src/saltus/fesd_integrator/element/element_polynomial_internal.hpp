@@ -4,9 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/discretization/butcher_tableau.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -26,13 +25,13 @@ class ElementPolynomial {
   void watch_state(const Element& element, std::size_t point, double* x) const;
 
  private:
-  [[nodiscard]] double weight(Eigen::Index stage, double theta) const;
-  [[nodiscard]] double weight_of_slope(Eigen::Index stage, double theta) const;
+  [[nodiscard]] double weight(linalg::Index stage, double theta) const;
+  [[nodiscard]] double weight_of_slope(linalg::Index stage, double theta) const;
 
   bool hermite_ = false;
   double last_node_ = 1.0;
   bool stages_on_polynomial_ = false;
-  Eigen::MatrixXd integrals_;  ///< coefficients of theta, theta^2, …; one column per stage
+  linalg::Matrix integrals_;  ///< coefficients of theta, theta^2, …; one column per stage
   std::vector<double> watch_points_;
   std::vector<int> watch_stage_;  ///< -1 left end, -2 right end, -3 somewhere else
 };

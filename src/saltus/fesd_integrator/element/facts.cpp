@@ -16,7 +16,7 @@ std::string region_name(const model::System& system, const reformulation::Dcs& d
   std::string sides;
   for (std::size_t j = 0; j < part.surfaces.size(); ++j) {
     if (j > 0) sides += ", ";
-    const bool above = part.signs(region, static_cast<Eigen::Index>(j)) > 0;
+    const bool above = part.signs(region, static_cast<linalg::Index>(j)) > 0;
     sides += dcs.surfaces[at(part.surfaces[j])].name + (above ? " > 0" : " < 0");
   }
   return sides;

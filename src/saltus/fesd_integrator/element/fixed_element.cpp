@@ -34,7 +34,7 @@ bool FixedElement::has_active_region(const Part& part, const std::vector<int>& m
 }
 
 void FixedElement::look_at(std::size_t stage, const Element& element, const double* held) {
-  const double t = element.t + element.h * solver_.tableau().c(static_cast<Eigen::Index>(stage));
+  const double t = element.t + element.h * solver_.tableau().c(static_cast<linalg::Index>(stage));
   kernel_.indicators(t, element.stage_states.data() + stage * kernel_.states(), held, indicators_.data());
   double size = element.size;
   for (const double value : indicators_) size = std::max(size, std::abs(value));

@@ -12,21 +12,21 @@ class NewtonSystem {
  public:
   enum class Storage { dense, sparse };
   /// Makes a system of `most` unknowns at most.
-  NewtonSystem(Storage storage, Eigen::Index most) : is_sparse_(storage == Storage::sparse) {
+  NewtonSystem(Storage storage, linalg::Index most) : is_sparse_(storage == Storage::sparse) {
     if (!is_sparse_) dense_.reserve(most);
   }
   [[nodiscard]] bool is_sparse() const { return is_sparse_; }
-  void reset(Eigen::Index n) { is_sparse_ ? sparse_.reset(n) : dense_.reset(n); }
-  [[nodiscard]] Eigen::Map<Eigen::MatrixXd> matrix() { return dense_.matrix(); }
-  void add(Eigen::Index row, Eigen::Index column, double value) { sparse_.add(row, column, value); }
-  [[nodiscard]] Eigen::Map<Eigen::VectorXd> right() { return is_sparse_ ? sparse_.right() : dense_.right(); }
+  void reset(linalg::Index n) { is_sparse_ ? sparse_.reset(n) : dense_.reset(n); }
+  [[nodiscard]] linalg::View matrix() { return dense_.matrix(); }
+  void add(linalg::Index row, linalg::Index column, double value) { sparse_.add(row, column, value); }
+  [[nodiscard]] linalg::View right() { return is_sparse_ ? sparse_.right() : dense_.right(); }
   using Unit = DenseSystem::Unit;
   [[nodiscard]] bool solve(double negligible, Unit unit = Unit::right_side) {
     return is_sparse_ ? sparse_.solve(negligible, unit) : dense_.solve(negligible, unit);
   }
   [[nodiscard]] bool is_factorised() const { return is_sparse_ ? sparse_.is_factorised() : dense_.is_factorised(); }
   [[nodiscard]] bool solve_again() { return is_sparse_ ? sparse_.solve_again() : dense_.solve_again(); }
-  [[nodiscard]] Eigen::MatrixXd null_space() const { return is_sparse_ ? sparse_.null_space() : dense_.null_space(); }
+  [[nodiscard]] linalg::Matrix null_space() const { return is_sparse_ ? sparse_.null_space() : dense_.null_space(); }
 
  private:
   bool is_sparse_;

@@ -13,7 +13,7 @@ namespace saltus::fesd_integrator {
 struct ProjectedField::Work {
   explicit Work(const discretization::StageKernel& kernel)
       : system(kernel.pattern().is_sparse ? NewtonSystem::Storage::sparse : NewtonSystem::Storage::dense,
-               static_cast<Eigen::Index>(kernel.selections())) {}
+               static_cast<linalg::Index>(kernel.selections())) {}
   NewtonSystem system;
   std::vector<double> unknown;
 };
@@ -32,7 +32,7 @@ ProjectedField::Sizes ProjectedField::form_equations(const ActiveSet& set) {
   const auto& sliding = set.sliding();
   const std::size_t count = sliding.size(), n_x = kernel_.states(), n = kernel_.selections();
   auto& system = work_->system;
-  system.reset(static_cast<Eigen::Index>(count));
+  system.reset(static_cast<linalg::Index>(count));
   if (system.is_sparse()) return form_entries(set);
   auto matrix = system.matrix();
   auto right = system.right();
@@ -52,12 +52,12 @@ ProjectedField::Sizes ProjectedField::form_equations(const ActiveSet& set) {
         if (sliding[l].reference >= 0) {
           along -= values_.f_selection[static_cast<std::size_t>(sliding[l].reference) * n_x + i];
         }
-        matrix(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(l)) += gradient * along;
+        matrix(static_cast<linalg::Index>(k), static_cast<linalg::Index>(l)) += gradient * along;
       }
     }
-    right(static_cast<Eigen::Index>(k)) = -rate;
+    right(static_cast<linalg::Index>(k)) = -rate;
   }
-  for (std::size_t l = 0; l < count; ++l) in_no_equation_[l] = matrix.col(static_cast<Eigen::Index>(l)).isZero(0.0);
+  for (std::size_t l = 0; l < count; ++l) in_no_equation_[l] = matrix.col(static_cast<linalg::Index>(l)).is_zero();
   return {size, gradients};
 }
 
@@ -65,22 +65,22 @@ ProjectedField::Sizes ProjectedField::form_equations(const ActiveSet& set) {
 ProjectedField::Sizes ProjectedField::form_entries(const ActiveSet& set) {
   auto& system = work_->system;
   const SparseRows surfaces = sliding_surfaces(set, values_);
-  const SparseRows matrix = surfaces * SparseRows(sliding_directions(set, values_));
+  const SparseRows matrix = surfaces * linalg::by_rows(sliding_directions(set, values_));
   Sizes sizes;
   std::fill(in_no_equation_.begin(), in_no_equation_.end(), true);
-  for (Eigen::Index k = 0; k < surfaces.rows(); ++k) {
+  for (linalg::Index k = 0; k < surfaces.rows(); ++k) {
     double rate = set.surface(static_cast<std::size_t>(k), values_.indicator_t.data());
     sizes.terms = std::max(sizes.terms, std::abs(rate));
-    for (SparseRows::InnerIterator gradient(surfaces, k); gradient; ++gradient) {
-      const double term = gradient.value() * values_.f[at(gradient.col())];
+    for (const auto [state, gradient] : surfaces.along(k)) {
+      const double term = gradient * values_.f[at(state)];
       rate += term;
-      sizes.gradients = std::max(sizes.gradients, std::abs(gradient.value()));
+      sizes.gradients = std::max(sizes.gradients, std::abs(gradient));
       sizes.terms = std::max(sizes.terms, std::abs(term));
     }
     system.right()(k) = -rate;
-    for (SparseRows::InnerIterator entry(matrix, k); entry; ++entry) {
-      system.add(k, entry.col(), entry.value());
-      if (entry.value() != 0.0) in_no_equation_[at(entry.col())] = false;
+    for (const auto [column, value] : matrix.along(k)) {
+      system.add(k, column, value);
+      if (value != 0.0) in_no_equation_[at(column)] = false;
     }
   }
   return sizes;
@@ -110,7 +110,7 @@ bool ProjectedField::solve(double t, const double* x, const ActiveSet& set, cons
     if (!solved) return false;
     double change = 0.0;
     for (std::size_t l = 0; l < count; ++l) {
-      const double step = system.right()(static_cast<Eigen::Index>(l));
+      const double step = system.right()(static_cast<linalg::Index>(l));
       unknown[l] += step;
       change = std::max(change, std::abs(step));
     }

@@ -14,11 +14,11 @@ namespace saltus::fesd_integrator {
 RestProjection::RestProjection(const discretization::StageKernel& kernel) : kernel_(kernel) { kernel.size(values_); }
 
 /// Of the surfaces that slide, then of those that rest, by n_x.
-Eigen::MatrixXd RestProjection::gradients_of(const ActiveSet& set, std::size_t n_x) const {
+linalg::Matrix RestProjection::gradients_of(const ActiveSet& set, std::size_t n_x) const {
   DenseMatrices memory;
   const double* const indicator_x = field_view(values_, memory).indicator_x;
   const std::size_t slide = set.sliding().size();
-  Eigen::MatrixXd gradients(index(slide + set.resting().size()), index(n_x));
+  linalg::Matrix gradients(index(slide + set.resting().size()), index(n_x));
   for (std::size_t i = 0; i < n_x; ++i) {
     const double* const column = indicator_x + i * kernel_.selections();
     for (std::size_t k = 0; k < slide; ++k) gradients(index(k), index(i)) = set.surface(k, column);
@@ -31,7 +31,7 @@ Eigen::MatrixXd RestProjection::gradients_of(const ActiveSet& set, std::size_t n
 
 std::optional<double> RestProjection::step(const ActiveSet& set, double size, std::vector<double>& x) {
   const std::size_t n_x = x.size(), slide = set.sliding().size(), count = slide + set.resting().size();
-  const Eigen::MatrixXd gradients = gradients_of(set, n_x);
+  const linalg::Matrix gradients = gradients_of(set, n_x);
   DenseSystem system;
   system.reserve(index(count));
   system.reset(index(count));
@@ -71,7 +71,7 @@ RestProjection::Rate RestProjection::rate_of(std::size_t k, const ActiveSet& set
                                              const std::vector<double>& x) {
   kernel_.evaluate(place.t, x.data(), place.selections.data(), place.held, values_);
   Rate rate{set.surface(k, values_.indicator_t.data()), false};
-  const Eigen::MatrixXd gradients = gradients_of(set, x.size());
+  const linalg::Matrix gradients = gradients_of(set, x.size());
   DenseMatrices memory;
   const double* const f_selection = field_view(values_, memory).f_selection;
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -4,10 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/element/active_set.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::fesd_integrator {
 
@@ -38,7 +37,7 @@ class RestProjection {
   [[nodiscard]] Rate rate_of(std::size_t k, const ActiveSet& set, const Place& place, const std::vector<double>& x);
   [[nodiscard]] bool rest_one(std::size_t k, const ActiveSet& set, const Place& place, double farthest,
                               std::vector<double>& x);
-  [[nodiscard]] Eigen::MatrixXd gradients_of(const ActiveSet& set, std::size_t n_x) const;
+  [[nodiscard]] linalg::Matrix gradients_of(const ActiveSet& set, std::size_t n_x) const;
   /// One Newton step; its length, in the largest component. nullopt where the gradients depend on each other.
   [[nodiscard]] std::optional<double> step(const ActiveSet& set, double size, std::vector<double>& x);
 

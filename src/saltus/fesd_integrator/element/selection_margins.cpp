@@ -9,11 +9,11 @@
 namespace saltus::fesd_integrator {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+using linalg::Index;
+using linalg::Matrix;
+using linalg::Vector;
+using ConstMatrix = linalg::ConstView;
+using ConstVector = linalg::ConstView;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ FieldView field_view(const discretization::StageValues& at, DenseMatrices& memor
   FieldView view = field_view(at);
   if (!at.pattern->is_sparse) return view;
   const auto fill = [](const discretization::EntryPattern& pattern, const std::vector<double>& values) {
-    MatrixXd matrix = MatrixXd::Zero(pattern.rows, pattern.columns);
+    Matrix matrix = Matrix::zero(pattern.rows, pattern.columns);
     for (std::size_t j = 0; j < saltus::at(pattern.columns); ++j) {
       visit_column(pattern, values, j, [&](std::size_t i, double value) { matrix(index(i), index(j)) = value; });
     }
@@ -38,7 +38,7 @@ bool find_balances(const FieldView& at, ActiveSet& set) {
   const auto& sliding = set.sliding();
   const ConstMatrix indicator_x(at.indicator_x, index(at.n), index(at.n_x));
   const ConstMatrix f_selection(at.f_selection, index(at.n_x), index(at.n));
-  MatrixXd gradients(index(sliding.size()), index(at.n_x)), jumps(index(at.n_x), index(sliding.size()));
+  Matrix gradients(index(sliding.size()), index(at.n_x)), jumps(index(at.n_x), index(sliding.size()));
   for (std::size_t k = 0; k < sliding.size(); ++k) {
     if (sliding[k].reference >= 0) return false;
     gradients.row(index(k)) = indicator_x.row(sliding[k].surface.indicator);
@@ -46,10 +46,10 @@ bool find_balances(const FieldView& at, ActiveSet& set) {
   }
   const auto independent = switching::independent_rows(gradients);
   if (independent.size() == sliding.size()) return false;
-  const MatrixXd held = gradients(independent, Eigen::all);
-  auto found = switching::balances_of(held * jumps, held.cwiseAbs() * jumps.cwiseAbs());
+  const Matrix held = gradients.selected_rows(std::vector<Index>(independent.begin(), independent.end()));
+  auto found = switching::balances_of(held * jumps, held.abs() * jumps.abs());
   for (const std::size_t i : found.unused) {
-    if (jumps.col(index(i)).cwiseAbs().maxCoeff() > 0.0) return false;
+    if (jumps.col(index(i)).max_abs() > 0.0) return false;
   }
   std::vector<switching::Balance> balances;
   for (auto& balance : found.all) {
@@ -73,21 +73,21 @@ void SelectionMargins::evaluate(const ActiveSet& set, const FieldView& at, doubl
   for (std::size_t b = 0; b < ranges_.size(); ++b) {
     const auto& balance = set.balances()[b];
     const std::size_t r = balance.functions.size(), q = balance.rows.size();
-    MatrixXd effects(index(r), index(q));
-    VectorXd constant(index(r)), lambda(index(q));
+    Matrix effects(index(r), index(q));
+    Vector constant(index(r)), lambda(index(q));
     const auto selection = [&](std::size_t i) { return set.sliding()[balance.rows[i]].selection; };
     for (std::size_t i = 0; i < q; ++i) lambda[index(i)] = selections[selection(i)];
     for (std::size_t k = 0; k < r; ++k) {
       const int function = set.sliding()[balance.functions[k]].surface.indicator;
       for (std::size_t i = 0; i < q; ++i) {
-        effects(index(k), index(i)) = indicator_x.row(function) * f_selection.col(selection(i));
+        effects(index(k), index(i)) = indicator_x.row(function).dot(f_selection.col(selection(i)));
       }
-      constant[index(k)] = indicator_x.row(function) * f;
+      constant[index(k)] = indicator_x.row(function).dot(f);
       constant[index(k)] += at.indicator_t[function];
     }
     constant -= effects * lambda;
     auto& range = ranges_[b];
-    const bool known = range.set(effects) && constant.allFinite();
+    const bool known = range.set(effects) && constant.all_finite();
     lambda = switching::bounded_selections(effects, constant);
     for (std::size_t i = 0; i < q; ++i) {
       const auto j = saltus::at(selection(i));

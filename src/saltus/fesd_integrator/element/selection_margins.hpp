@@ -4,10 +4,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/element/active_set.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/switching/selections/selection_range.hpp"
 
 namespace saltus::fesd_integrator {
@@ -30,7 +29,7 @@ template <class Values>
 
 /// Holds dense matrices of StageValues that keep few entries.
 struct DenseMatrices {
-  Eigen::MatrixXd f_selection, indicator_x;
+  linalg::Matrix f_selection, indicator_x;
 };
 
 /// Returns the view of any StageValues; valid as long as these and `memory` are.

@@ -8,35 +8,40 @@
 namespace saltus::fesd_integrator {
 namespace {
 
-using Eigen::Index;
+using linalg::Index;
 using EntryList = std::vector<std::pair<std::size_t, double>>;
 
-/// Appends the sum of all entries at each place as vector k of a matrix.
-template <class Matrix>
-void append(std::size_t k, EntryList& entries, Matrix& matrix) {
-  const auto is_before = [](const auto& a, const auto& b) { return a.first < b.first; };
-  if (!std::is_sorted(entries.begin(), entries.end(), is_before)) {  // of two regions
-    std::stable_sort(entries.begin(), entries.end(), is_before);
-  }
-  const auto outer = static_cast<Index>(k);
-  matrix.startVec(outer);
-  std::size_t last = static_cast<std::size_t>(-1);
-  for (const auto& [place, value] : entries) {
-    if (place == last) {
-      matrix.data().value(matrix.data().size() - 1) += value;
-    } else {
-      matrix.insertBackByOuterInner(outer, static_cast<Index>(place)) = value;
+/// Vectors of entries, one after the other.
+struct Compressed {
+  std::vector<int> start{0}, inner;
+  std::vector<double> values;
+
+  /// Appends the sum of all entries at each place as one more vector.
+  void append(EntryList& entries) {
+    const auto is_before = [](const auto& a, const auto& b) { return a.first < b.first; };
+    if (!std::is_sorted(entries.begin(), entries.end(), is_before)) {  // of two regions
+      std::stable_sort(entries.begin(), entries.end(), is_before);
     }
-    last = place;
+    std::size_t last = static_cast<std::size_t>(-1);
+    for (const auto& [place, value] : entries) {
+      if (place == last) {
+        values.back() += value;
+      } else {
+        inner.push_back(static_cast<int>(place));
+        values.push_back(value);
+      }
+      last = place;
+    }
+    start.push_back(static_cast<int>(inner.size()));
+    entries.clear();
   }
-  entries.clear();
-}
+};
 
 }  // namespace
 
 SparseColumns sliding_directions(const ActiveSet& set, const discretization::StageValues& at) {
   const auto& sliding = set.sliding();
-  SparseColumns directions(static_cast<Index>(at.f.size()), static_cast<Index>(sliding.size()));
+  Compressed columns;
   EntryList entries;
   const auto collect = [&](int selection, double factor) {
     if (selection < 0) return;
@@ -46,15 +51,15 @@ SparseColumns sliding_directions(const ActiveSet& set, const discretization::Sta
   for (std::size_t k = 0; k < sliding.size(); ++k) {
     collect(sliding[k].selection, 1.0);
     collect(sliding[k].reference, -1.0);
-    append(k, entries, directions);
+    columns.append(entries);
   }
-  directions.finalize();
-  return directions;
+  return {static_cast<Index>(at.f.size()), static_cast<Index>(sliding.size()), std::move(columns.start),
+          std::move(columns.inner), std::move(columns.values)};
 }
 
 SparseRows sliding_surfaces(const ActiveSet& set, const discretization::StageValues& at) {
   const auto& sliding = set.sliding();
-  SparseRows surfaces(static_cast<Index>(sliding.size()), static_cast<Index>(at.f.size()));
+  Compressed rows;
   EntryList entries;
   const auto collect = [&](int selection, double factor) {
     if (selection < 0) return;
@@ -65,16 +70,15 @@ SparseRows sliding_surfaces(const ActiveSet& set, const discretization::StageVal
     const Surface& surface = sliding[k].surface;
     collect(surface.indicator, surface.reference < 0 ? 1.0 : -1.0);
     collect(surface.reference, 1.0);
-    append(k, entries, surfaces);
+    rows.append(entries);
   }
-  surfaces.finalize();
-  return surfaces;
+  return {static_cast<Index>(sliding.size()), static_cast<Index>(at.f.size()), std::move(rows.start),
+          std::move(rows.inner), std::move(rows.values)};
 }
 
-Eigen::Map<const SparseColumns> field_by_state(const discretization::StageValues& at) {
+linalg::SparseView<linalg::Major::columns> field_by_state(const discretization::StageValues& at) {
   const auto& pattern = at.pattern->f_x;
-  return {pattern.rows,         pattern.columns,    static_cast<Index>(pattern.size()),
-          pattern.start.data(), pattern.row.data(), at.f_x.data()};
+  return {pattern.rows, pattern.columns, pattern.start, pattern.row, at.f_x};
 }
 
 }  // namespace saltus::fesd_integrator

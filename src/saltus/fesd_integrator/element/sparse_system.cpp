@@ -6,21 +6,7 @@
 
 namespace saltus::fesd_integrator {
 
-using Eigen::Index;
-
-bool SparseSystem::Factors::is_singular(const Eigen::VectorXd& column_sizes) const {
-  constexpr double singular = 1e-13;  // as in DenseSystem
-  for (Index column = 0; column < cols(); ++column) {
-    const double size = column_sizes(column);
-    const Index j = m_perm_c.indices()(column);
-    for (SCMatrix::InnerIterator entry(m_Lstore, j); entry; ++entry) {
-      if (entry.index() != j) continue;
-      if (!(std::abs(entry.value()) > singular * size)) return true;
-      break;
-    }
-  }
-  return false;
-}
+using linalg::Index;
 
 void SparseSystem::reset(Index n) {
   if (n != right_.size()) {
@@ -30,7 +16,7 @@ void SparseSystem::reset(Index n) {
   }
   next_ = 0;
   factorised_ = false;
-  right_.setZero(n);
+  right_.set_zero(n);
 }
 
 void SparseSystem::add(Index row, Index column, double value) {
@@ -47,35 +33,32 @@ void SparseSystem::add(Index row, Index column, double value) {
 /// The matrix of all places, and the order of its elimination.
 void SparseSystem::analyse() {
   places_.resize(next_);
-  std::vector<Eigen::Triplet<double>> triplets;
-  for (const auto& [row, column] : places_) {
-    triplets.emplace_back(static_cast<int>(row), static_cast<int>(column), 0.0);
-  }
-  matrix_.resize(right_.size(), right_.size());
-  matrix_.setFromTriplets(triplets.begin(), triplets.end());
+  std::vector<linalg::Triplet> triplets;
+  for (const auto& [row, column] : places_) triplets.push_back({row, column, 0.0});
+  matrix_ = linalg::SparseColumns(right_.size(), right_.size(), triplets);
   slot_.clear();
   for (const auto& [row, column] : places_) {
-    const int* const rows = matrix_.innerIndexPtr();
-    const int* const first = rows + matrix_.outerIndexPtr()[column];
-    const int* const last = rows + matrix_.outerIndexPtr()[column + 1];
-    slot_.push_back(std::lower_bound(first, last, static_cast<int>(row)) - rows);
+    const auto rows = matrix_.inner().begin();
+    const auto first = rows + matrix_.start()[at(column)], last = rows + matrix_.start()[at(column) + 1];
+    slot_.push_back(at(std::lower_bound(first, last, static_cast<int>(row)) - rows));
   }
-  is_diagonal_ = matrix_.nonZeros() == matrix_.cols() &&
+  is_diagonal_ = matrix_.entries() == matrix_.cols() &&
                  std::all_of(places_.begin(), places_.end(), [](const auto& at) { return at.first == at.second; });
-  if (!is_diagonal_) factors_.analyzePattern(matrix_);
+  if (!is_diagonal_) factors_.analyse(matrix_);
   analysed_ = true;
 }
 
 /// False if something is not finite.
 bool SparseSystem::take_entries() {
-  std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
-  for (std::size_t k = 0; k < next_; ++k) matrix_.valuePtr()[slot_[k]] += given_[k];
-  column_sizes_.setZero(right_.size());
-  bool finite = right_.allFinite();
+  const auto values = matrix_.values();
+  std::ranges::fill(values, 0.0);
+  for (std::size_t k = 0; k < next_; ++k) values[slot_[k]] += given_[k];
+  column_sizes_.set_zero(right_.size());
+  bool finite = right_.all_finite();
   for (Index column = 0; column < matrix_.cols(); ++column) {
-    for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix_, column); entry; ++entry) {
-      finite = finite && std::isfinite(entry.value());
-      column_sizes_(column) = std::max(column_sizes_(column), std::abs(entry.value()));
+    for (const auto entry : matrix_.along(column)) {
+      finite = finite && std::isfinite(entry.value);
+      column_sizes_(column) = std::max(column_sizes_(column), std::abs(entry.value));
     }
   }
   return finite;
@@ -83,9 +66,10 @@ bool SparseSystem::take_entries() {
 
 /// False where the matrix is singular.
 bool SparseSystem::factorise() {
-  if (is_diagonal_) return column_sizes_.minCoeff() > 0.0;
-  factors_.factorize(matrix_);
-  return factors_.info() == Eigen::Success && !factors_.is_singular(column_sizes_);
+  if (is_diagonal_) return column_sizes_.min() > 0.0;
+  constexpr double singular = 1e-13;  // the rounding level of a column, as in DenseSystem
+  return factors_.factorise(matrix_) &&
+         !factors_.has_small_pivot({column_sizes_.begin(), column_sizes_.end()}, singular);
 }
 
 bool SparseSystem::solve(double negligible, DenseSystem::Unit unit) {
@@ -99,7 +83,10 @@ bool SparseSystem::solve(double negligible, DenseSystem::Unit unit) {
 bool SparseSystem::solve_dense(double negligible, DenseSystem::Unit unit) {
   dense_.reserve(right_.size());
   dense_.reset(right_.size());
-  dense_.matrix() = matrix_;
+  auto matrix = dense_.matrix();
+  for (Index column = 0; column < matrix_.cols(); ++column) {
+    for (const auto [row, value] : matrix_.along(column)) matrix(row, column) = value;
+  }
   dense_.right() = right_;
   const bool solved = dense_.solve(negligible, unit);
   right_ = dense_.right();
@@ -109,11 +96,14 @@ bool SparseSystem::solve_dense(double negligible, DenseSystem::Unit unit) {
 bool SparseSystem::solve_again() {
   if (factorised_) {
     if (is_diagonal_) {
-      right_.array() /= Eigen::Map<const Eigen::ArrayXd>(matrix_.valuePtr(), matrix_.cols());
+      const auto diagonal = matrix_.values();
+      for (Index i = 0; i < right_.size(); ++i) right_[i] /= diagonal[at(i)];
     } else {
-      right_ = factors_.solve(right_).eval();
+      solution_.resize(right_.size());
+      factors_.SparseLuOf::solve({right_.begin(), right_.end()}, {solution_.begin(), solution_.end()});
+      right_ = solution_;
     }
-    return right_.allFinite();
+    return right_.all_finite();
   }
   dense_.right() = right_;
   const bool solved = dense_.solve_again();
@@ -121,8 +111,8 @@ bool SparseSystem::solve_again() {
   return solved;
 }
 
-Eigen::MatrixXd SparseSystem::null_space() const {
-  return factorised_ || right_.size() == 0 ? Eigen::MatrixXd(right_.size(), 0) : dense_.null_space();
+linalg::Matrix SparseSystem::null_space() const {
+  return factorised_ || right_.size() == 0 ? linalg::Matrix(right_.size(), 0) : dense_.null_space();
 }
 
 }  // namespace saltus::fesd_integrator

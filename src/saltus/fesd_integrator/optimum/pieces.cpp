@@ -24,21 +24,21 @@ constexpr double zero_sum = 1e-8;
 /// rates of surfaces a little less.
 constexpr double most_outside = 1e-6;
 
-std::vector<double> flattened(const Eigen::MatrixXd& matrix) { return {matrix.data(), matrix.data() + matrix.size()}; }
+std::vector<double> flattened(const linalg::Matrix& matrix) { return {matrix.data(), matrix.data() + matrix.size()}; }
 
 /// The modes of an element from the sums of its pairs, of which one is zero (Lemmas 9 and 10 of [nurkanovic2024]).
 class ModesOfElement {
  public:
   /// @param before  modes of the element before it; empty for the first one
   ModesOfElement(const SolvedElement& element, const std::vector<int>& before)
-      : selected_(element.selections.rowwise().sum()),
-        lambda_(element.lambda.rowwise().sum()),
+      : selected_(element.selections.row_sums()),
+        lambda_(element.lambda.row_sums()),
         stages_(static_cast<double>(element.selections.cols())),
         before_(before),
         modes_(at(selected_.size()), 0) {}
 
   [[nodiscard]] std::vector<int> read(const std::vector<Part>& parts) {
-    Eigen::Index pair = 0;
+    linalg::Index pair = 0;
     for (const Part& part : parts) {
       for (int j = part.first; j < part.first + part.count; ++j) {
         look(j, -1, selected_[j], lambda_[pair++]);
@@ -64,12 +64,10 @@ class ModesOfElement {
   void keep_one(const Part& part) {
     const auto first = modes_.begin() + part.first;
     if (std::find(first, first + part.count, 0) != first + part.count) return;
-    Eigen::Index largest = 0;
-    selected_.segment(part.first, part.count).maxCoeff(&largest);
-    *(first + largest) = 0;
+    *(first + selected_.segment(part.first, part.count).index_of_max()) = 0;
   }
 
-  Eigen::VectorXd selected_, lambda_;
+  linalg::Vector selected_, lambda_;
   double stages_;
   const std::vector<int>& before_;
   std::vector<int> modes_;
@@ -102,7 +100,7 @@ class PieceMaker {
     element.stage_states = flattened(solved.states);
     for (const double value : element.stage_states) element.size = std::max(element.size, std::abs(value));
     const auto stages = solved.selections.cols();
-    for (Eigen::Index m = 0; m < stages; ++m) {
+    for (linalg::Index m = 0; m < stages; ++m) {
       const auto selections = on_sides(solved, m, made.set);
       element.stage_selections.insert(element.stage_selections.end(), selections.begin(), selections.end());
     }
@@ -114,7 +112,7 @@ class PieceMaker {
 
  private:
   /// The selections of a stage, those that are fixed without the error of the solution.
-  [[nodiscard]] static std::vector<double> on_sides(const SolvedElement& solved, Eigen::Index stage,
+  [[nodiscard]] static std::vector<double> on_sides(const SolvedElement& solved, linalg::Index stage,
                                                     const ActiveSet& set) {
     std::vector<double> all = flattened(solved.selections.col(stage));
     std::vector<double> unknown(set.sliding().size());

@@ -14,19 +14,19 @@ bool ElementInterior::changes_inside() const {
 /// methods) they are those of the next one.
 void ElementInterior::follow_stages(const Element& element, double theta) {
   const auto& c = context_.solver.tableau().c;
-  Eigen::Index next = 0;
+  linalg::Index next = 0;
   while (next + 1 < c.size() && c(next) < theta) ++next;
   set_ = &stage_sets_[at(next)];
   const std::size_t n = element.stage_selections.size() / at(c.size());
-  const auto weight = [&](Eigen::Index stage) {
+  const auto weight = [&](linalg::Index stage) {
     double product = 1.0;
-    for (Eigen::Index l = 0; l < c.size(); ++l) product *= l == stage ? 1.0 : (theta - c(l)) / (c(stage) - c(l));
+    for (linalg::Index l = 0; l < c.size(); ++l) product *= l == stage ? 1.0 : (theta - c(l)) / (c(stage) - c(l));
     return product;
   };
   bool distinct = true;
-  for (Eigen::Index m = 1; m < c.size(); ++m) distinct = distinct && c(m) != c(m - 1);
+  for (linalg::Index m = 1; m < c.size(); ++m) distinct = distinct && c(m) != c(m - 1);
   selections_.assign(n, 0.0);
-  for (Eigen::Index m = 0; m < c.size(); ++m) {
+  for (linalg::Index m = 0; m < c.size(); ++m) {
     const double part = distinct ? weight(m) : m == next ? 1.0 : 0.0;
     for (std::size_t j = 0; j < n; ++j) selections_[j] += part * element.stage_selections[at(m) * n + j];
   }

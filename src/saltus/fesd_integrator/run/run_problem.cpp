@@ -49,7 +49,7 @@ bool Run::solve_guessed(const std::vector<ElementGuess>& guesses, Guessed& guess
 /// The selections just behind a change of the active set.
 void Run::selections_behind(const ElementGuess& guess, const ActiveSet& set, Point& left) {
   for (std::size_t j = 0; j < left.selections.size(); ++j) {
-    left.selections[j] = guess.selections(static_cast<Eigen::Index>(j), 0);
+    left.selections[j] = guess.selections(static_cast<linalg::Index>(j), 0);
   }
   if (set.sliding().empty()) return;
   auto held_on = left.selections;

@@ -1,23 +1,22 @@
 #include <algorithm>
 #include <utility>
 
-#include <Eigen/QR>
-
 #include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/tangent/element_tangent_internal.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::RowVectorXd;
-using ConstMatrix = Eigen::Map<const Eigen::MatrixXd>;
-using ConstVector = Eigen::Map<const Eigen::VectorXd>;
+using linalg::Index;
+using linalg::Matrix;
+using linalg::Vector;
+using ConstMatrix = linalg::ConstView;
+using ConstVector = linalg::ConstView;
 
 /// Rows of the surfaces that slide, from rows of all indicators.
-MatrixXd surfaces_of(const ActiveSet& set, const MatrixXd& indicators) {
-  MatrixXd rows(static_cast<Index>(set.sliding().size()), indicators.cols());
+Matrix surfaces_of(const ActiveSet& set, const Matrix& indicators) {
+  Matrix rows(static_cast<Index>(set.sliding().size()), indicators.cols());
   for (Index k = 0; k < rows.rows(); ++k) {
     for (Index c = 0; c < rows.cols(); ++c) {
       rows(k, c) = set.surface(static_cast<std::size_t>(k), indicators.col(c).data());
@@ -27,9 +26,7 @@ MatrixXd surfaces_of(const ActiveSet& set, const MatrixXd& indicators) {
 }
 
 /// Of least norm where selections are not unique.
-MatrixXd solve(const MatrixXd& matrix, const MatrixXd& right) {
-  return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(matrix).solve(right);
-}
+Matrix solve(ConstMatrix matrix, ConstMatrix right) { return linalg::least_squares(matrix, right); }
 
 }  // namespace
 
@@ -37,9 +34,9 @@ MatrixXd solve(const MatrixXd& matrix, const MatrixXd& right) {
 struct ElementTangent::System {
   std::vector<Index> place;  ///< of the stages
   Index end = 0;
-  std::vector<MatrixXd> basis;  ///< of the stages: changes of all selections from those of the unknown ones
-  MatrixXd matrix, right;
-  MatrixXd first_selections;  ///< of a known first stage, else zero
+  std::vector<Matrix> basis;  ///< of the stages: changes of all selections from those of the unknown ones
+  Matrix matrix, right;
+  Matrix first_selections;  ///< of a known first stage, else zero
 };
 
 ElementTangent::ElementTangent(const discretization::TangentKernel& kernel, discretization::ButcherTableau tableau)
@@ -69,9 +66,9 @@ void ElementTangent::evaluate(double t, const double* x, const double* selection
   kernel_.evaluate(t, x, inside_.data(), held, at);
 }
 
-MatrixXd ElementTangent::basis(const ActiveSet& set) const {
+Matrix ElementTangent::basis(const ActiveSet& set) const {
   const auto& sliding = set.sliding();
-  MatrixXd basis = MatrixXd::Zero(n_, static_cast<Index>(sliding.size()));
+  Matrix basis = Matrix::zero(n_, static_cast<Index>(sliding.size()));
   for (std::size_t k = 0; k < sliding.size(); ++k) {
     basis(sliding[k].selection, static_cast<Index>(k)) = 1.0;
     if (sliding[k].reference >= 0) basis(sliding[k].reference, static_cast<Index>(k)) -= 1.0;
@@ -79,23 +76,22 @@ MatrixXd ElementTangent::basis(const ActiveSet& set) const {
   return basis;
 }
 
-MatrixXd ElementTangent::field(const discretization::TangentValues& at, const RowVectorXd& t, const MatrixXd& p) const {
-  return ConstVector(at.f_t.data(), n_x_) * t + ConstMatrix(at.f_p.data(), n_x_, n_p_) * p;
+Matrix ElementTangent::field(const discretization::TangentValues& at, const Vector& t, const Matrix& p) const {
+  return ConstVector(at.f_t) * t.transpose() + ConstMatrix(at.f_p.data(), n_x_, n_p_) * p;
 }
 
-MatrixXd ElementTangent::indicator(const discretization::TangentValues& at, const RowVectorXd& t,
-                                   const MatrixXd& p) const {
-  return ConstVector(at.indicator_t.data(), n_) * t + ConstMatrix(at.indicator_p.data(), n_, n_p_) * p;
+Matrix ElementTangent::indicator(const discretization::TangentValues& at, const Vector& t, const Matrix& p) const {
+  return ConstVector(at.indicator_t) * t.transpose() + ConstMatrix(at.indicator_p.data(), n_, n_p_) * p;
 }
 
 /// From the rate of the surfaces = 0, at a point where `at` was evaluated.
-MatrixXd ElementTangent::projected_selections(const ActiveSet& set, const discretization::TangentValues& at,
-                                              const Directions& go) const {
-  const MatrixXd changes = basis(set);
-  if (changes.cols() == 0) return MatrixXd::Zero(n_, go.x.cols());
-  const MatrixXd rate = ConstMatrix(at.rate_x.data(), n_, n_x_) * go.x + ConstVector(at.rate_t.data(), n_) * go.t +
-                        ConstMatrix(at.rate_p.data(), n_, n_p_) * go.p;
-  const MatrixXd matrix = ConstMatrix(at.rate_selection.data(), n_, n_) * changes;
+Matrix ElementTangent::projected_selections(const ActiveSet& set, const discretization::TangentValues& at,
+                                            const Directions& go) const {
+  const Matrix changes = basis(set);
+  if (changes.cols() == 0) return Matrix::zero(n_, go.x.cols());
+  const Matrix rate = ConstMatrix(at.rate_x.data(), n_, n_x_) * go.x + ConstVector(at.rate_t) * go.t.transpose() +
+                      ConstMatrix(at.rate_p.data(), n_, n_p_) * go.p;
+  const Matrix matrix = ConstMatrix(at.rate_selection.data(), n_, n_) * changes;
   return -changes * solve(surfaces_of(set, matrix), surfaces_of(set, rate));
 }
 
@@ -106,22 +102,22 @@ MatrixXd ElementTangent::projected_selections(const ActiveSet& set, const discre
 void ElementTangent::add_projection(System& system, const Element& element, const ActiveSet& set, const double* held,
                                     const Directions& go) {
   const Index lengths = system.end + n_x_, count = system.matrix.rows() - lengths;
-  Eigen::VectorXd before = ConstVector(element.x.data(), n_x_);
-  before += element.h * ConstMatrix(element.stage_slopes.data(), n_x_, n_s_) * tableau_.b;
+  Vector before = ConstVector(element.x);
+  before += element.h * (ConstMatrix(element.stage_slopes.data(), n_x_, n_s_) * tableau_.b);
   const double* selections = element.stage_selections.data() + (n_s_ - 1) * n_;
-  const MatrixXd& changes = system.basis.back();
+  const Matrix& changes = system.basis.back();
   const double t = element.t + element.h;
   evaluate(t, before.data(), selections, set, held, left_);
-  const MatrixXd along = ConstMatrix(left_.f_selection.data(), n_x_, n_) * changes;
-  const Eigen::VectorXd moved = ConstVector(element.end.data(), n_x_) - before;
-  const Eigen::VectorXd mu = changes * solve(along, moved);
+  const Matrix along = ConstMatrix(left_.f_selection.data(), n_x_, n_) * changes;
+  const Vector moved = ConstVector(element.end) - before;
+  const Vector mu = changes * solve(along, moved);
   kernel_.direction(t, before.data(), inside_.data(), held, mu.data(), direction_);
-  const MatrixXd turned = MatrixXd::Identity(n_x_, n_x_) + ConstMatrix(direction_.by_x.data(), n_x_, n_x_);
+  const Matrix turned = Matrix::identity(n_x_, n_x_) + ConstMatrix(direction_.by_x.data(), n_x_, n_x_);
   auto stages = system.matrix.block(system.end, 0, n_x_, system.end);
-  stages = (turned * stages).eval();
-  auto right = system.right.middleRows(system.end, n_x_);
-  right = (turned * right).eval();
-  right += ConstVector(direction_.by_t.data(), n_x_) * (go.t + go.h);
+  stages = turned * stages;
+  auto right = system.right.middle_rows(system.end, n_x_);
+  right = turned * right;
+  right += ConstVector(direction_.by_t) * (go.t + go.h).transpose();
   right += ConstMatrix(direction_.by_p.data(), n_x_, n_p_) * go.p;
   system.matrix.block(system.end, system.place.back() + n_x_, n_x_, changes.cols()) -=
       ConstMatrix(direction_.by_selection.data(), n_x_, n_) * changes;
@@ -134,24 +130,23 @@ ElementTangent::System ElementTangent::begin_system(const Element& element, cons
   Index size = 0;
   for (Index m = 0; m < n_s_; ++m) {
     system.place.push_back(size);
-    system.basis.push_back(is_known(m) ? MatrixXd(n_, 0) : basis(sets(m)));
+    system.basis.push_back(is_known(m) ? Matrix(n_, 0) : basis(sets(m)));
     size += n_x_ + system.basis.back().cols();
     evaluate(element.t + element.h * tableau_.c(m), element.stage_states.data() + m * n_x_,
              element.stage_selections.data() + m * n_, sets(m), held, values_[at(m)]);
   }
   system.end = size;
   size += n_x_ + (projected ? system.basis.back().cols() : 0);
-  system.matrix = MatrixXd::Zero(size, size);
-  system.right = MatrixXd::Zero(size, go.x.cols());
-  system.first_selections = MatrixXd::Zero(n_, go.x.cols());
+  system.matrix = Matrix::zero(size, size);
+  system.right = Matrix::zero(size, go.x.cols());
+  system.first_selections = Matrix::zero(n_, go.x.cols());
   return system;
 }
 
 /// Row block `row`: unknown - x_0 - h sum_l weight_l f_l = 0.
-void ElementTangent::add_quadrature(System& system, Index row, const Eigen::VectorXd& weight, double h,
-                                    const Directions& go) {
-  system.matrix.block(row, row, n_x_, n_x_).setIdentity();
-  auto right = system.right.middleRows(row, n_x_);
+void ElementTangent::add_quadrature(System& system, Index row, const Vector& weight, double h, const Directions& go) {
+  system.matrix.block(row, row, n_x_, n_x_).set_identity();
+  auto right = system.right.middle_rows(row, n_x_);
   right = go.x;
   for (Index l = 0; l < n_s_; ++l) {
     const double factor = h * weight(l);
@@ -159,11 +154,11 @@ void ElementTangent::add_quadrature(System& system, Index row, const Eigen::Vect
     const auto& stage = values_[at(l)];
     const ConstMatrix by_selection(stage.f_selection.data(), n_x_, n_);
     const Index column = system.place[at(l)];
-    const MatrixXd& changes = system.basis[at(l)];
+    const Matrix& changes = system.basis[at(l)];
     system.matrix.block(row, column, n_x_, n_x_) -= factor * ConstMatrix(stage.f_x.data(), n_x_, n_x_);
     system.matrix.block(row, column + n_x_, n_x_, changes.cols()) -= factor * by_selection * changes;
     right += factor * field(stage, go.t + tableau_.c(l) * go.h, go.p);
-    right += weight(l) * ConstVector(stage.f.data(), n_x_) * go.h;
+    right += weight(l) * ConstVector(stage.f) * go.h.transpose();
     if (is_known(l)) right += factor * by_selection * system.first_selections;
   }
 }
@@ -173,15 +168,15 @@ void ElementTangent::add_surfaces(System& system, Index row, Index column, const
                                   const discretization::TangentValues& at, double node, const Directions& go) const {
   const auto count = static_cast<Index>(active.sliding().size());
   system.matrix.block(row, column, count, n_x_) = surfaces_of(active, ConstMatrix(at.indicator_x.data(), n_, n_x_));
-  system.right.middleRows(row, count) = -surfaces_of(active, indicator(at, go.t + node * go.h, go.p));
+  system.right.middle_rows(row, count) = -surfaces_of(active, indicator(at, go.t + node * go.h, go.p));
 }
 
 bool ElementTangent::is_known(Index stage) const {
   return tableau_.family == discretization::TableauFamily::lobatto_iiia && stage == 0;
 }
 
-MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> sets, const std::vector<double>& left,
-                             const double* held, const Directions& go) {
+Matrix ElementTangent::end(const Element& element, std::span<const ActiveSet> sets, const std::vector<double>& left,
+                           const double* held, const Directions& go) {
   const bool one_set = sets.size() == 1;
   const bool is_explicit = tableau_.family == discretization::TableauFamily::explicit_rk;
   const bool projected = one_set && !sets[0].sliding().empty() && !is_explicit && !tableau_.ends_at_last_stage();
@@ -197,7 +192,7 @@ MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> 
   }
   for (Index m = 0; m < n_s_; ++m) {
     const Index row = system.place[at(m)];
-    add_quadrature(system, row, tableau_.A.row(m).transpose(), element.h, go);
+    add_quadrature(system, row, tableau_.A.row(m), element.h, go);
     if (system.basis[at(m)].cols() == 0) continue;
     // Half-explicit methods: one stage later, behind the last one at the end.
     const Index point = is_explicit && one_set ? m + 1 : m;
@@ -213,18 +208,18 @@ MatrixXd ElementTangent::end(const Element& element, std::span<const ActiveSet> 
     add_projection(system, element, sets[0], held, go);
     add_surfaces(system, system.end + n_x_, system.end, sets[0], right_, 1.0, go);
   }
-  return solve(system.matrix, system.right).middleRows(system.end, n_x_);
+  return solve(system.matrix, system.right).middle_rows(system.end, n_x_);
 }
 
-RowVectorXd ElementTangent::condition(const Condition& condition, const Element& element, const ActiveSet& set,
-                                      const std::vector<double>& right, const double* held, const Directions& go) {
+Vector ElementTangent::condition(const Condition& condition, const Element& element, const ActiveSet& set,
+                                 const std::vector<double>& right, const double* held, const Directions& go) {
   evaluate(element.t + element.h, element.end.data(), right.data(), set, held, right_);
   const bool side = condition.kind == Condition::Kind::side;
   if (!side && !set.is_determined(condition.selection)) return margin(condition, set, right, go);
-  const MatrixXd change =
-      side ? MatrixXd(ConstMatrix(right_.indicator_x.data(), n_, n_x_) * go.x + indicator(right_, go.t, go.p))
+  const Matrix change =
+      side ? Matrix(ConstMatrix(right_.indicator_x.data(), n_, n_x_) * go.x + indicator(right_, go.t, go.p))
            : projected_selections(set, right_, go);
-  RowVectorXd sigma(go.x.cols());
+  Vector sigma(go.x.cols());
   for (Index c = 0; c < sigma.size(); ++c) {
     sigma(c) = side ? set.side(condition.selection, change.col(c).data()) : change(condition.selection, c);
   }
@@ -233,15 +228,15 @@ RowVectorXd ElementTangent::condition(const Condition& condition, const Element&
 
 /// 0 is on a facet of the velocities of a balance. With selections that hold the surfaces, what moves the facet's
 /// normal takes no part. It goes as the rates of the surfaces do along it.
-RowVectorXd ElementTangent::margin(const Condition& condition, const ActiveSet& set, const std::vector<double>& right,
-                                   const Directions& go) {
+Vector ElementTangent::margin(const Condition& condition, const ActiveSet& set, const std::vector<double>& right,
+                              const Directions& go) {
   std::vector<double> selections = right;
   margins_.evaluate(set, field_view(right_), selections.data());
   const std::vector<double> normal = margins_.normal(set, condition);
-  const MatrixXd rate = ConstMatrix(right_.rate_x.data(), n_, n_x_) * go.x +
-                        ConstVector(right_.rate_t.data(), n_) * go.t +
-                        ConstMatrix(right_.rate_p.data(), n_, n_p_) * go.p;
-  return ConstVector(normal.data(), static_cast<Index>(normal.size())).transpose() * surfaces_of(set, rate);
+  const Matrix rate = ConstMatrix(right_.rate_x.data(), n_, n_x_) * go.x +
+                      ConstVector(right_.rate_t) * go.t.transpose() +
+                      ConstMatrix(right_.rate_p.data(), n_, n_p_) * go.p;
+  return ConstVector(normal).transpose() * surfaces_of(set, rate);
 }
 
 }  // namespace saltus::fesd_integrator

@@ -5,22 +5,21 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/tangent_kernel.hpp"
 #include "saltus/fesd_integrator/element/active_set.hpp"
 #include "saltus/fesd_integrator/element/element.hpp"
 #include "saltus/fesd_integrator/element/selection_margins.hpp"
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::fesd_integrator {
 
 /// Holds directions as columns: of the left end, its time, the length, the parameters.
 struct Directions {
-  Eigen::MatrixXd x;  ///< n_x rows
-  Eigen::RowVectorXd t;
-  Eigen::RowVectorXd h;
-  Eigen::MatrixXd p;  ///< n_p rows
+  linalg::Matrix x;  ///< n_x rows
+  linalg::Vector t;  ///< of each direction
+  linalg::Vector h;
+  linalg::Matrix p;  ///< n_p rows
 };
 
 class ElementTangent {
@@ -30,28 +29,28 @@ class ElementTangent {
 
   /// Returns d(end) along directions at the left end. `sets`: one, or one per stage. `left`: selections of the
   /// projected field at the left end.
-  [[nodiscard]] Eigen::MatrixXd end(const Element& element, std::span<const ActiveSet> sets,
-                                    const std::vector<double>& left, const double* held, const Directions& go);
+  [[nodiscard]] linalg::Matrix end(const Element& element, std::span<const ActiveSet> sets,
+                                   const std::vector<double>& left, const double* held, const Directions& go);
   /// Returns d(value of a condition) at the right end, up to its sign, along directions of that end. `right`: the
   /// selections of the projected field there.
-  [[nodiscard]] Eigen::RowVectorXd condition(const Condition& condition, const Element& element, const ActiveSet& set,
-                                             const std::vector<double>& right, const double* held,
-                                             const Directions& go);
+  [[nodiscard]] linalg::Vector condition(const Condition& condition, const Element& element, const ActiveSet& set,
+                                         const std::vector<double>& right, const double* held, const Directions& go);
 
  private:
-  [[nodiscard]] Eigen::RowVectorXd margin(const Condition& condition, const ActiveSet& set,
-                                          const std::vector<double>& right, const Directions& go);
-  using Index = Eigen::Index;
-  using Matrix = Eigen::MatrixXd;
+  [[nodiscard]] linalg::Vector margin(const Condition& condition, const ActiveSet& set,
+                                      const std::vector<double>& right, const Directions& go);
+  using Index = linalg::Index;
+  using Matrix = linalg::Matrix;
+  using Vector = linalg::Vector;
 
   struct System;
-  using Sets = std::function<const ActiveSet&(Eigen::Index)>;  ///< of the stages
+  using Sets = std::function<const ActiveSet&(Index)>;  ///< of the stages
   System begin_system(const Element& element, const Sets& sets, const double* held, bool projected,
                       const Directions& go);
-  void add_quadrature(System& system, Eigen::Index row, const Eigen::VectorXd& weight, double h, const Directions& go);
-  void add_surfaces(System& system, Eigen::Index row, Eigen::Index column, const ActiveSet& active,
+  void add_quadrature(System& system, Index row, const Vector& weight, double h, const Directions& go);
+  void add_surfaces(System& system, Index row, Index column, const ActiveSet& active,
                     const discretization::TangentValues& at, double node, const Directions& go) const;
-  [[nodiscard]] bool is_known(Eigen::Index stage) const;
+  [[nodiscard]] bool is_known(Index stage) const;
   void add_projection(System& system, const Element& element, const ActiveSet& set, const double* held,
                       const Directions& go);
   void evaluate(double t, const double* x, const double* selections, const ActiveSet& set, const double* held,
@@ -60,10 +59,8 @@ class ElementTangent {
   [[nodiscard]] Matrix projected_selections(const ActiveSet& set, const discretization::TangentValues& at,
                                             const Directions& go) const;
   /// d f, d indicator, d rate at fixed selections; x only where go.x is that of the point.
-  [[nodiscard]] Matrix field(const discretization::TangentValues& at, const Eigen::RowVectorXd& t,
-                             const Matrix& p) const;
-  [[nodiscard]] Matrix indicator(const discretization::TangentValues& at, const Eigen::RowVectorXd& t,
-                                 const Matrix& p) const;
+  [[nodiscard]] Matrix field(const discretization::TangentValues& at, const Vector& t, const Matrix& p) const;
+  [[nodiscard]] Matrix indicator(const discretization::TangentValues& at, const Vector& t, const Matrix& p) const;
 
   const discretization::TangentKernel& kernel_;
   discretization::ButcherTableau tableau_;

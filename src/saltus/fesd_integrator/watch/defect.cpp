@@ -6,7 +6,7 @@
 namespace saltus::fesd_integrator {
 
 using discretization::TableauFamily;
-using Eigen::Index;
+using linalg::Index;
 
 Defect::Defect(const ElementSolver& solver) : solver_(solver) {
   const auto& tableau = solver.tableau();

@@ -275,22 +275,22 @@ class OcpBuild {
       term.at = plan.stated->at;
       for (const int quantity : plan.of) term.of.push_back(quantities_.output(quantity));
       for (const int quantity : plan.reference) term.reference.push_back(quantities_.output(quantity));
-      const auto n = static_cast<Eigen::Index>(term.of.size());
+      const auto n = static_cast<linalg::Index>(term.of.size());
       const auto& samples = plan.stated->samples;
-      term.samples.resize(static_cast<Eigen::Index>(samples.size()), samples.empty() ? 0 : n);
+      term.samples.resize(static_cast<linalg::Index>(samples.size()), samples.empty() ? 0 : n);
       for (std::size_t row = 0; row < samples.size(); ++row) {
-        if (static_cast<Eigen::Index>(samples[row].size()) != n) return wrong_sample_width(*plan.stated, row);
-        for (Eigen::Index i = 0; i < n; ++i)
-          term.samples(static_cast<Eigen::Index>(row), i) = samples[row][static_cast<std::size_t>(i)];
+        if (static_cast<linalg::Index>(samples[row].size()) != n) return wrong_sample_width(*plan.stated, row);
+        for (linalg::Index i = 0; i < n; ++i)
+          term.samples(static_cast<linalg::Index>(row), i) = samples[row][static_cast<std::size_t>(i)];
       }
-      term.weight = Eigen::MatrixXd::Identity(n, n);
+      term.weight = linalg::Matrix::identity(n, n);
       const bool diagonal = plan.weight.size() == 1 && n != 1;
       for (std::size_t row = 0; row < plan.weight.size(); ++row) {
         for (std::size_t i = 0; i < plan.weight[row].size(); ++i) {
           const auto value = quantities_.value(plan.weight[row][i]);
           if (!value) return value.error();
-          const auto column = static_cast<Eigen::Index>(i);
-          const Eigen::Index place = diagonal ? column : static_cast<Eigen::Index>(row);
+          const auto column = static_cast<linalg::Index>(i);
+          const linalg::Index place = diagonal ? column : static_cast<linalg::Index>(row);
           if (place < n && column < n) term.weight(place, column) = *value;
         }
       }

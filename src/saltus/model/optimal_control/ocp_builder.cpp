@@ -181,13 +181,13 @@ void OcpBuilder::running_cost(const SX& cost) { parts_->ocp.running_cost = parts
 void OcpBuilder::terminal_cost(const SX& cost) { parts_->ocp.terminal_cost = parts_->add(cost); }
 
 void OcpBuilder::least_squares(const std::vector<SX>& of, const std::vector<SX>& reference,
-                               const Eigen::MatrixXd& weight, CostPoints at) {
-  const auto n = static_cast<Eigen::Index>(of.size());
+                               const linalg::Matrix& weight, CostPoints at) {
+  const auto n = static_cast<linalg::Index>(of.size());
   OcpLeastSquares term;
   term.at = at;
   for (const auto& e : of) term.of.push_back(parts_->add(e));
   for (const auto& e : reference) term.reference.push_back(parts_->add(e));
-  term.weight = weight.size() == 0 ? Eigen::MatrixXd::Identity(n, n) : weight;
+  term.weight = weight.size() == 0 ? linalg::Matrix::identity(n, n) : weight;
   if (term.weight.rows() != n || term.weight.cols() != n) {
     Error mistake;
     mistake.code = ErrorCode::invalid_model;

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/builder.hpp"
 #include "saltus/model/ocp.hpp"
 
@@ -53,7 +52,7 @@ class OcpBuilder {
   /// @param reference  expressions of time and parameters, one each; empty: 0
   /// @param weight  symmetric, n x n; 0 x 0 for the identity
   void least_squares(const std::vector<casadi::SX>& of, const std::vector<casadi::SX>& reference = {},
-                     const Eigen::MatrixXd& weight = {}, CostPoints at = CostPoints::intervals);
+                     const linalg::Matrix& weight = {}, CostPoints at = CostPoints::intervals);
   /// Adds lower <= e <= upper; one of them may be infinite.
   void path_constraint(const std::string& name, double lower, const casadi::SX& e, double upper,
                        const Softness& soft = {});

@@ -107,7 +107,8 @@ std::optional<Error> check_least_squares(const OcpLeastSquares& term, const Leas
     return mistake(fmt::format("the weight of least_squares does not fit {} expressions", n),
                    "give one number per expression, or a square matrix", stated.location);
   }
-  if (!term.weight.isApprox(term.weight.transpose(), 1e-14)) {
+  const double asymmetry = (term.weight - term.weight.transpose()).norm();
+  if (!(asymmetry <= 1e-14 * term.weight.norm())) {
     return mistake("the weight of least_squares is not symmetric", "a matrix W and its transpose have to be equal",
                    stated.location);
   }

@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/description.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/model/statement/build_internal.hpp"

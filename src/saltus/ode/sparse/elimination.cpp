@@ -2,21 +2,15 @@
 
 #include <algorithm>
 
-#include <Eigen/OrderingMethods>
-
+#include "saltus/base/at.hpp"
 #include "saltus/base/without_repeats.hpp"
-#include "saltus/ode/sparse/pattern_matrix_internal.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
+#include "saltus/ode/sparse/pattern_places_internal.hpp"
 
 namespace saltus::ode {
 namespace {
 
 using Neighbours = std::vector<std::vector<std::size_t>>;
-
-std::vector<std::size_t> order_of_least_degree(const JacobianPattern& pattern) {
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(matrix_of<double>(pattern), permutation);
-  return {permutation.indices().begin(), permutation.indices().end()};
-}
 
 RowLists joined(const Neighbours& rows) {
   RowLists lists{{0}, {}};
@@ -50,7 +44,8 @@ RowLists filled(Neighbours later) {
 Elimination elimination_of(const JacobianPattern& pattern) {
   const std::size_t n = pattern.columns();
   Elimination elimination;
-  elimination.order = order_of_least_degree(pattern);
+  const PatternPlaces places(pattern);
+  elimination.order = linalg::order_of_least_degree(index(n), places.start, places.row);
   std::vector<std::size_t> place(n);
   for (std::size_t i = 0; i < n; ++i) place[elimination.order[i]] = i;
   struct Entry {

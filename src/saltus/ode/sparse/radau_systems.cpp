@@ -25,15 +25,16 @@ bool RadauSystems<pairs>::use(const JacobianPattern* pattern) {
 }
 
 template <std::size_t pairs>
-bool RadauSystems<pairs>::set_column(Eigen::Index column, const Vector& difference, double increment) {
+bool RadauSystems<pairs>::set_column(linalg::Index column, const Vector& difference, double increment) {
   if (pattern_ == nullptr) {
-    jacobian_.col(column) = difference / increment;
-    return jacobian_.col(column).allFinite();
+    linalg::View entries = jacobian_.col(column);
+    for (linalg::Index i = 0; i < n_; ++i) entries[i] = difference[i] / increment;
+    return entries.all_finite();
   }
   const auto j = static_cast<std::size_t>(column);
   bool finite = true;
   for (std::size_t k = pattern_->start[j]; k < pattern_->start[j + 1]; ++k) {
-    entries_[k] = difference[static_cast<Eigen::Index>(pattern_->row[k])] / increment;
+    entries_[k] = difference[static_cast<linalg::Index>(pattern_->row[k])] / increment;
     finite = finite && std::isfinite(entries_[k]);
   }
   return finite;
@@ -58,14 +59,11 @@ bool RadauSystems<pairs>::factorize(const Shifts& shifts) {
     return true;
   }
   find_still_rows();
-  real_matrix_ = -jacobian_;
-  real_matrix_.diagonal().array() += shifts.real;
+  real_matrix_ = jacobian_;
+  real_matrix_ *= -1.0;
+  real_matrix_.diagonal().add_to_all(shifts.real);
   real_.compute(real_matrix_);
-  for (std::size_t k = 0; k < pairs; ++k) {
-    complex_matrix_ = -jacobian_.cast<std::complex<double>>();
-    complex_matrix_.diagonal().array() += shifts.complex[k];
-    pairs_[k].dense.compute(complex_matrix_);
-  }
+  for (std::size_t k = 0; k < pairs; ++k) pairs_[k].dense.compute_shifted(jacobian_, shifts.complex[k]);
   return true;
 }
 
@@ -76,19 +74,20 @@ void RadauSystems<pairs>::find_still_rows() {
   for (std::size_t k = 0; pattern_ != nullptr && k < entries_.size(); ++k) {
     if (entries_[k] != 0.0) still_[pattern_->row[k]] = false;
   }
-  for (Eigen::Index i = 0; pattern_ == nullptr && i < n_; ++i)
-    still_[static_cast<std::size_t>(i)] = jacobian_.row(i).isZero(0.0);
+  for (linalg::Index i = 0; pattern_ == nullptr && i < n_; ++i) still_[at(i)] = jacobian_.row(i).is_zero();
 }
 
 template <std::size_t pairs>
-void RadauSystems<pairs>::solve(const Vector& right, Vector& solution) {
+void RadauSystems<pairs>::solve(linalg::ConstView right, linalg::View solution) {
   if (pattern_ == nullptr) {
-    solution = real_.solve(right);
+    solution = right;
+    real_.solve_in_place(solution);
   } else if (along_diagonal_) {
     joint_.solve_real([&](std::size_t i) { return right[index(i)]; },
                       [&](std::size_t i, double value) { solution[index(i)] = value; });
   } else {
-    sparse_real_.solve(right, solution);
+    const std::size_t n = at(n_);
+    sparse_real_.solve({right.data(), n}, {solution.data(), n});
   }
 }
 
@@ -117,25 +116,24 @@ void RadauSystems<pairs>::solve_joint(const Matrix& right, Matrix& solution) {
 template <std::size_t pairs>
 void RadauSystems<pairs>::solve_all(const Matrix& right, Matrix& solution) {
   if (pattern_ != nullptr && along_diagonal_) return solve_joint(right, solution);
-  part_ = right.col(0);
-  part_solution_.resize(n_);
-  solve(part_, part_solution_);
-  solution.col(0) = part_solution_;
-  complex_part_.resize(n_);
-  complex_solution_.resize(n_);
+  solve(right.col(0), solution.col(0));
+  complex_part_.resize(at(n_));
+  complex_solution_.resize(at(n_));
   for (std::size_t k = 0; k < pairs; ++k) {
-    complex_part_.real() = right.col(index(2 * k + 1));
-    complex_part_.imag() = right.col(index(2 * k + 2));
-    if (pattern_ != nullptr) {
-      pairs_[k].sparse.solve(complex_part_, complex_solution_);
-    } else {
-      complex_solution_ = pairs_[k].dense.solve(complex_part_);
+    const linalg::Index real = index(2 * k + 1), imaginary = real + 1;
+    if (pattern_ == nullptr) {
+      pairs_[k].dense.solve(right.col(real), right.col(imaginary), solution.col(real), solution.col(imaginary));
+      continue;
     }
-    solution.col(index(2 * k + 1)) = complex_solution_.real();
-    solution.col(index(2 * k + 2)) = complex_solution_.imag();
+    for (linalg::Index i = 0; i < n_; ++i) complex_part_[at(i)] = {right(i, real), right(i, imaginary)};
+    pairs_[k].sparse.solve(complex_part_, complex_solution_);
+    for (linalg::Index i = 0; i < n_; ++i) {
+      solution(i, real) = complex_solution_[at(i)].real();
+      solution(i, imaginary) = complex_solution_[at(i)].imag();
+    }
   }
-  for (Eigen::Index i = 0; i < n_; ++i) {
-    if (still_[static_cast<std::size_t>(i)] && right.row(i).isZero(0.0)) solution.row(i).setZero();
+  for (linalg::Index i = 0; i < n_; ++i) {
+    if (still_[at(i)] && right.row(i).is_zero()) solution.row(i).set_zero();
   }
 }
 

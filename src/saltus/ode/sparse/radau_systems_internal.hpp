@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Core>
-#include <Eigen/LU>
-
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/ode/sparse/jacobian_pattern.hpp"
 #include "saltus/ode/sparse/shifted_factors_internal.hpp"
 
@@ -19,14 +19,14 @@ namespace saltus::ode {
 template <std::size_t pairs>
 class RadauSystems {
  public:
-  using Vector = Eigen::VectorXd;
-  using Matrix = Eigen::MatrixXd;
+  using Vector = linalg::Vector;
+  using Matrix = linalg::Matrix;
   struct Shifts {
     double real;
     std::array<std::complex<double>, pairs> complex;
   };
 
-  explicit RadauSystems(Eigen::Index n) : n_(n) {}
+  explicit RadauSystems(linalg::Index n) : n_(n) {}
 
   /// Takes the pattern; null: dense. The same address is the same pattern. Returns whether it is another one than
   /// before, whose Jacobian and factors are not known.
@@ -38,28 +38,26 @@ class RadauSystems {
   /// Returns the entries of J, in the order of the pattern or column by column.
   [[nodiscard]] double* entries() { return pattern_ != nullptr ? entries_.data() : jacobian_.data(); }
   /// Sets column j of J from the difference of slopes that its group gives; false where an entry is not finite.
-  [[nodiscard]] bool set_column(Eigen::Index column, const Vector& difference, double increment);
+  [[nodiscard]] bool set_column(linalg::Index column, const Vector& difference, double increment);
   /// Factorizes; returns false where a matrix is singular.
   [[nodiscard]] bool factorize(const Shifts& shifts);
   /// Solves the real one.
-  void solve(const Vector& right, Vector& solution);
+  void solve(linalg::ConstView right, linalg::View solution);
   /// Solves all of them. Columns: the real one, then real and imaginary part of each other one.
   void solve_all(const Matrix& right, Matrix& solution);
 
  private:
   using Joint = JointNumber<pairs>;
-  using ComplexVector = Eigen::VectorXcd;
   void solve_joint(const Matrix& right, Matrix& solution);
   void find_still_rows();
 
-  Eigen::Index n_;
+  linalg::Index n_;
   const JacobianPattern* pattern_ = nullptr;
   bool started_ = false;
   std::vector<std::vector<std::size_t>> groups_;
   // Dense.
   Matrix jacobian_, real_matrix_;
-  Eigen::MatrixXcd complex_matrix_;
-  Eigen::PartialPivLU<Matrix> real_;
+  linalg::Lu real_;
   // Sparse: entries of J in the order of the pattern.
   std::vector<double> entries_;
   Elimination elimination_;
@@ -68,12 +66,11 @@ class RadauSystems {
   std::vector<bool> still_;      ///< by row: it is 0 in J, where pivots are searched for
   ShiftedFactors<double> sparse_real_;
   struct Pair {
-    Eigen::PartialPivLU<Eigen::MatrixXcd> dense;
+    linalg::ComplexLu dense;
     ShiftedFactors<std::complex<double>> sparse;
   };
   std::array<Pair, pairs> pairs_;
-  Vector part_, part_solution_;
-  ComplexVector complex_part_, complex_solution_;
+  std::vector<std::complex<double>> complex_part_, complex_solution_;
 };
 
 }  // namespace saltus::ode

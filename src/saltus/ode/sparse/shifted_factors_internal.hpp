@@ -3,24 +3,20 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
-#include <Eigen/Core>
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
-
+#include "saltus/base/at.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/ode/sparse/diagonal_factors_internal.hpp"
-#include "saltus/ode/sparse/pattern_matrix_internal.hpp"
+#include "saltus/ode/sparse/pattern_places_internal.hpp"
 
 namespace saltus::ode {
 
-/// Factorizes with pivots on the diagonal or, where that does not serve, with pivots that are searched for
-/// (Eigen::SparseLU).
+/// Factorizes with pivots on the diagonal or, where that does not serve, with pivots that are searched for.
 template <class Scalar>
 class ShiftedFactors {
  public:
-  using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
-
   /// Uses both, which stay where they are.
   void use(const JacobianPattern& pattern, const Elimination& elimination) {
     pattern_ = &pattern;
@@ -34,37 +30,33 @@ class ShiftedFactors {
     return along_diagonal_ || search(entries, shift);
   }
 
-  void solve(const Vector& right, Vector& solution) {
-    if (!along_diagonal_) {
-      solution = searched_->factors.solve(right);
-      return;
-    }
-    diagonal_.solve([&](std::size_t i) { return right[static_cast<Eigen::Index>(i)]; },
-                    [&](std::size_t i, const Scalar& value) { solution[static_cast<Eigen::Index>(i)] = value; });
+  /// Both of as many numbers as there are columns.
+  void solve(std::span<const Scalar> right, std::span<Scalar> solution) {
+    if (!along_diagonal_) return searched_->factors.solve(right, solution);
+    diagonal_.solve([&](std::size_t i) { return right[i]; },
+                    [&](std::size_t i, const Scalar& value) { solution[i] = value; });
   }
 
  private:
-  using Matrix = Eigen::SparseMatrix<Scalar>;
   struct Searched {
-    Matrix matrix;
-    Eigen::SparseLU<Matrix> factors;
+    std::vector<Scalar> values;  ///< of shift - J, in the order of the pattern
+    linalg::SparseLuOf<Scalar> factors;
   };
 
   [[nodiscard]] bool search(const std::vector<double>& entries, const Scalar& shift) {
     if (searched_ == nullptr) {
       searched_ = std::make_unique<Searched>();
-      searched_->matrix = matrix_of<Scalar>(*pattern_);
-      searched_->factors.analyzePattern(searched_->matrix);
+      searched_->values.resize(pattern_->row.size());
+      const PatternPlaces places(*pattern_);
+      searched_->factors.analyse(index(pattern_->columns()), places.start, places.row);
     }
-    Scalar* const value = searched_->matrix.valuePtr();
     for (std::size_t column = 0; column < pattern_->columns(); ++column) {
       for (std::size_t k = pattern_->start[column]; k < pattern_->start[column + 1]; ++k) {
         const Scalar own = pattern_->row[k] == column ? shift : Scalar(0.0);
-        value[k] = own - entries[k];
+        searched_->values[k] = own - entries[k];
       }
     }
-    searched_->factors.factorize(searched_->matrix);
-    return searched_->factors.info() == Eigen::Success;
+    return searched_->factors.factorise(searched_->values);
   }
 
   const JacobianPattern* pattern_ = nullptr;

@@ -22,7 +22,7 @@ Expected<std::optional<solver::Start>> start_at(const foreign::Problem& problem,
                                 {},
                                 {}});
   }
-  return solver::Start{problem.complete(Eigen::Map<const Eigen::VectorXd>(x->data(), n)), {}};
+  return solver::Start{problem.complete(linalg::ConstView(x->data(), n)), {}};
 }
 
 result::MpccResult result_of(const foreign::Problem& problem, const solver::Solution& solution) {
@@ -35,8 +35,8 @@ result::MpccResult result_of(const foreign::Problem& problem, const solver::Solu
   result.names = problem.file_names();
   result.certificate = solution.certificate;
   const auto& multipliers = solution.multipliers;
-  const auto of_file = [n](const Eigen::VectorXd& all) {
-    return list_of(all.head(std::min<Eigen::Index>(n, all.size())));
+  const auto of_file = [n](const linalg::Vector& all) {
+    return list_of(all.head(std::min<linalg::Index>(n, all.size())));
   };
   result.multipliers = {list_of(multipliers.rows), of_file(multipliers.lower), of_file(multipliers.upper),
                         list_of(multipliers.G), list_of(multipliers.H)};

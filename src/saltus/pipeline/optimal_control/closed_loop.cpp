@@ -51,10 +51,10 @@ struct Correction {
   double t = 0.0;
   std::size_t interval = 0;
   const std::vector<double>*before = nullptr, *behind = nullptr;  ///< different where the plan jumps
-  const Eigen::MatrixXd* gain = nullptr;
+  const linalg::Matrix* gain = nullptr;
 };
 
-std::vector<Correction> corrections_of(const OptimizedPath& path, const std::vector<Eigen::MatrixXd>& gains) {
+std::vector<Correction> corrections_of(const OptimizedPath& path, const std::vector<linalg::Matrix>& gains) {
   std::vector<Correction> list;
   const double rounding =
       one_time * (path.times.back() - path.times.front()) / static_cast<double>(path.controls.size());
@@ -91,9 +91,9 @@ const std::vector<double>& planned_state(const OptimizedPath& path, const Correc
 std::vector<double> corrected_controls(const model::Ocp& ocp, const OptimizedPath& path, const Correction& one,
                                        const std::vector<double>& x) {
   const auto& planned = planned_state(path, one, x);
-  Eigen::VectorXd off(one.gain->cols());
-  for (Eigen::Index i = 0; i < off.size(); ++i) off[i] = x[at(i)] - planned[at(i)];
-  const Eigen::VectorXd change = *one.gain * off;
+  linalg::Vector off(one.gain->cols());
+  for (linalg::Index i = 0; i < off.size(); ++i) off[i] = x[at(i)] - planned[at(i)];
+  const linalg::Vector change = *one.gain * off;
   std::vector<double> controls = path.controls[one.interval];
   for (std::size_t i = 0; i < controls.size(); ++i) {
     controls[i] = std::clamp(controls[i] + change[index(i)], ocp.system.control_lower[i], ocp.system.control_upper[i]);
@@ -104,7 +104,7 @@ std::vector<double> corrected_controls(const model::Ocp& ocp, const OptimizedPat
 }  // namespace
 
 Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
-                                                     const std::vector<Eigen::MatrixXd>& gains,
+                                                     const std::vector<linalg::Matrix>& gains,
                                                      const std::function<bool()>& is_interrupted) {
   model::System system = with_parameters_as_controls(optimised_plant(ocp, path), path);
   const auto first = index(path.parameters.size());

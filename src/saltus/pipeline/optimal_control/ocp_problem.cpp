@@ -176,7 +176,7 @@ void take_elements(const model::Ocp& ocp, const reformulation::Dcs& dcs,
   const auto& primal = from.optimization->primal;
   const auto stored = stored_problem(ocp, dcs, kernel, *from.optimization);
   if (!stored) return;
-  problem.set_start(*stored, Eigen::Map<const Eigen::VectorXd>(primal.data(), std::ssize(primal)));
+  problem.set_start(*stored, primal);
 }
 
 }  // namespace

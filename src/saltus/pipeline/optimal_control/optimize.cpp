@@ -52,7 +52,7 @@ double solution_depth(const model::Ocp& ocp, const discretization::OcpSolution& 
   double deepest = depth(solution.initial_state);
   for (const auto& interval : solution.elements) {
     for (const auto& element : interval) {
-      for (Eigen::Index m = 0; m < element.states.cols(); ++m) {
+      for (linalg::Index m = 0; m < element.states.cols(); ++m) {
         deepest = std::max(deepest, depth(list_of(element.states.col(m))));
       }
       deepest = std::max(deepest, depth(list_of(element.end)));
@@ -64,7 +64,7 @@ double solution_depth(const model::Ocp& ocp, const discretization::OcpSolution& 
 /// Frozen systems stand for others, which the event engine simulates.
 Expected<result::Verification> judged_by_events(const model::Ocp& ocp, const OptimizedPath& path,
                                                 const result::Result& run, const OptimizeOptions& options,
-                                                std::vector<Eigen::MatrixXd> gains, PhysicalBodies* bodies,
+                                                std::vector<linalg::Matrix> gains, PhysicalBodies* bodies,
                                                 const OptimizeObservers& observers) {
   const VerificationWanted wanted{options.verification_tolerance, std::move(gains)};
   if (bodies == nullptr) return verify(ocp, path, wanted, observers.is_interrupted);
@@ -118,8 +118,8 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   const auto noted = noting(observers, result.status);
   warn_of_impacts_at_nodes(result, noted);
   warn_of_crowded_intervals(problem, solution, options, noted);
-  if (result.status.termination != Termination::stopped_by_user && solution.w.allFinite()) {
-    std::vector<Eigen::MatrixXd> gains;
+  if (result.status.termination != Termination::stopped_by_user && solution.w.all_finite()) {
+    std::vector<linalg::Matrix> gains;
     if (options.closed_loop.value_or(ocp.plant || !result.contacts.empty())) {
       gains = solver::feedback_gains(problem, solution, static_cast<int>(ocp.system.control_names.size()),
                                      static_cast<int>(result.states.size()), tracking_scales(ocp, options, run->path));

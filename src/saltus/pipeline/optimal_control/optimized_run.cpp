@@ -46,7 +46,7 @@ OptimizedPath path_of(const OcpSolution& solution, const std::vector<double>& ti
     double t = times[path.nodes.size() - 1];
     auto left = path.nodes.back();
     for (const auto& element : interval) {
-      for (Eigen::Index m = 0; m < element.states.cols(); ++m) include(element.states.col(m));
+      for (linalg::Index m = 0; m < element.states.cols(); ++m) include(element.states.col(m));
       include(element.end);
       path.elements.push_back({t, path.nodes.size() - 1, std::move(left)});
       left = list_of(element.end);

@@ -3,9 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/optimal_control/advice_internal.hpp"
@@ -51,9 +50,9 @@ result::Optimization solved_point(const SolvedOcp& solved) {
   found.certificate = solution.certificate;
   const auto& multipliers = solution.multipliers;
   if (multipliers.rows.size() == problem.constraints()) {
-    const Eigen::VectorXd bounds = multipliers.upper.size() == problem.variables()
-                                       ? Eigen::VectorXd(multipliers.upper - multipliers.lower)
-                                       : Eigen::VectorXd();
+    const linalg::Vector bounds = multipliers.upper.size() == problem.variables()
+                                       ? linalg::Vector(multipliers.upper - multipliers.lower)
+                                       : linalg::Vector();
     found.multipliers = problem.constraint_multipliers(solution.w, multipliers.rows, bounds);
   }
   found.primal = list_of(solution.w);

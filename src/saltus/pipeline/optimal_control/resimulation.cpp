@@ -4,9 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/SVD>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/spectra.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
 #include "saltus/pipeline/optimal_control/touching_bodies_internal.hpp"
 
@@ -138,21 +137,21 @@ Resimulation::Segment Resimulation::open_loop(const std::function<bool()>& is_in
   return from_node(0, resimulation_options(path_->times.front(), path_->times.back(), rows), is_interrupted);
 }
 
-Eigen::VectorXd Resimulation::end_of(std::size_t k, std::vector<double> start,
-                                     const std::function<bool()>& is_interrupted) {
+linalg::Vector Resimulation::end_of(std::size_t k, std::vector<double> start,
+                                    const std::function<bool()>& is_interrupted) {
   system_.initial_state = std::move(start);
   const double until = path_->times[k + 1];
   const auto ended = run(resimulation_options(path_->times[k], until, 1), is_interrupted);
   if (ended.status.termination == Termination::stopped_by_user || !(ended.status.time_reached >= until)) {
-    return Eigen::VectorXd::Constant(index(ended.final.x.size()), std::numeric_limits<double>::quiet_NaN());
+    return linalg::Vector::constant(index(ended.final.x.size()), std::numeric_limits<double>::quiet_NaN());
   }
   // Behind the states of the result are modes of contacts.
-  return Eigen::Map<const Eigen::VectorXd>(ended.final.x.data(), index(ended.final.x.size()));
+  return linalg::ConstView(ended.final.x);
 }
 
 double Resimulation::amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted) {
   const auto n = index(scales.size());
-  Eigen::MatrixXd product = Eigen::MatrixXd::Identity(n, n), derivative(n, n);
+  linalg::Matrix product = linalg::Matrix::identity(n, n), derivative(n, n);
   TouchingBodies bodies(system_, kernel_);
   for (std::size_t k = 0; k < path_->controls.size(); ++k) {
     const auto modes = bodies.modes_at(path_->times[k], path_->nodes[k]);
@@ -163,14 +162,13 @@ double Resimulation::amplification(const std::vector<double>& scales, const std:
       const double width = above[j] - below[j];
       bodies.project(path_->times[k], modes, above);
       bodies.project(path_->times[k], modes, below);
-      const Eigen::VectorXd at_above = end_of(k, std::move(above), is_interrupted);
+      const linalg::Vector at_above = end_of(k, std::move(above), is_interrupted);
       derivative.col(index(j)) = (at_above - end_of(k, std::move(below), is_interrupted)) / width;
-      if (!derivative.col(index(j)).allFinite()) return std::numeric_limits<double>::quiet_NaN();
+      if (!derivative.col(index(j)).all_finite()) return std::numeric_limits<double>::quiet_NaN();
     }
     product = derivative * product;
   }
-  return product.allFinite() ? Eigen::JacobiSVD<Eigen::MatrixXd>(product).singularValues()(0)
-                             : std::numeric_limits<double>::quiet_NaN();
+  return product.all_finite() ? linalg::spectral_norm(product) : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace saltus::pipeline

@@ -5,10 +5,9 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/verify.hpp"
 
@@ -42,8 +41,8 @@ class Resimulation {
   [[nodiscard]] event_integrator::Integration run(const event_integrator::IntegrationOptions& options,
                                                   const std::function<bool()>& is_interrupted);
   /// NaN if the run from `start` does not come to the end of interval k.
-  [[nodiscard]] Eigen::VectorXd end_of(std::size_t k, std::vector<double> start,
-                                       const std::function<bool()>& is_interrupted);
+  [[nodiscard]] linalg::Vector end_of(std::size_t k, std::vector<double> start,
+                                      const std::function<bool()>& is_interrupted);
   [[nodiscard]] std::vector<std::pair<int, int>> wanted_mode(const event_integrator::Integration& run,
                                                              std::size_t k) const;
 
@@ -56,7 +55,7 @@ class Resimulation {
 /// bounds of the controls. Simulates Ocp::plant if there is one.
 /// @param gains  K_k over all controls and the states of the result
 [[nodiscard]] Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
-                                                                   const std::vector<Eigen::MatrixXd>& gains,
+                                                                   const std::vector<linalg::Matrix>& gains,
                                                                    const std::function<bool()>& is_interrupted);
 
 /// Returns options so sharp that defects of 1e-9 of the range are those of the solution; `rows` + 1 rows of equal

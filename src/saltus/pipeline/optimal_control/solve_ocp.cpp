@@ -19,9 +19,7 @@ constexpr int most_rounds = 3;
 /// Of the objective: by less an element more is not worth it.
 constexpr double worth_an_element = 1e-4;
 
-Eigen::VectorXd vector_of(const std::vector<double>& values) {
-  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
+linalg::Vector vector_of(const std::vector<double>& values) { return linalg::ConstView(values); }
 
 std::optional<solver::Start> same_structure(const discretization::OcpProblem& problem, const OptimizeOptions& options) {
   if (!options.start_from || !options.start_from->optimization) return std::nullopt;

@@ -1,9 +1,8 @@
 #include <cmath>
 
-#include <Eigen/Core>
-#include <Eigen/QR>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/pipeline/optimal_control/touching_bodies_internal.hpp"
 
 namespace saltus::pipeline {
@@ -18,7 +17,7 @@ std::vector<ContactMode> TouchingBodies::modes_at(double t, const std::vector<do
   std::vector<ContactMode> modes;
   if (contacts_.empty()) return modes;
   evaluate(t, x);
-  for (Eigen::Index k = 0; k < values_.gap.size(); ++k) {
+  for (linalg::Index k = 0; k < values_.gap.size(); ++k) {
     const bool rests = values_.gap(k) <= none && std::abs(values_.velocity(k)) <= none;
     modes.push_back(rests ? ContactMode::closed : ContactMode::open);
   }
@@ -35,7 +34,7 @@ void TouchingBodies::project(double t, const std::vector<ContactMode>& modes, st
       if (modes[k] != ContactMode::open || values_.gap(index(k)) < 0.0) rows.push_back(static_cast<int>(k));
     }
     if (rows.empty()) break;
-    correct(rows, values_.gap(rows), contacts_.positions, x);
+    correct(rows, values_.gap.selected_rows(rows), contacts_.positions, x);
   }
   evaluate(t, x);
   std::vector<int> held;
@@ -43,7 +42,7 @@ void TouchingBodies::project(double t, const std::vector<ContactMode>& modes, st
     if (modes[k] != ContactMode::open) held.push_back(static_cast<int>(k));
     if (modes[k] == ContactMode::stick) held.push_back(static_cast<int>(k + modes.size()));
   }
-  if (!held.empty()) correct(held, values_.velocity(held), contacts_.velocities, x);
+  if (!held.empty()) correct(held, values_.velocity.selected_rows(held), contacts_.velocities, x);
 }
 
 std::vector<std::vector<double>> TouchingBodies::impulses(double t, const std::vector<double>& x,
@@ -58,13 +57,15 @@ std::vector<std::vector<double>> TouchingBodies::impulses(double t, const std::v
     rows.push_back(i);
     for (int k = 0; contact.has_friction && k < contact.tangents(); ++k) rows.push_back(m * (1 + k) + i);
   }
-  Eigen::VectorXd change(index(contacts_.velocities.size())), all = Eigen::VectorXd::Zero(values_.velocity.size());
+  linalg::Vector change(index(contacts_.velocities.size())), all = linalg::Vector::zero(values_.velocity.size());
   for (std::size_t k = 0; k < contacts_.velocities.size(); ++k) {
     const std::size_t v = at(contacts_.velocities[k]);
     change(index(k)) = x_after[v] - x[v];
   }
-  if (!rows.empty())
-    all(rows) = values_.responses(Eigen::all, rows).completeOrthogonalDecomposition().solve(change).eval();
+  if (!rows.empty()) {
+    const linalg::Vector found_impulses = linalg::least_squares(values_.responses.selected_cols(rows), change);
+    for (std::size_t k = 0; k < rows.size(); ++k) all(rows[k]) = found_impulses(index(k));
+  }
   std::vector<std::vector<double>> found;
   for (int i = 0; i < m; ++i) {
     found.push_back({all(i)});
@@ -80,11 +81,11 @@ void TouchingBodies::evaluate(double t, const std::vector<double>& x) {
   kernel_.contacts(t, x.data(), alpha_.data(), values_);
 }
 
-void TouchingBodies::correct(const std::vector<int>& rows, const Eigen::VectorXd& values,
-                             const std::vector<int>& states, std::vector<double>& x) const {
-  const Eigen::MatrixXd response = values_.responses(Eigen::all, rows);
-  const Eigen::MatrixXd influence = values_.rows(rows, Eigen::all) * response;
-  const Eigen::VectorXd change = response * influence.completeOrthogonalDecomposition().solve(values);
+void TouchingBodies::correct(const std::vector<int>& rows, const linalg::Vector& values, const std::vector<int>& states,
+                             std::vector<double>& x) const {
+  const linalg::Matrix response = values_.responses.selected_cols(rows);
+  const linalg::Matrix influence = values_.rows.selected_rows(rows) * response;
+  const linalg::Vector change = response * linalg::least_squares(influence, values);
   for (std::size_t k = 0; k < states.size(); ++k) x[at(states[k])] -= change(index(k));
 }
 

@@ -27,7 +27,7 @@ class TouchingBodies {
 
  private:
   void evaluate(double t, const std::vector<double>& x);
-  void correct(const std::vector<int>& rows, const Eigen::VectorXd& values, const std::vector<int>& states,
+  void correct(const std::vector<int>& rows, const linalg::Vector& values, const std::vector<int>& states,
                std::vector<double>& x) const;
 
   const model::ContactSystem& contacts_;

@@ -4,9 +4,8 @@
 #include <functional>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "saltus/base/error.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/result/optimization.hpp"
 #include "saltus/result/result.hpp"
@@ -43,7 +42,7 @@ struct VerificationWanted {
   double tolerance = 1e-3;
   /// Of every element, over all controls and the states of the result (0 x 0: corrects nothing): the controls are
   /// simulated with this feedback, too. None: they are not.
-  std::vector<Eigen::MatrixXd> gains{};
+  std::vector<linalg::Matrix> gains{};
 };
 
 /// Simulates every interval from its node with its controls, then the whole horizon from the first node, and compares.

@@ -3,12 +3,14 @@
 
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::pipeline {
 
-[[nodiscard]] inline std::vector<double> list_of(const Eigen::VectorXd& vector) {
-  return {vector.data(), vector.data() + vector.size()};
+[[nodiscard]] inline std::vector<double> list_of(linalg::ConstView vector) {
+  std::vector<double> list(static_cast<std::size_t>(vector.size()));
+  for (std::size_t i = 0; i < list.size(); ++i) list[i] = vector[static_cast<linalg::Index>(i)];
+  return list;
 }
 
 }  // namespace saltus::pipeline

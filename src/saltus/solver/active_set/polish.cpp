@@ -5,10 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/QR>
-
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::solver::active_set {
 namespace {
@@ -17,30 +16,30 @@ using mpcc::ActiveSide;
 
 /// Newton's method ends when the residual is so small or does not fall any more.
 bool newton(mpcc::Problem& problem, const std::vector<ActiveSide>& sides, const PolishOptions& options,
-            Eigen::VectorXd& w) {
+            linalg::Vector& w) {
   double best = std::numeric_limits<double>::infinity();
-  Eigen::VectorXd trial = w;
+  linalg::Vector trial = w;
   for (int i = 0; i < options.iterations; ++i) {
     const ActiveSystem system = active_system(problem, trial, sides, options.active);
-    const double size = system.residual.lpNorm<Eigen::Infinity>();
+    const double size = system.residual.max_abs();
     if (!(size < best)) break;
     best = size;
     w = trial;
     if (size == 0.0) break;
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factors;
+    linalg::OrthogonalFactors factors;
     // Rows that a pair and its neighbours share agree to rounding only: their difference is no direction.
-    factors.setThreshold(1e-10);
+    factors.set_threshold(1e-10);
     factors.compute(system.jacobian);
     trial -= factors.solve(system.residual);
-    if (!trial.allFinite()) break;
+    if (!trial.all_finite()) break;
   }
   return best <= options.tolerance;
 }
 
 /// Where one side of a biactive pair is less than `far` times the other, that side: both may be small in a solution.
-std::vector<ActiveSide> smaller_sides(mpcc::Problem& problem, const Eigen::VectorXd& w, std::vector<ActiveSide> sides,
+std::vector<ActiveSide> smaller_sides(mpcc::Problem& problem, const linalg::Vector& w, std::vector<ActiveSide> sides,
                                       double far) {
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
   for (int i = 0; i < problem.pairs(); ++i) {
     auto& side = sides[at(i)];
@@ -85,8 +84,8 @@ ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, cons
   const int n_g = problem.constraints();
   const auto& rows = problem.constraint_bounds();
   const auto& box = problem.variable_bounds();
-  Eigen::VectorXd c(problem.rows());
-  Eigen::VectorXd entries(problem.jacobian_pattern().entries());
+  linalg::Vector c(problem.rows());
+  linalg::Vector entries(problem.jacobian_pattern().entries());
   problem.functions(w, c);
   problem.jacobian(w, entries);
 
@@ -101,7 +100,7 @@ ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, cons
   const auto& pattern = problem.jacobian_pattern();
   std::vector<int> fixed(static_cast<std::size_t>(problem.variables()), 0);  // -1, 1: at its lower, upper bound
   for (std::size_t e = 0; e < pattern.row.size(); ++e) {
-    const double slope = entries[static_cast<Eigen::Index>(e)];
+    const double slope = entries[static_cast<linalg::Index>(e)];
     if (role[at(pattern.row[e])] != RowRole::by_bounds || std::abs(slope) <= negligible) continue;
     fixed[at(pattern.column[e])] = slope > 0.0 ? -1 : 1;
   }
@@ -114,19 +113,18 @@ ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w, cons
     fixed_variables.push_back(i);
     residual.push_back(w[i] - bound);
   }
-  const auto equations = static_cast<Eigen::Index>(residual.size());
-  ActiveSystem system{Eigen::Map<Eigen::VectorXd>(residual.data(), equations),
-                      Eigen::MatrixXd::Zero(equations, problem.variables())};
+  const auto equations = static_cast<linalg::Index>(residual.size());
+  ActiveSystem system{linalg::ConstView(residual), linalg::Matrix::zero(equations, problem.variables())};
   for (std::size_t e = 0; e < pattern.row.size(); ++e) {
     const int row = place[at(pattern.row[e])];
-    if (row >= 0) system.jacobian(row, pattern.column[e]) += entries[static_cast<Eigen::Index>(e)];
+    if (row >= 0) system.jacobian(row, pattern.column[e]) += entries[static_cast<linalg::Index>(e)];
   }
-  Eigen::Index row = equations - static_cast<Eigen::Index>(fixed_variables.size());
+  linalg::Index row = equations - static_cast<linalg::Index>(fixed_variables.size());
   for (const int i : fixed_variables) system.jacobian(row++, i) = 1.0;
   return system;
 }
 
-PolishOutcome polish(mpcc::Problem& problem, Eigen::VectorXd& w, const PolishOptions& options) {
+PolishOutcome polish(mpcc::Problem& problem, linalg::Vector& w, const PolishOptions& options) {
   const auto nearly_zero = mpcc::active_sides(problem, w, options.active);
   if (contains(nearly_zero, ActiveSide::none)) {
     return PolishOutcome::no_active_set;
@@ -136,7 +134,7 @@ PolishOutcome polish(mpcc::Problem& problem, Eigen::VectorXd& w, const PolishOpt
                                              without_biactive(nearly_zero)};
   PolishOutcome outcome = PolishOutcome::not_converged;
   for (const auto& sides : guesses) {
-    Eigen::VectorXd found = w;
+    linalg::Vector found = w;
     if (!newton(problem, sides, options, found)) continue;
     if (mpcc::residuals(problem, found).infeasibility() <= options.tolerance) {
       w = found;

@@ -1,8 +1,7 @@
 // From a nearly complementary point to one that is complementary to rounding.
 #pragma once
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/mpcc/residuals.hpp"
 
 namespace saltus::solver::active_set {
@@ -10,8 +9,8 @@ namespace saltus::solver::active_set {
 /// Holds the equations that are left when every pair keeps the side that is zero: g = 0 for rows with equal bounds, G_i
 /// = 0 or H_i = 0, both where the pair is biactive.
 struct ActiveSystem {
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;  ///< residuals by variables
+  linalg::Vector residual;
+  linalg::Matrix jacobian;  ///< residuals by variables
 };
 /// Evaluates them at w, for given sides (mpcc::active_sides); pairs with ActiveSide::none contribute nothing.
 [[nodiscard]] ActiveSystem active_system(mpcc::Problem& problem, mpcc::ConstVectorView w,
@@ -37,6 +36,6 @@ struct PolishOptions {
 /// decides. `w` is changed only if the outcome is `polished`. The objective is not looked at: for problems whose
 /// solutions are their feasible points with given active sides. Cost: per step a complete orthogonal factorisation of
 /// the dense Jacobian.
-[[nodiscard]] PolishOutcome polish(mpcc::Problem& problem, Eigen::VectorXd& w, const PolishOptions& options = {});
+[[nodiscard]] PolishOutcome polish(mpcc::Problem& problem, linalg::Vector& w, const PolishOptions& options = {});
 
 }  // namespace saltus::solver::active_set

@@ -24,7 +24,7 @@ struct Violation {
 /// Calls back with every bound that is violated: the amount relative to the bound, and which variable or row it is.
 template <class OnViolation>
 void for_violations(ConstVectorView values, const mpcc::Bounds& bounds, OnViolation&& on_violation) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
+  for (linalg::Index i = 0; i < values.size(); ++i) {
     const double below = (bounds.lower[i] - values[i]) / std::max(1.0, std::abs(bounds.lower[i]));
     const double above = (values[i] - bounds.upper[i]) / std::max(1.0, std::abs(bounds.upper[i]));
     // An infinite bound gives NaN or -inf: never violated.
@@ -43,8 +43,8 @@ std::vector<bool> held_sides(mpcc::Problem& problem, ConstVectorView w, const st
   std::vector<bool> held(problem.signs().size(), false);
   for (std::size_t side = 0; side < held.size(); ++side) {
     held[side] = problem.signs()[side] == mpcc::Sign::implied;
-    for (RowMatrix::InnerIterator entry(jacobian, problem.constraints() + index(side)); entry; ++entry) {
-      if (entry.value() != 0.0 && !is_held[at(entry.col())]) held[side] = false;
+    for (const linalg::Entry entry : jacobian.along(problem.constraints() + index(side))) {
+      if (entry.value != 0.0 && !is_held[at(entry.inner)]) held[side] = false;
     }
   }
   return held;
@@ -99,15 +99,14 @@ StationarityType stationarity_type(const MpccMultipliers& multipliers, const std
 }
 
 double scaled_infeasibility(mpcc::Problem& problem, ConstVectorView w) {
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
-  if (!c.allFinite() || !w.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  if (!c.all_finite() || !w.all_finite()) return std::numeric_limits<double>::quiet_NaN();
   double largest = 0.0;
   const auto raise = [&largest](double amount, int) { largest = std::max(largest, amount); };
   for_violations(w, problem.variable_bounds(), raise);
   for_violations(c.head(problem.constraints()), problem.constraint_bounds(), raise);
-  for (const double side : c.tail(2 * problem.pairs())) largest = std::max(largest, -side);
-  return largest;
+  return std::max(largest, -c.tail(2 * problem.pairs()).min());
 }
 
 double complementarity(mpcc::Problem& problem, ConstVectorView w) {
@@ -115,7 +114,7 @@ double complementarity(mpcc::Problem& problem, ConstVectorView w) {
 }
 
 std::string worst_rows(mpcc::Problem& problem, ConstVectorView w, double tolerance) {
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
   const int n_g = problem.constraints();
   const int pairs = problem.pairs();

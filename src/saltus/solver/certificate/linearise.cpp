@@ -25,8 +25,8 @@ class Rows {
   /// lower <= c + row d <= upper; left out if no d within the radius can violate it.
   void add(int row, double c, double lower, double upper) {
     double reach = 0.0;
-    for (RowMatrix::InnerIterator entry(jacobian_, row); entry; ++entry) {
-      if (!is_held_[at(entry.col())]) reach += std::abs(entry.value());
+    for (const linalg::Entry entry : jacobian_.along(row)) {
+      if (!is_held_[at(entry.inner)]) reach += std::abs(entry.value);
     }
     // The point itself is feasible: what rounding says against that is none of the directions'.
     const double down = std::min((lower - c) / radius_, 0.0);
@@ -50,9 +50,9 @@ class Rows {
   }
   void finish(LpccProblem& problem) const {
     problem.pattern = pattern_;
-    problem.entries = Eigen::Map<const Eigen::VectorXd>(entries_.data(), index(entries_.size()));
-    problem.rows.lower = Eigen::Map<const Eigen::VectorXd>(lower_.data(), index(lower_.size()));
-    problem.rows.upper = Eigen::Map<const Eigen::VectorXd>(upper_.data(), index(upper_.size()));
+    problem.entries = linalg::ConstView(entries_);
+    problem.rows.lower = linalg::ConstView(lower_);
+    problem.rows.upper = linalg::ConstView(upper_);
   }
 
  private:
@@ -62,10 +62,10 @@ class Rows {
     return static_cast<int>(lower_.size()) - 1;
   }
   void add_entries(int own, int row) {
-    for (RowMatrix::InnerIterator entry(jacobian_, row); entry; ++entry) {
-      if (is_held_[at(entry.col())] || entry.value() == 0.0) continue;
-      pattern_.add(own, static_cast<int>(entry.col()));
-      entries_.push_back(entry.value());
+    for (const linalg::Entry entry : jacobian_.along(row)) {
+      if (is_held_[at(entry.inner)] || entry.value == 0.0) continue;
+      pattern_.add(own, entry.inner);
+      entries_.push_back(entry.value);
     }
   }
 
@@ -89,8 +89,8 @@ std::vector<bool> find_held(mpcc::Problem& problem, const RowMatrix& jacobian, c
     if (problem.pair_group(pair) < 0 || states.is_open[at(pair)]) continue;
     const int side = states.sides[at(pair)] == ActiveSide::G ? pair : problem.pairs() + pair;
     if (problem.signs()[at(side)] != Sign::implied) continue;
-    for (RowMatrix::InnerIterator entry(jacobian, problem.constraints() + side); entry; ++entry) {
-      if (entry.value() != 0.0) is_held[at(entry.col())] = true;
+    for (const linalg::Entry entry : jacobian.along(problem.constraints() + side)) {
+      if (entry.value != 0.0) is_held[at(entry.inner)] = true;
     }
   }
   return is_held;
@@ -98,14 +98,14 @@ std::vector<bool> find_held(mpcc::Problem& problem, const RowMatrix& jacobian, c
 
 bool can_move(const RowMatrix& jacobian, const std::vector<bool>& is_held, const std::vector<int>& rows) {
   for (const int row : rows) {
-    for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
-      if (entry.value() != 0.0 && !is_held[at(entry.col())]) return true;
+    for (const linalg::Entry entry : jacobian.along(row)) {
+      if (entry.value != 0.0 && !is_held[at(entry.inner)]) return true;
     }
   }
   return false;
 }
 
-void add_constraints(mpcc::Problem& problem, const Eigen::VectorXd& c, const PairStates& states,
+void add_constraints(mpcc::Problem& problem, const linalg::Vector& c, const PairStates& states,
                      const crossover::Reduction* reduction, Rows& rows) {
   const int n_g = problem.constraints();
   const auto& bounds = problem.constraint_bounds();
@@ -138,17 +138,17 @@ Linearisation linearise(mpcc::Problem& problem, ConstVectorView w, const PairSta
   const int n = problem.variables();
   const int n_g = problem.constraints();
   const RowMatrix jacobian = jacobian_matrix(problem, w);
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
   Linearisation result;
   LpccProblem& lpcc = result.problem;
   lpcc.cost.resize(n);
   problem.objective_gradient(w, lpcc.cost);
-  if (n > 0) result.scale = std::max(1.0, lpcc.cost.lpNorm<Eigen::Infinity>());
+  result.scale = std::max(1.0, lpcc.cost.max_abs());
   const std::vector<bool> is_held = find_held(problem, jacobian, states, reduction);
   const auto& bounds = problem.variable_bounds();
-  lpcc.variables.lower = ((bounds.lower - w) / radius).cwiseMax(-1.0).cwiseMin(0.0);
-  lpcc.variables.upper = ((bounds.upper - w) / radius).cwiseMin(1.0).cwiseMax(0.0);
+  lpcc.variables.lower = ((bounds.lower - w) / radius).at_least(-1.0).at_most(0.0);
+  lpcc.variables.upper = ((bounds.upper - w) / radius).at_most(1.0).at_least(0.0);
   for (int i = 0; i < n; ++i) {
     if (is_held[at(i)]) lpcc.variables.lower[i] = lpcc.variables.upper[i] = 0.0;
   }

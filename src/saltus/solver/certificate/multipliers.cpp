@@ -14,21 +14,22 @@ using mpcc::ActiveSide;
 using mpcc::Sign;
 
 /// Moves multipliers of bounds, `pressure` = lower - upper, to one implied side, as far as their signs allow.
-void take_from_bounds(const RowMatrix& jacobian, int row, Eigen::VectorXd& pressure, double& multiplier) {
+void take_from_bounds(const RowMatrix& jacobian, int row, linalg::Vector& pressure, double& multiplier) {
   double share = std::numeric_limits<double>::infinity();
-  for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
-    if (entry.value() != 0.0) share = std::min(share, pressure[entry.col()] / entry.value());
+  for (const linalg::Entry entry : jacobian.along(row)) {
+    if (entry.value != 0.0) share = std::min(share, pressure[entry.inner] / entry.value);
   }
   if (!std::isfinite(share)) return;
-  for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) pressure[entry.col()] -= share * entry.value();
+  for (const linalg::Entry entry : jacobian.along(row)) pressure[entry.inner] -= share * entry.value;
   multiplier += share;
 }
 
-MpccMultipliers with_sides(mpcc::Problem& problem, const RowMatrix& jacobian, const Eigen::VectorXd& y,
-                           Eigen::VectorXd pressure, const PairStates& states) {
+MpccMultipliers with_sides(mpcc::Problem& problem, const RowMatrix& jacobian, const linalg::Vector& y,
+                           linalg::Vector pressure, const PairStates& states) {
   const int n_g = problem.constraints();
   const int pairs = problem.pairs();
-  MpccMultipliers result{.rows = y.head(n_g), .lower = {}, .upper = {}, .G = -y.segment(n_g, pairs), .H = -y.tail(pairs)};
+  MpccMultipliers result{
+      .rows = y.head(n_g), .lower = {}, .upper = {}, .G = -y.segment(n_g, pairs), .H = -y.tail(pairs)};
   const auto take = [&](int pair, ActiveSide which) {
     const int side = which == ActiveSide::G ? pair : pairs + pair;
     if (problem.signs()[at(side)] != Sign::implied) return;
@@ -44,15 +45,15 @@ MpccMultipliers with_sides(mpcc::Problem& problem, const RowMatrix& jacobian, co
     if (problem.pair_group(pair) < 0 || !states.biactive[at(pair)]) continue;
     take(pair, states.sides[at(pair)] == ActiveSide::G ? ActiveSide::H : ActiveSide::G);
   }
-  result.lower = pressure.cwiseMax(0.0);
-  result.upper = (-pressure).cwiseMax(0.0);
+  result.lower = pressure.at_least(0.0);
+  result.upper = (-pressure).at_least(0.0);
   return result;
 }
 
-Eigen::VectorXd slope_of(mpcc::Problem& problem, ConstVectorView w, const RowMatrix& jacobian, const Eigen::VectorXd& y) {
-  Eigen::VectorXd slope(problem.variables());
+linalg::Vector slope_of(mpcc::Problem& problem, ConstVectorView w, const RowMatrix& jacobian, const linalg::Vector& y) {
+  linalg::Vector slope(problem.variables());
   problem.objective_gradient(w, slope);
-  return slope + jacobian.transpose() * y;
+  return slope + jacobian.transposed_times(y);
 }
 
 }  // namespace
@@ -61,12 +62,12 @@ MpccMultipliers multipliers_of_branch(mpcc::Problem& problem, const crossover::B
                                       const NlpPoint& point, const PairStates& states) {
   const auto& reduction = branch.reduction();
   const auto& bounds = problem.variable_bounds();
-  const Eigen::VectorXd w = branch.full(point.w);
+  const linalg::Vector w = branch.full(point.w);
   const RowMatrix jacobian = jacobian_matrix(problem, w);
-  Eigen::VectorXd y = Eigen::VectorXd::Zero(problem.rows());
+  linalg::Vector y = linalg::Vector::zero(problem.rows());
   for (std::size_t row = 0; row < reduction.rows.size(); ++row) y[reduction.rows[row]] = point.y[index(row)];
-  Eigen::VectorXd pressure = slope_of(problem, w, jacobian, y);
-  for (Eigen::Index i = 0; i < w.size(); ++i) {
+  linalg::Vector pressure = slope_of(problem, w, jacobian, y);
+  for (linalg::Index i = 0; i < w.size(); ++i) {
     const int place = reduction.place[at(i)];
     if (place >= 0) {
       const bool leads = reduction.leader[at(place)] == i;
@@ -83,29 +84,27 @@ MpccMultipliers multipliers_of_branch(mpcc::Problem& problem, const crossover::B
 MpccMultipliers multipliers_of_relaxed(mpcc::Problem& problem, homotopy::RelaxedProblem& relaxed, const NlpPoint& point,
                                        const PairStates& states) {
   const int n = problem.variables();
-  const Eigen::VectorXd y = relaxed.multipliers_of_problem(point.w, point.y);
-  const Eigen::VectorXd pressure = point.z_lower.head(n) - point.z_upper.head(n);
+  const linalg::Vector y = relaxed.multipliers_of_problem(point.w, point.y);
+  const linalg::Vector pressure = point.z_lower.head(n) - point.z_upper.head(n);
   return with_sides(problem, jacobian_matrix(problem, point.w.head(n)), y, pressure, states);
 }
 
 double stationarity(mpcc::Problem& problem, ConstVectorView w, const MpccMultipliers& multipliers,
                     const crossover::Reduction* reduction) {
-  Eigen::VectorXd y(problem.rows());
-  y << multipliers.rows, -multipliers.G, -multipliers.H;
-  Eigen::VectorXd slope = slope_of(problem, w, jacobian_matrix(problem, w), y) - multipliers.lower + multipliers.upper;
+  const linalg::Vector y = linalg::joined({multipliers.rows, -multipliers.G, -multipliers.H});
+  linalg::Vector slope = slope_of(problem, w, jacobian_matrix(problem, w), y) - multipliers.lower + multipliers.upper;
   if (reduction != nullptr) {
-    Eigen::VectorXd summed = Eigen::VectorXd::Zero(reduction->variables());
-    for (Eigen::Index i = 0; i < slope.size(); ++i) {
+    linalg::Vector summed = linalg::Vector::zero(reduction->variables());
+    for (linalg::Index i = 0; i < slope.size(); ++i) {
       if (reduction->place[at(i)] >= 0) summed[reduction->place[at(i)]] += slope[i];
       if (reduction->place[at(i)] >= 0 || reduction->hold[at(i)] == Hold::closure) slope[i] = 0.0;
     }
-    const double of_held = slope.size() > 0 ? slope.lpNorm<Eigen::Infinity>() : 0.0;
-    slope.resize(summed.size() + 1);
-    slope << summed, of_held;
+    const double of_held = slope.max_abs();
+    slope = linalg::joined({summed, linalg::ConstView(&of_held, 1)});
   }
-  const double total = y.lpNorm<1>() + multipliers.lower.lpNorm<1>() + multipliers.upper.lpNorm<1>();
-  const double mean = total / static_cast<double>(std::max<Eigen::Index>(1, y.size() + 2 * w.size()));
-  return (slope.size() > 0 ? slope.lpNorm<Eigen::Infinity>() : 0.0) / std::max(1.0, mean);
+  const double total = y.sum_abs() + multipliers.lower.sum_abs() + multipliers.upper.sum_abs();
+  const double mean = total / static_cast<double>(std::max<linalg::Index>(1, y.size() + 2 * w.size()));
+  return slope.max_abs() / std::max(1.0, mean);
 }
 
 }  // namespace saltus::solver::certificate

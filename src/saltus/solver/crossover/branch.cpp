@@ -26,7 +26,7 @@ bool is_useless(const Branch& branch, const NlpOptions& options) {
 }
 
 /// Solves from `start`, then refines; without free variables there is nothing to solve.
-void solve_from(const Eigen::VectorXd& start, Branch& branch, NlpSolver& nlp, const NlpOptions& options) {
+void solve_from(const linalg::Vector& start, Branch& branch, NlpSolver& nlp, const NlpOptions& options) {
   BranchProblem& reduced = *branch.problem;
   branch.point = {.w = start, .y = {}, .z_lower = {}, .z_upper = {}};
   const int iterations = branch.report.iterations;
@@ -37,20 +37,20 @@ void solve_from(const Eigen::VectorXd& start, Branch& branch, NlpSolver& nlp, co
   branch.report.iterations += iterations;
   branch.report.evaluation_seconds += evaluation_seconds;
   NlpPoint& point = branch.point;
-  const bool is_whole = point.w.allFinite() && point.y.size() == reduced.constraints() && point.y.allFinite() &&
+  const bool is_whole = point.w.all_finite() && point.y.size() == reduced.constraints() && point.y.all_finite() &&
                         point.z_lower.size() == reduced.variables() && point.z_upper.size() == reduced.variables();
   if (!is_whole) {
     point = {.w = start,
-             .y = Eigen::VectorXd::Zero(reduced.constraints()),
-             .z_lower = Eigen::VectorXd::Zero(reduced.variables()),
-             .z_upper = Eigen::VectorXd::Zero(reduced.variables())};
+             .y = linalg::Vector::zero(reduced.constraints()),
+             .z_lower = linalg::Vector::zero(reduced.variables()),
+             .z_upper = linalg::Vector::zero(reduced.variables())};
   }
   branch.optimality_error =
       is_useless(branch, options) ? std::numeric_limits<double>::infinity() : refine(reduced, point);
 }
 
 /// Leaves out equations that depend on others at v; false if there are none.
-bool drop_dependent(BranchProblem& reduced, const Eigen::VectorXd& v) {
+bool drop_dependent(BranchProblem& reduced, const linalg::Vector& v) {
   const std::vector<int> dependent = dependent_equations(reduced, v);
   if (!dependent.empty()) reduced.drop_rows(dependent);
   return !dependent.empty();
@@ -68,13 +68,13 @@ Branch solve_closed(mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>&
                     NlpSolver& nlp, const NlpOptions& options, const std::vector<int>& kept, Closing closing) {
   Branch branch;
   branch.sides = sides;
-  Eigen::VectorXd c(problem.rows());
+  linalg::Vector c(problem.rows());
   problem.functions(w, c);
   branch.problem =
       std::make_unique<BranchProblem>(problem, reduce(problem, sides, jacobian_matrix(problem, w), c, closing));
   BranchProblem& reduced = *branch.problem;
   reduced.keep_above(kept, w);
-  const Eigen::VectorXd start = reduced.reduced(w);
+  const linalg::Vector start = reduced.reduced(w);
   if (reduced.reduction().equations() > reduced.variables()) drop_dependent(reduced, start);
   solve_from(start, branch, nlp, options);
   // Equations that depend on each other at the solution are no reason to fail, but can be one to find no direction.

@@ -14,7 +14,7 @@ struct Branch {
   std::unique_ptr<BranchProblem> problem;
   NlpPoint point;  ///< in the variables of the branch problem
   NlpReport report;
-  Eigen::VectorXd w;
+  linalg::Vector w;
   double objective = 0.0;  ///< NaN where it is not finite
   double primal_infeasibility = 0.0;
   double complementarity_residual = 0.0;

@@ -55,7 +55,7 @@ void BranchProblem::keep_above(const std::vector<int>& variables, ConstVectorVie
 void BranchProblem::drop_rows(const std::vector<int>& rows) {
   std::vector<bool> is_dropped(reduction_.rows.size(), false);
   for (const int row : rows) is_dropped[at(row)] = true;
-  Eigen::Index next = 0;
+  linalg::Index next = 0;
   auto& [lower, upper] = reduction_.row_bounds;
   for (std::size_t row = 0; row < is_dropped.size(); ++row) {
     if (is_dropped[row]) continue;
@@ -65,50 +65,50 @@ void BranchProblem::drop_rows(const std::vector<int>& rows) {
     ++next;
   }
   reduction_.rows.resize(at(next));
-  lower.conservativeResize(next);
-  upper.conservativeResize(next);
+  lower.resize_and_keep(next);
+  upper.resize_and_keep(next);
   find_patterns();
 }
 
-Eigen::VectorXd BranchProblem::full(ConstVectorView v) const {
-  Eigen::VectorXd w = reduction_.value;
-  for (Eigen::Index i = 0; i < w.size(); ++i) {
+linalg::Vector BranchProblem::full(ConstVectorView v) const {
+  linalg::Vector w = reduction_.value;
+  for (linalg::Index i = 0; i < w.size(); ++i) {
     if (reduction_.place[at(i)] >= 0) w[i] = v[reduction_.place[at(i)]];
   }
   return w;
 }
 
-Eigen::VectorXd BranchProblem::reduced(ConstVectorView w) const {
-  Eigen::VectorXd v(variables());
-  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = w[reduction_.leader[at(i)]];
-  return v.cwiseMax(reduction_.bounds.lower).cwiseMin(reduction_.bounds.upper);
+linalg::Vector BranchProblem::reduced(ConstVectorView w) const {
+  linalg::Vector v(variables());
+  for (linalg::Index i = 0; i < v.size(); ++i) v[i] = w[reduction_.leader[at(i)]];
+  return v.at_least(reduction_.bounds.lower).at_most(reduction_.bounds.upper);
 }
 
 void BranchProblem::objective_gradient(ConstVectorView v, VectorView gradient) {
-  Eigen::VectorXd whole(problem_.variables());
+  linalg::Vector whole(problem_.variables());
   problem_.objective_gradient(full(v), whole);
-  gradient.setZero();
-  for (Eigen::Index i = 0; i < whole.size(); ++i) {
+  gradient.set_zero();
+  for (linalg::Index i = 0; i < whole.size(); ++i) {
     if (reduction_.place[at(i)] >= 0) gradient[reduction_.place[at(i)]] += whole[i];
   }
 }
 
 void BranchProblem::functions(ConstVectorView v, VectorView c) {
-  const Eigen::VectorXd& values = cache_.functions(full(v));
-  for (Eigen::Index row = 0; row < c.size(); ++row) c[row] = values[reduction_.rows[at(row)]];
+  const linalg::Vector& values = cache_.functions(full(v));
+  for (linalg::Index row = 0; row < c.size(); ++row) c[row] = values[reduction_.rows[at(row)]];
 }
 
 void BranchProblem::jacobian(ConstVectorView v, VectorView values) {
-  const Eigen::VectorXd& entries = cache_.jacobian(full(v));
-  for (Eigen::Index e = 0; e < values.size(); ++e) values[e] = entries[jacobian_entries_[at(e)]];
+  const linalg::Vector& entries = cache_.jacobian(full(v));
+  for (linalg::Index e = 0; e < values.size(); ++e) values[e] = entries[jacobian_entries_[at(e)]];
 }
 
 void BranchProblem::hessian(ConstVectorView v, double objective_factor, ConstVectorView y, VectorView values) {
-  Eigen::VectorXd of_rows = Eigen::VectorXd::Zero(problem_.rows());
-  for (Eigen::Index row = 0; row < y.size(); ++row) of_rows[reduction_.rows[at(row)]] = y[row];
-  Eigen::VectorXd entries(problem_.hessian_pattern().entries());
+  linalg::Vector of_rows = linalg::Vector::zero(problem_.rows());
+  for (linalg::Index row = 0; row < y.size(); ++row) of_rows[reduction_.rows[at(row)]] = y[row];
+  linalg::Vector entries(problem_.hessian_pattern().entries());
   problem_.hessian(full(v), objective_factor, of_rows, entries);
-  for (Eigen::Index e = 0; e < values.size(); ++e) {
+  for (linalg::Index e = 0; e < values.size(); ++e) {
     values[e] = hessian_entries_[at(e)].factor * entries[hessian_entries_[at(e)].entry];
   }
 }

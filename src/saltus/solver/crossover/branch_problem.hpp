@@ -16,8 +16,8 @@ class BranchProblem final : public mpcc::Problem {
   BranchProblem(mpcc::Problem& problem, Reduction reduction);
 
   [[nodiscard]] const Reduction& reduction() const { return reduction_; }
-  [[nodiscard]] Eigen::VectorXd full(mpcc::ConstVectorView v) const;     ///< w(v)
-  [[nodiscard]] Eigen::VectorXd reduced(mpcc::ConstVectorView w) const;  ///< v, moved onto its bounds
+  [[nodiscard]] linalg::Vector full(mpcc::ConstVectorView v) const;     ///< w(v)
+  [[nodiscard]] linalg::Vector reduced(mpcc::ConstVectorView w) const;  ///< v, moved onto its bounds
   /// Keeps variables (of the whole problem) above a part of what they are in w.
   void keep_above(const std::vector<int>& variables, mpcc::ConstVectorView w);
   /// Leaves rows out, by their numbers here.

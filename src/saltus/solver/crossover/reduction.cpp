@@ -25,7 +25,7 @@ class Holding {
       : bounds_(problem.variable_bounds()),
         equal_(at(problem.variables())),
         hold_(at(problem.variables()), Hold::free),
-        value_(Eigen::VectorXd::Zero(problem.variables())) {
+        value_(linalg::Vector::zero(problem.variables())) {
     for (int i = 0; i < problem.variables(); ++i) {
       if (bounds_.lower[i] == bounds_.upper[i]) set(i, Hold::bounds, bounds_.lower[i]);
     }
@@ -52,13 +52,13 @@ class Holding {
     }
   }
   [[nodiscard]] const std::vector<Hold>& hold() const { return hold_; }
-  [[nodiscard]] const Eigen::VectorXd& value() const { return value_; }
+  [[nodiscard]] const linalg::Vector& value() const { return value_; }
 
  private:
   const mpcc::Bounds& bounds_;
   Components equal_;
   std::vector<Hold> hold_;
-  Eigen::VectorXd value_;
+  linalg::Vector value_;
 };
 
 void hold_closure(Holding& holding, const mpcc::Bounds& bounds, const mpcc::BranchClosure& closure,
@@ -74,10 +74,10 @@ void hold_closure(Holding& holding, const mpcc::Bounds& bounds, const mpcc::Bran
 
 /// An implied side is zero if and only if all its variables are at the bounds that it measures distances from.
 void hold_side(Holding& holding, const mpcc::Bounds& bounds, const RowMatrix& jacobian, int row) {
-  for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
-    const int variable = static_cast<int>(entry.col());
-    if (entry.value() > 0.0) holding.set(variable, Hold::side, bounds.lower[variable]);
-    if (entry.value() < 0.0) holding.set(variable, Hold::side, bounds.upper[variable]);
+  for (const linalg::Entry entry : jacobian.along(row)) {
+    const int variable = entry.inner;
+    if (entry.value > 0.0) holding.set(variable, Hold::side, bounds.lower[variable]);
+    if (entry.value < 0.0) holding.set(variable, Hold::side, bounds.upper[variable]);
   }
 }
 
@@ -87,7 +87,7 @@ bool is_zero_side(ActiveSide side, ActiveSide which) { return side == which || s
 /// The same function has the same value and derivatives, to the bit; pairs of one element share their sides.
 class SeenRows {
  public:
-  bool is_new(const RowMatrix& jacobian, const Eigen::VectorXd& c, int row) {
+  bool is_new(const RowMatrix& jacobian, const linalg::Vector& c, int row) {
     std::uint64_t sum = 14695981039346656037ull;
     const auto add = [&sum](double value) {
       std::uint64_t bits = 0;
@@ -95,9 +95,9 @@ class SeenRows {
       sum = (sum ^ bits) * 1099511628211ull + (sum >> 29);
     };
     add(c[row]);
-    for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
-      add(static_cast<double>(entry.col()));
-      add(entry.value());
+    for (const linalg::Entry entry : jacobian.along(row)) {
+      add(static_cast<double>(entry.inner));
+      add(entry.value);
     }
     return seen_.insert(sum).second;
   }
@@ -127,8 +127,8 @@ void place_variables(Holding& holding, const mpcc::Bounds& bounds, Reduction& re
     lower[at(place)] = std::max(lower[at(place)], bounds.lower[i]);
     upper[at(place)] = std::min(upper[at(place)], bounds.upper[i]);
   }
-  reduction.bounds.lower = Eigen::Map<const Eigen::VectorXd>(lower.data(), index(lower.size()));
-  reduction.bounds.upper = Eigen::Map<const Eigen::VectorXd>(upper.data(), index(upper.size()));
+  reduction.bounds.lower = linalg::ConstView(lower);
+  reduction.bounds.upper = linalg::ConstView(upper);
 }
 
 /// Takes rows one by one, leaves out those without free variables.
@@ -137,8 +137,8 @@ class RowList {
   RowList(const RowMatrix& jacobian, Reduction& reduction) : jacobian_(jacobian), reduction_(reduction) {}
 
   void add(int row, double lower, double upper) {
-    for (RowMatrix::InnerIterator entry(jacobian_, row); entry; ++entry) {
-      if (reduction_.place[at(entry.col())] < 0) continue;
+    for (const linalg::Entry entry : jacobian_.along(row)) {
+      if (reduction_.place[at(entry.inner)] < 0) continue;
       reduction_.rows.push_back(row);
       lower_.push_back(lower);
       upper_.push_back(upper);
@@ -146,8 +146,8 @@ class RowList {
     }
   }
   void finish() {
-    reduction_.row_bounds.lower = Eigen::Map<const Eigen::VectorXd>(lower_.data(), index(lower_.size()));
-    reduction_.row_bounds.upper = Eigen::Map<const Eigen::VectorXd>(upper_.data(), index(upper_.size()));
+    reduction_.row_bounds.lower = linalg::ConstView(lower_);
+    reduction_.row_bounds.upper = linalg::ConstView(upper_);
   }
 
  private:
@@ -160,11 +160,15 @@ class RowList {
 }  // namespace
 
 int Reduction::equations() const {
-  return static_cast<int>((row_bounds.lower.array() == row_bounds.upper.array()).count());
+  int count = 0;
+  for (linalg::Index row = 0; row < row_bounds.lower.size(); ++row) {
+    if (row_bounds.lower[row] == row_bounds.upper[row]) ++count;
+  }
+  return count;
 }
 
 Reduction reduce(const mpcc::Problem& problem, const std::vector<ActiveSide>& sides, const RowMatrix& jacobian,
-                 const Eigen::VectorXd& c, Closing closing) {
+                 const linalg::Vector& c, Closing closing) {
   const int n_g = problem.constraints();
   const int pairs = problem.pairs();
   const auto& bounds = problem.variable_bounds();

@@ -21,7 +21,7 @@ enum class Hold {
 struct Reduction {
   std::vector<int> place;   ///< of each variable; -1 if it is held. Equal ones have the same place
   std::vector<Hold> hold;   ///< of each variable
-  Eigen::VectorXd value;    ///< of each variable that is held
+  linalg::Vector value;     ///< of each variable that is held
   std::vector<int> leader;  ///< the variable that each place has its name from
   mpcc::Bounds bounds;      ///< of each place
   std::vector<int> rows;    ///< of (g, G, H) that are left
@@ -38,6 +38,6 @@ enum class Closing { whole, with_freedom };
 /// @param jacobian  dc/dw at a point: signs of implied sides, and which constrained sides are one and the same
 /// @param c         values of (g, G, H) at that point
 [[nodiscard]] Reduction reduce(const mpcc::Problem& problem, const std::vector<mpcc::ActiveSide>& sides,
-                               const RowMatrix& jacobian, const Eigen::VectorXd& c, Closing closing = Closing::whole);
+                               const RowMatrix& jacobian, const linalg::Vector& c, Closing closing = Closing::whole);
 
 }  // namespace saltus::solver::crossover

@@ -5,16 +5,14 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/SparseLU>
-#include <Eigen/SparseQR>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/solver/sparse.hpp"
 
 namespace saltus::solver::crossover {
 namespace {
 
-using Matrix = Eigen::SparseMatrix<double>;
+using Matrix = linalg::SparseColumns;
 
 /// Weight of the regularisation: small beside anything that matters, large beside rounding of entries of order 1.
 constexpr double regularisation = 1e-9;
@@ -26,13 +24,13 @@ constexpr int refinements = 5;
 constexpr double allowed_violation = 1e-11;
 
 struct Values {
-  Eigen::VectorXd gradient;
-  Eigen::VectorXd c;
-  Matrix jacobian;
+  linalg::Vector gradient;
+  linalg::Vector c;
+  RowMatrix jacobian;
 };
 
 Values evaluate(mpcc::Problem& nlp, ConstVectorView v) {
-  Values values{.gradient = Eigen::VectorXd(nlp.variables()), .c = Eigen::VectorXd(nlp.constraints()), .jacobian = {}};
+  Values values{.gradient = linalg::Vector(nlp.variables()), .c = linalg::Vector(nlp.constraints()), .jacobian = {}};
   nlp.objective_gradient(v, values.gradient);
   nlp.functions(v, values.c);
   values.jacobian = jacobian_matrix(nlp, v);
@@ -50,8 +48,8 @@ double inequality_error(double x, double lower, double upper, double pressure) {
 
 /// The largest violation of bounds and rows.
 double violation_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values) {
-  const auto largest = [](const Eigen::VectorXd& x, const mpcc::Bounds& bounds) {
-    return x.size() == 0 ? 0.0 : std::max((bounds.lower - x).maxCoeff(), (x - bounds.upper).maxCoeff());
+  const auto largest = [](const linalg::Vector& x, const mpcc::Bounds& bounds) {
+    return x.size() == 0 ? 0.0 : std::max((bounds.lower - x).max(), (x - bounds.upper).max());
   };
   return std::max({largest(point.w, nlp.variable_bounds()), largest(values.c, nlp.constraint_bounds()), 0.0});
 }
@@ -59,13 +57,14 @@ double violation_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& val
 double error_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values) {
   const auto& bounds = nlp.variable_bounds();
   const auto& rows = nlp.constraint_bounds();
-  const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * point.y - point.z_lower + point.z_upper;
-  double error = slope.size() > 0 ? slope.lpNorm<Eigen::Infinity>() : 0.0;
-  for (Eigen::Index i = 0; i < point.w.size(); ++i) {
+  const linalg::Vector slope =
+      values.gradient + values.jacobian.transposed_times(point.y) - point.z_lower + point.z_upper;
+  double error = slope.max_abs();
+  for (linalg::Index i = 0; i < point.w.size(); ++i) {
     const double pressure = point.z_upper[i] - point.z_lower[i];
     error = std::max(error, inequality_error(point.w[i], bounds.lower[i], bounds.upper[i], pressure));
   }
-  for (Eigen::Index i = 0; i < point.y.size(); ++i) {
+  for (linalg::Index i = 0; i < point.y.size(); ++i) {
     error = std::max(error, inequality_error(values.c[i], rows.lower[i], rows.upper[i], point.y[i]));
   }
   return std::isfinite(slope.sum() + values.c.sum()) ? error : std::numeric_limits<double>::infinity();
@@ -74,27 +73,27 @@ double error_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values)
 /// Which bounds and rows hold with equality, and where the others stand in the system.
 struct ActiveSet {
   std::vector<int> column;  ///< of each variable that no active bound holds; else -1
-  Eigen::VectorXd held;     ///< values of the others
+  linalg::Vector held;      ///< values of the others
   std::vector<int> line;    ///< of each active row; else -1
-  Eigen::VectorXd target;   ///< values of active rows
+  linalg::Vector target;    ///< values of active rows
   int variables = 0;
   int rows = 0;
 };
 
-ActiveSet find_active_set(mpcc::Problem& nlp, const NlpPoint& point, const Eigen::VectorXd& c) {
+ActiveSet find_active_set(mpcc::Problem& nlp, const NlpPoint& point, const linalg::Vector& c) {
   const auto& bounds = nlp.variable_bounds();
   const auto& rows = nlp.constraint_bounds();
   ActiveSet active;
   active.held = point.w;
   active.target = c;
-  for (Eigen::Index i = 0; i < point.w.size(); ++i) {
+  for (linalg::Index i = 0; i < point.w.size(); ++i) {
     const bool at_lower = point.z_lower[i] > point.w[i] - bounds.lower[i];
     const bool at_upper = !at_lower && point.z_upper[i] > bounds.upper[i] - point.w[i];
     if (at_lower) active.held[i] = bounds.lower[i];
     if (at_upper) active.held[i] = bounds.upper[i];
     active.column.push_back(at_lower || at_upper ? -1 : active.variables++);
   }
-  for (Eigen::Index i = 0; i < c.size(); ++i) {
+  for (linalg::Index i = 0; i < c.size(); ++i) {
     const bool at_lower = rows.lower[i] == rows.upper[i] || -point.y[i] > c[i] - rows.lower[i];
     const bool at_upper = !at_lower && point.y[i] > rows.upper[i] - c[i];
     if (at_lower) active.target[i] = rows.lower[i];
@@ -106,30 +105,29 @@ ActiveSet find_active_set(mpcc::Problem& nlp, const NlpPoint& point, const Eigen
 
 /// [H A'; A 0] of the free variables and active rows, without regularisation.
 Matrix system_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values, const ActiveSet& active) {
-  Eigen::VectorXd entries(nlp.hessian_pattern().entries());
+  linalg::Vector entries(nlp.hessian_pattern().entries());
   nlp.hessian(point.w, 1.0, point.y, entries);
   const auto& pattern = nlp.hessian_pattern();
-  std::vector<Eigen::Triplet<double>> triplets;
+  std::vector<linalg::Triplet> triplets;
   for (int e = 0; e < pattern.entries(); ++e) {
     const int row = active.column[at(pattern.row[at(e)])];
     const int column = active.column[at(pattern.column[at(e)])];
     if (row < 0 || column < 0) continue;
-    triplets.emplace_back(row, column, entries[e]);
-    if (row != column) triplets.emplace_back(column, row, entries[e]);
+    triplets.push_back({row, column, entries[e]});
+    if (row != column) triplets.push_back({column, row, entries[e]});
   }
-  for (int outer = 0; outer < values.jacobian.outerSize(); ++outer) {
-    for (Matrix::InnerIterator entry(values.jacobian, outer); entry; ++entry) {
-      const int line = active.line[at(entry.row())];
-      const int column = active.column[at(entry.col())];
-      if (line < 0 || column < 0) continue;
-      triplets.emplace_back(active.variables + line, column, entry.value());
-      triplets.emplace_back(column, active.variables + line, entry.value());
+  for (int row = 0; row < values.jacobian.rows(); ++row) {
+    const int line = active.line[at(row)];
+    if (line < 0) continue;
+    for (const linalg::Entry entry : values.jacobian.along(row)) {
+      const int column = active.column[at(entry.inner)];
+      if (column < 0) continue;
+      triplets.push_back({active.variables + line, column, entry.value});
+      triplets.push_back({column, active.variables + line, entry.value});
     }
   }
   const int size = active.variables + active.rows;
-  Matrix system(size, size);
-  system.setFromTriplets(triplets.begin(), triplets.end());
-  return system;
+  return {size, size, triplets};
 }
 
 /// Solves exact systems by corrections with the factors of a regularised one, which need not be of the same point.
@@ -138,7 +136,7 @@ class Corrector {
   explicit Corrector(int variables) : variables_(variables) {}
 
   /// Factorises anew where the factors of an earlier point correct too slowly; empty if that fails.
-  [[nodiscard]] Eigen::VectorXd solve(const Matrix& system, const Eigen::VectorXd& right) {
+  [[nodiscard]] linalg::Vector solve(const Matrix& system, const linalg::Vector& right) {
     if (has_factors_) {
       auto [solution, left] = corrected(system, right);
       if (left <= enough * right.norm()) return solution;
@@ -151,25 +149,21 @@ class Corrector {
   static constexpr double enough = 1e-6;  ///< of the right-hand side may be left by old factors
 
   bool factorise(const Matrix& system) {
-    Matrix shift(system.rows(), system.cols());
-    shift.setIdentity();
-    for (Eigen::Index i = 0; i < system.rows(); ++i) {
-      shift.coeffRef(i, i) = i < variables_ ? regularisation : -regularisation;
+    std::vector<linalg::Triplet> shift;
+    for (linalg::Index i = 0; i < system.rows(); ++i) {
+      shift.push_back({i, i, i < variables_ ? regularisation : -regularisation});
     }
-    Matrix regular = system + shift;
-    regular.makeCompressed();
-    factors_.compute(regular);
-    return has_factors_ = factors_.info() == Eigen::Success;
+    return has_factors_ = factors_.compute(system + Matrix(system.rows(), system.cols(), shift));
   }
 
   /// The solution and the norm of what it leaves.
-  [[nodiscard]] std::pair<Eigen::VectorXd, double> corrected(const Matrix& system, const Eigen::VectorXd& right) const {
-    Eigen::VectorXd solution = Eigen::VectorXd::Zero(right.size());
-    Eigen::VectorXd rest = right;
+  [[nodiscard]] std::pair<linalg::Vector, double> corrected(const Matrix& system, const linalg::Vector& right) const {
+    linalg::Vector solution = linalg::Vector::zero(right.size());
+    linalg::Vector rest = right;
     double left = right.norm();
     for (int i = 0; i < refinements; ++i) {
-      const Eigen::VectorXd next = solution + factors_.solve(rest);
-      const Eigen::VectorXd next_rest = right - system * next;
+      const linalg::Vector next = solution + factors_.solve(rest);
+      const linalg::Vector next_rest = right - system * next;
       const double next_left = next_rest.norm();
       if (!(next_left <= left)) break;
       solution = next;
@@ -181,15 +175,15 @@ class Corrector {
 
   int variables_;
   bool has_factors_ = false;
-  Eigen::SparseLU<Matrix> factors_;
+  linalg::SparseLu factors_;
 };
 
 /// Multipliers of active bounds from stationarity; those of the others are zero.
 void set_bound_multipliers(NlpPoint& point, const Values& values, const ActiveSet& active, const mpcc::Bounds& bounds) {
-  const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * point.y;
-  point.z_lower.setZero();
-  point.z_upper.setZero();
-  for (Eigen::Index i = 0; i < slope.size(); ++i) {
+  const linalg::Vector slope = values.gradient + values.jacobian.transposed_times(point.y);
+  point.z_lower.set_zero();
+  point.z_upper.set_zero();
+  for (linalg::Index i = 0; i < slope.size(); ++i) {
     if (active.column[at(i)] >= 0) continue;
     const bool at_lower = active.held[i] == bounds.lower[i];
     const bool at_upper = active.held[i] == bounds.upper[i];
@@ -199,30 +193,30 @@ void set_bound_multipliers(NlpPoint& point, const Values& values, const ActiveSe
 }
 
 /// What the optimality conditions of the active set lack.
-Eigen::VectorXd right_side_of(const NlpPoint& point, const Values& values, const ActiveSet& active) {
-  const Eigen::VectorXd slope = values.gradient + values.jacobian.transpose() * point.y;
-  Eigen::VectorXd right(active.variables + active.rows);
-  for (Eigen::Index i = 0; i < slope.size(); ++i) {
+linalg::Vector right_side_of(const NlpPoint& point, const Values& values, const ActiveSet& active) {
+  const linalg::Vector slope = values.gradient + values.jacobian.transposed_times(point.y);
+  linalg::Vector right(active.variables + active.rows);
+  for (linalg::Index i = 0; i < slope.size(); ++i) {
     if (active.column[at(i)] >= 0) right[active.column[at(i)]] = -slope[i];
   }
-  for (Eigen::Index i = 0; i < values.c.size(); ++i) {
+  for (linalg::Index i = 0; i < values.c.size(); ++i) {
     if (active.line[at(i)] >= 0) right[active.variables + active.line[at(i)]] = active.target[i] - values.c[i];
   }
   return right;
 }
 
-void add_correction(const Eigen::VectorXd& d, const ActiveSet& active, NlpPoint& point) {
-  for (Eigen::Index i = 0; i < point.w.size(); ++i) {
+void add_correction(const linalg::Vector& d, const ActiveSet& active, NlpPoint& point) {
+  for (linalg::Index i = 0; i < point.w.size(); ++i) {
     if (active.column[at(i)] >= 0) point.w[i] += d[active.column[at(i)]];
   }
-  for (Eigen::Index i = 0; i < point.y.size(); ++i) {
+  for (linalg::Index i = 0; i < point.y.size(); ++i) {
     if (active.line[at(i)] >= 0) point.y[i] += d[active.variables + active.line[at(i)]];
   }
 }
 
 /// A multiplier of the wrong sign says that the active set was guessed wrong.
 bool has_right_signs(const NlpPoint& point, double tolerance) {
-  return point.w.size() == 0 || std::min(point.z_lower.minCoeff(), point.z_upper.minCoeff()) >= -tolerance;
+  return point.w.size() == 0 || std::min(point.z_lower.min(), point.z_upper.min()) >= -tolerance;
 }
 
 }  // namespace
@@ -239,7 +233,7 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
   const ActiveSet active = find_active_set(nlp, point, values.c);
   NlpPoint trial = point;
   trial.w = active.held;
-  for (Eigen::Index i = 0; i < trial.y.size(); ++i) {
+  for (linalg::Index i = 0; i < trial.y.size(); ++i) {
     if (active.line[at(i)] < 0) trial.y[i] = 0.0;
   }
   Corrector corrector(active.variables);
@@ -260,9 +254,9 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
     if (!(error < lost) || (step > 3 && error > 0.5 * last)) break;
     last = error;
     if (active.variables + active.rows == 0) break;
-    const Eigen::VectorXd d =
+    const linalg::Vector d =
         corrector.solve(system_of(nlp, trial, values, active), right_side_of(trial, values, active));
-    if (d.size() == 0 || !d.allFinite()) break;
+    if (d.size() == 0 || !d.all_finite()) break;
     add_correction(d, active, trial);
   }
   return best;
@@ -273,26 +267,21 @@ std::vector<int> dependent_equations(mpcc::Problem& nlp, ConstVectorView v) {
   const RowMatrix jacobian = jacobian_matrix(nlp, v);
   const auto& rows = nlp.constraint_bounds();
   std::vector<int> equations;
-  std::vector<Eigen::Triplet<double>> triplets;
+  std::vector<linalg::Triplet> triplets;
   for (int row = 0; row < nlp.constraints(); ++row) {
     if (rows.lower[row] != rows.upper[row]) continue;
-    for (RowMatrix::InnerIterator entry(jacobian, row); entry; ++entry) {
-      triplets.emplace_back(static_cast<int>(entry.col()), static_cast<int>(equations.size()), entry.value());
+    for (const linalg::Entry entry : jacobian.along(row)) {
+      triplets.push_back({entry.inner, index(equations.size()), entry.value});
     }
     equations.push_back(row);
   }
   if (equations.empty()) return {};
-  Matrix transposed(nlp.variables(), index(equations.size()));
-  transposed.setFromTriplets(triplets.begin(), triplets.end());
-  transposed.makeCompressed();
-  Eigen::SparseQR<Matrix, Eigen::COLAMDOrdering<int>> factors;
+  const Matrix transposed(nlp.variables(), index(equations.size()), triplets);
   // At a point near a branch, rows that depend on each other there do so to the square root of the last sigma only.
-  factors.setPivotThreshold(1e-6 *
-                            std::max(1.0, transposed.norm() / std::sqrt(1.0 + static_cast<double>(equations.size()))));
-  factors.compute(transposed);
+  const double size = transposed.norm() / std::sqrt(1.0 + static_cast<double>(equations.size()));
   std::vector<int> dependent;
-  for (Eigen::Index i = factors.rank(); i < index(equations.size()); ++i) {
-    dependent.push_back(equations[at(factors.colsPermutation().indices()[i])]);
+  for (const linalg::Index i : linalg::dependent_columns(transposed, 1e-6 * std::max(1.0, size))) {
+    dependent.push_back(equations[at(i)]);
   }
   return dependent;
 }

@@ -22,7 +22,7 @@ std::vector<std::vector<int>> groups_of(const mpcc::Problem& problem) {
 }
 
 std::vector<ActiveSide> smaller_sides(const mpcc::Problem& problem, const std::vector<std::vector<int>>& groups,
-                                      const Eigen::VectorXd& c) {
+                                      const linalg::Vector& c) {
   const auto G = c.segment(problem.constraints(), problem.pairs());
   const auto H = c.tail(problem.pairs());
   std::vector<ActiveSide> sides;

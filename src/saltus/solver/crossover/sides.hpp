@@ -15,6 +15,6 @@ namespace saltus::solver::crossover {
 /// @param c  values of (g, G, H)
 [[nodiscard]] std::vector<mpcc::ActiveSide> smaller_sides(const mpcc::Problem& problem,
                                                           const std::vector<std::vector<int>>& groups,
-                                                          const Eigen::VectorXd& c);
+                                                          const linalg::Vector& c);
 
 }  // namespace saltus::solver::crossover

@@ -38,7 +38,7 @@ bool satisfies(const mpcc::Residuals& residuals, const PathOptions& options) {
          residuals.primal_infeasibility <= options.feasibility_tolerance;
 }
 
-bool is_finite(const NlpPoint& point) { return point.w.allFinite(); }
+bool is_finite(const NlpPoint& point) { return point.w.all_finite(); }
 
 /// What ends the path after this step, if anything does.
 void conclude(PathResult& path, const PathOptions& options) {
@@ -83,7 +83,7 @@ Expected<PathResult> follow_path(mpcc::Problem& problem, ConstVectorView start, 
     }
     if (options.warm_start == WarmStart::primal)
       path.point = {.w = path.point.w, .y = {}, .z_lower = {}, .z_upper = {}};
-    const Eigen::VectorXd before = path.point.w;
+    const linalg::Vector before = path.point.w;
     const NlpReport report = solver.solve(relaxed, path.point, nlp);
     if (!is_finite(path.point)) path.point = {.w = before, .y = {}, .z_lower = {}, .z_upper = {}};
     path.residuals = mpcc::residuals(problem, path.point.w);

@@ -34,8 +34,8 @@ RelaxedProblem::RelaxedProblem(mpcc::Problem& problem, Relaxation relaxation, St
       elastic_(elastic_variables(steering, problem.pairs())),
       y_(problem.rows()) {
   const int n = problem.variables();
-  variable_bounds_.lower = Eigen::VectorXd::Zero(n + elastic_);
-  variable_bounds_.upper = Eigen::VectorXd::Constant(n + elastic_, largest_elastic);
+  variable_bounds_.lower = linalg::Vector::zero(n + elastic_);
+  variable_bounds_.upper = linalg::Vector::constant(n + elastic_, largest_elastic);
   variable_bounds_.lower.head(n) = problem.variable_bounds().lower;
   variable_bounds_.upper.head(n) = problem.variable_bounds().upper;
   find_rows();
@@ -52,11 +52,11 @@ void RelaxedProblem::find_rows() {
   first_pair_row_ = row;
   row += problem_.pairs() * inequalities_;
   const double infinity = std::numeric_limits<double>::infinity();
-  bounds_.lower = Eigen::VectorXd::Constant(row, -infinity);
-  bounds_.upper = Eigen::VectorXd::Constant(row, infinity);
+  bounds_.lower = linalg::Vector::constant(row, -infinity);
+  bounds_.upper = linalg::Vector::constant(row, infinity);
   bounds_.lower.head(n_g) = problem_.constraint_bounds().lower;
   bounds_.upper.head(n_g) = problem_.constraint_bounds().upper;
-  bounds_.upper.tail(row - first_pair_row_).setZero();
+  bounds_.upper.tail(row - first_pair_row_).set_zero();
 }
 
 void RelaxedProblem::set_sigma(double sigma) {
@@ -134,13 +134,13 @@ PairFunction RelaxedProblem::pair_at(int pair, int which, ConstVectorView w, Con
   return pair_function(relaxation_, which, c[G], c[G + problem_.pairs()], sigma);
 }
 
-Eigen::VectorXd RelaxedProblem::with_elastic_variables(ConstVectorView w) {
+linalg::Vector RelaxedProblem::with_elastic_variables(ConstVectorView w) {
   const int n = problem_.variables();
-  Eigen::VectorXd extended(n + elastic_);
+  linalg::Vector extended(n + elastic_);
   extended.head(n) = w.head(n);
-  extended.tail(elastic_).setConstant(std::min(sigma_, largest_elastic));
+  extended.tail(elastic_).set_constant(std::min(sigma_, largest_elastic));
   if (elastic_ == 0) return extended;
-  const Eigen::VectorXd& c = cache_.functions(w.head(n));
+  const linalg::Vector& c = cache_.functions(w.head(n));
   for (int pair = 0; pair < problem_.pairs(); ++pair) {
     // The parameter is normalised such that a b <= s, whatever the relaxation.
     const int G = problem_.constraints() + pair;
@@ -158,11 +158,11 @@ double RelaxedProblem::objective(ConstVectorView w) {
 void RelaxedProblem::objective_gradient(ConstVectorView w, VectorView gradient) {
   const int n = problem_.variables();
   problem_.objective_gradient(w.head(n), gradient.head(n));
-  gradient.tail(elastic_).setConstant(1.0 / sigma_);
+  gradient.tail(elastic_).set_constant(1.0 / sigma_);
 }
 
 void RelaxedProblem::functions(ConstVectorView w, VectorView c) {
-  const Eigen::VectorXd& values = cache_.functions(w.head(problem_.variables()));
+  const linalg::Vector& values = cache_.functions(w.head(problem_.variables()));
   const int n_g = problem_.constraints();
   c.head(n_g) = values.head(n_g);
   for (std::size_t side = 0; side < sign_row_.size(); ++side) {
@@ -176,9 +176,9 @@ void RelaxedProblem::functions(ConstVectorView w, VectorView c) {
 }
 
 void RelaxedProblem::jacobian(ConstVectorView w, VectorView values) {
-  const Eigen::VectorXd& c = cache_.functions(w.head(problem_.variables()));
-  const Eigen::VectorXd& entries = cache_.jacobian(w.head(problem_.variables()));
-  Eigen::Index next = 0;
+  const linalg::Vector& c = cache_.functions(w.head(problem_.variables()));
+  const linalg::Vector& entries = cache_.jacobian(w.head(problem_.variables()));
+  linalg::Index next = 0;
   for (const int entry : copied_entries_) values[next++] = entries[entry];
   for (int pair = 0; pair < problem_.pairs(); ++pair) {
     for (int which = 0; which < inequalities_; ++which) {
@@ -191,8 +191,8 @@ void RelaxedProblem::jacobian(ConstVectorView w, VectorView values) {
   }
 }
 
-Eigen::VectorXd RelaxedProblem::multipliers_of_problem(ConstVectorView w, ConstVectorView y) {
-  const Eigen::VectorXd& c = cache_.functions(w.head(problem_.variables()));
+linalg::Vector RelaxedProblem::multipliers_of_problem(ConstVectorView w, ConstVectorView y) {
+  const linalg::Vector& c = cache_.functions(w.head(problem_.variables()));
   const int n_g = problem_.constraints();
   const int pairs = problem_.pairs();
   y_.head(n_g) = y.head(n_g);
@@ -210,19 +210,19 @@ Eigen::VectorXd RelaxedProblem::multipliers_of_problem(ConstVectorView w, ConstV
 }
 
 void RelaxedProblem::add_elastic_hessian(int pair, const PairFunction& phi, ConstVectorView jacobian, VectorView values,
-                                         Eigen::Index& next) const {
+                                         linalg::Index& next) const {
   for (const auto& side : gradients_[at(pair)]) values[next++] = (side.is_H ? phi.bs : phi.as) * jacobian[side.entry];
   values[next++] = phi.ss;
 }
 
 void RelaxedProblem::hessian(ConstVectorView w, double objective_factor, ConstVectorView y, VectorView values) {
   const auto own = w.head(problem_.variables());
-  const Eigen::VectorXd& c = cache_.functions(own);
-  const Eigen::VectorXd& entries = cache_.jacobian(own);
+  const linalg::Vector& c = cache_.functions(own);
+  const linalg::Vector& entries = cache_.jacobian(own);
   static_cast<void>(multipliers_of_problem(w, y));
   const int own_entries = problem_.hessian_pattern().entries();
-  Eigen::Index next = own_entries;
-  Eigen::Index elastic = first_elastic_entry_;
+  linalg::Index next = own_entries;
+  linalg::Index elastic = first_elastic_entry_;
   for (int pair = 0; pair < problem_.pairs(); ++pair) {
     PairFunction second;  // sum over the inequalities of the pair, each times its multiplier
     for (int which = 0; which < inequalities_; ++which) {

@@ -19,10 +19,10 @@ class RelaxedProblem final : public mpcc::Problem {
   RelaxedProblem(mpcc::Problem& problem, Relaxation relaxation, Steering steering = Steering::direct);
   void set_sigma(double sigma);  ///< > 0
   /// Returns w with parameters s of pairs behind it that it satisfies, if they are below their upper bound.
-  [[nodiscard]] Eigen::VectorXd with_elastic_variables(mpcc::ConstVectorView w);
+  [[nodiscard]] linalg::Vector with_elastic_variables(mpcc::ConstVectorView w);
   /// Returns multipliers of (g, G, H) in L = f + y'c that those of the rows here amount to: of a side also what phi
   /// asks of it.
-  [[nodiscard]] Eigen::VectorXd multipliers_of_problem(mpcc::ConstVectorView w, mpcc::ConstVectorView y);
+  [[nodiscard]] linalg::Vector multipliers_of_problem(mpcc::ConstVectorView w, mpcc::ConstVectorView y);
 
   [[nodiscard]] int variables() const override { return problem_.variables() + elastic_; }
   [[nodiscard]] int constraints() const override { return static_cast<int>(bounds_.lower.size()); }
@@ -59,7 +59,7 @@ class RelaxedProblem final : public mpcc::Problem {
   void find_elastic_hessian_pattern();
   /// Values of the mixed and second derivatives with respect to s of one pair, from `next` on.
   void add_elastic_hessian(int pair, const PairFunction& phi, mpcc::ConstVectorView jacobian, mpcc::VectorView values,
-                           Eigen::Index& next) const;
+                           linalg::Index& next) const;
   [[nodiscard]] int elastic_column(int pair) const { return problem_.variables() + (elastic_ == 1 ? 0 : pair); }
   [[nodiscard]] PairFunction pair_at(int pair, int which, mpcc::ConstVectorView w, mpcc::ConstVectorView c) const;
   [[nodiscard]] int pair_row(int pair, int which) const { return first_pair_row_ + pair * inequalities_ + which; }
@@ -81,7 +81,7 @@ class RelaxedProblem final : public mpcc::Problem {
   mpcc::Pattern jacobian_pattern_;
   mpcc::Pattern hessian_pattern_;
   int first_elastic_entry_ = 0;  ///< of the Hessian, where there are any
-  Eigen::VectorXd y_;  ///< of the rows of the problem
+  linalg::Vector y_;             ///< of the rows of the problem
 };
 
 }  // namespace saltus::solver::homotopy

@@ -10,9 +10,9 @@
 namespace saltus::switching {
 namespace {
 
-using Matrix = std::array<std::array<double, 2>, 2>;
+using SquareOfTwo = std::array<std::array<double, 2>, 2>;
 
-double determinant(const Matrix& m) { return m[0][0] * m[1][1] - m[0][1] * m[1][0]; }
+double determinant(const SquareOfTwo& m) { return m[0][0] * m[1][1] - m[0][1] * m[1][0]; }
 
 PairCorners corners_of(const Plane& plane) {
   PairCorners g;

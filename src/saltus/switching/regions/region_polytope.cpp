@@ -1,12 +1,11 @@
 #include "saltus/switching/regions/region_polytope.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <utility>
-
-#include <Eigen/LU>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
@@ -19,30 +18,63 @@ namespace {
 constexpr double flat = 1e-9;
 
 constexpr int most_regions = 12;
-/// At most that many rows and columns: without allocation.
-using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most_regions, most_regions>;
-using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_regions, 1>;
+
+// Vectors have at most that many entries, which lie inside of them: without allocation.
+using linalg::Index;
+using linalg::Matrix;
+using linalg::Vector;
+
+/// What m - 1 rows of length one take to 0, of length one; empty where they depend on each other. By elimination with
+/// pivots from all entries: linalg::FullLu allocates.
+Vector kernel_of(Matrix& rows) {
+  const Index m = rows.cols();
+  std::array<Index, most_regions> order;
+  for (Index k = 0; k < m; ++k) order[at(k)] = k;
+  double largest = 0.0;
+  for (Index k = 0; k < m - 1; ++k) {
+    Index row = k, column = k;
+    for (Index j = k; j < m; ++j) {
+      for (Index i = k; i < m - 1; ++i) {
+        if (std::abs(rows(i, j)) > std::abs(rows(row, column))) row = i, column = j;
+      }
+    }
+    const double pivot = std::abs(rows(row, column));
+    largest = std::max(largest, pivot);
+    if (!(pivot > flat * largest)) return {};
+    for (Index j = 0; j < m; ++j) std::swap(rows(k, j), rows(row, j));
+    for (Index i = 0; i < m - 1; ++i) std::swap(rows(i, k), rows(i, column));
+    std::swap(order[at(k)], order[at(column)]);
+    for (Index i = k + 1; i < m - 1; ++i) rows.row(i).add_scaled(-rows(i, k) / rows(k, k), rows.row(k));
+  }
+  Vector kernel(m);
+  kernel[order[at(m - 1)]] = 1.0;
+  for (Index k = m - 2; k >= 0; --k) {
+    double sum = 0.0;
+    for (Index j = k + 1; j < m; ++j) sum += rows(k, j) * kernel[order[at(j)]];
+    kernel[order[at(k)]] = -sum / rows(k, k);
+  }
+  kernel /= kernel.norm();
+  return kernel;
+}
 
 /// The normal of the hyperplane through m of the points, of length one; empty if these span less.
-SmallVector normal_through(const Eigen::MatrixXd& points, const std::vector<int>& through) {
-  const auto m = points.cols();
-  if (m == 1) return SmallVector::Ones(1);
-  Small edges(m - 1, m);
-  for (Eigen::Index k = 1; k < m; ++k) {
+/// @param edges  work
+Vector normal_through(const Matrix& points, const std::vector<int>& through, Matrix& edges) {
+  const Index m = points.cols();
+  if (m == 1) return Vector::ones(1);
+  edges.resize(m - 1, m);
+  for (Index k = 1; k < m; ++k) {
     edges.row(k - 1) = points.row(through[at(k)]) - points.row(through[0]);
     const double length = edges.row(k - 1).norm();
     if (length == 0.0) return {};
     edges.row(k - 1) /= length;
   }
-  Eigen::FullPivLU<Small> factors(edges);
-  factors.setThreshold(flat);
-  if (factors.rank() < m - 1) return {};
-  return factors.kernel().col(0).normalized();
+  return kernel_of(edges);
 }
 
-SmallVector distances(const Eigen::MatrixXd& points, const std::vector<int>& through, const SmallVector& normal) {
-  SmallVector distance(points.rows());
-  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+Vector distances(const Matrix& points, const std::vector<int>& through, const Vector& normal) {
+  Vector distance(points.rows());
+  for (Index i = 0; i < points.rows(); ++i) {
     distance[i] = (points.row(i) - points.row(through[0])).dot(normal);
   }
   return distance;
@@ -50,7 +82,7 @@ SmallVector distances(const Eigen::MatrixXd& points, const std::vector<int>& thr
 
 }  // namespace
 
-std::optional<RegionPolytope> RegionPolytope::make(Eigen::MatrixXd points) {
+std::optional<RegionPolytope> RegionPolytope::make(Matrix points) {
   SALTUS_ASSERT(1 <= points.rows() && points.rows() <= most_regions);
   RegionPolytope polytope(std::move(points));
   if (!polytope.find_facets()) return std::nullopt;
@@ -65,8 +97,8 @@ bool RegionPolytope::find_facets() {
     return true;
   }
   if (n <= m) return false;
-  const Eigen::MatrixXd centred = points_.rowwise() - points_.colwise().mean();
-  const double size = centred.cwiseAbs().maxCoeff();
+  const Matrix centred = linalg::plus_row(points_, points_.col_sums() / -static_cast<double>(n));
+  const double size = centred.max_abs();
   if (!(size > 0.0) || !std::isfinite(size)) return false;
   std::vector<bool> chosen(static_cast<std::size_t>(n), false);
   std::fill_n(chosen.begin(), m, true);
@@ -75,10 +107,10 @@ bool RegionPolytope::find_facets() {
     for (int i = 0; i < n; ++i) {
       if (chosen[at(i)]) through.push_back(i);
     }
-    const SmallVector normal = normal_through(points_, through);
+    const Vector normal = normal_through(points_, through, edges_);
     if (normal.size() == 0) continue;
-    const SmallVector distance = distances(points_, through, normal);
-    if (distance.minCoeff() < -flat * size && distance.maxCoeff() > flat * size) continue;
+    const Vector distance = distances(points_, through, normal);
+    if (distance.min() < -flat * size && distance.max() > flat * size) continue;
     RegionBits on = 0;
     for (int i = 0; i < n; ++i) on |= std::abs(distance[i]) <= flat * size ? RegionBits{1} << i : 0U;
     if (on == (RegionBits{1} << n) - 1) return false;  // all in one plane
@@ -86,23 +118,23 @@ bool RegionPolytope::find_facets() {
     facets_.push_back(on);
     spanning_.push_back(std::move(through));
   } while (std::prev_permutation(chosen.begin(), chosen.end()));
-  heights_.resize(static_cast<Eigen::Index>(facets_.size()), n);
+  heights_.resize(static_cast<Index>(facets_.size()), n);
   normals_.resize(heights_.rows(), m);
   for (std::size_t f = 0; f < facets_.size(); ++f) set_facet(f);
   return facets_.size() > static_cast<std::size_t>(m);
 }
 
 void RegionPolytope::set_facet(std::size_t facet) {
-  SmallVector normal = normal_through(points_, spanning_[facet]);
+  Vector normal = normal_through(points_, spanning_[facet], edges_);
   if (normal.size() == 0) return;  // as it was: behind a move that turns it too far
-  const auto row = static_cast<Eigen::Index>(facet);
-  SmallVector height = distances(points_, spanning_[facet], normal);
+  const auto row = static_cast<Index>(facet);
+  Vector height = distances(points_, spanning_[facet], normal);
   if (height.sum() < 0.0) {
-    height = -height;
-    normal = -normal;
+    height *= -1.0;
+    normal *= -1.0;
   }
   double smallest = std::numeric_limits<double>::infinity();
-  for (Eigen::Index i = 0; i < height.size(); ++i) {
+  for (Index i = 0; i < height.size(); ++i) {
     const bool on = (facets_[facet] >> static_cast<unsigned>(i) & 1U) != 0;
     if (on) height[i] = 0.0;
     if (!on) smallest = std::min(smallest, std::abs(height[i]));
@@ -112,11 +144,11 @@ void RegionPolytope::set_facet(std::size_t facet) {
     h = std::abs(h) / smallest;
     if (std::abs(h - std::round(h)) <= flat * h) h = std::round(h);
   }
-  heights_.row(row) = height.transpose();
-  normals_.row(row) = normal.transpose() / smallest;
+  heights_.row(row) = height;
+  normals_.row(row) = normal / smallest;
 }
 
-void RegionPolytope::move(const Eigen::Ref<const Eigen::MatrixXd>& points) {
+void RegionPolytope::move(linalg::ConstView points) {
   points_ = points;
   for (std::size_t f = 0; f < facets_.size(); ++f) set_facet(f);
 }

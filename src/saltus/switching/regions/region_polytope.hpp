@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::switching {
 
@@ -20,32 +20,33 @@ using RegionBits = unsigned;
 class RegionPolytope {
  public:
   /// Returns nullopt if the points do not span R^m.
-  [[nodiscard]] static std::optional<RegionPolytope> make(Eigen::MatrixXd points);
+  [[nodiscard]] static std::optional<RegionPolytope> make(linalg::Matrix points);
 
-  [[nodiscard]] const Eigen::MatrixXd& points() const { return points_; }
+  [[nodiscard]] const linalg::Matrix& points() const { return points_; }
   [[nodiscard]] int regions() const { return static_cast<int>(points_.rows()); }
   [[nodiscard]] int dimension() const { return static_cast<int>(points_.cols()); }
   /// Returns the faces of dimension m - 1, in an order that depends on the numbering of the regions only.
   [[nodiscard]] const std::vector<RegionBits>& facets() const { return facets_; }
   /// Returns the distances of the points from a facet, the smallest one that is not 0 being 1; facets in rows.
-  [[nodiscard]] const Eigen::MatrixXd& heights() const { return heights_; }
+  [[nodiscard]] const linalg::Matrix& heights() const { return heights_; }
   /// Returns the inward normals with these heights: nu_f . (y_i - y) for y on facet f; facets in rows.
-  [[nodiscard]] const Eigen::MatrixXd& normals() const { return normals_; }
+  [[nodiscard]] const linalg::Matrix& normals() const { return normals_; }
   /// Returns all faces but the empty one, the polytope itself first.
   [[nodiscard]] std::vector<RegionBits> faces() const;
   /// Takes other points with the same faces, as where gradients turn a little while the solution slides. Allocates
   /// nothing.
-  void move(const Eigen::Ref<const Eigen::MatrixXd>& points);
+  void move(linalg::ConstView points);
 
  private:
-  explicit RegionPolytope(Eigen::MatrixXd points) : points_(std::move(points)) {}
+  explicit RegionPolytope(linalg::Matrix points) : points_(std::move(points)) {}
   [[nodiscard]] bool find_facets();
   void set_facet(std::size_t facet);
 
-  Eigen::MatrixXd points_;
+  linalg::Matrix points_;
   std::vector<RegionBits> facets_;
   std::vector<std::vector<int>> spanning_;  ///< m regions of each facet whose points span it
-  Eigen::MatrixXd heights_, normals_;
+  linalg::Matrix heights_, normals_;
+  linalg::Matrix edges_;  ///< work
 };
 
 }  // namespace saltus::switching

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <numeric>
 
-#include <Eigen/LU>
+#include "saltus/linalg/factors.hpp"
 
 namespace saltus::switching {
 namespace {
@@ -30,8 +30,8 @@ int beyond(const RegionPolytope& polytope, std::size_t edge, int region) {
 
 /// From vertex to vertex, the first one entered over the edge `entry`.
 std::optional<RegionCycle> cycle_over(const RegionTie& tie, int first, std::size_t entry) {
-  const auto border = [&](std::size_t edge) -> Eigen::Vector2d {
-    return -tie.polytope.normals().row(static_cast<Eigen::Index>(edge)).normalized().transpose();
+  const auto border = [&](std::size_t edge) -> linalg::Vector {
+    return -tie.polytope.normals().row(static_cast<linalg::Index>(edge)).normalized();
   };
   RegionCycle cycle;
   cycle.cycle_ratio = 1.0;
@@ -41,11 +41,11 @@ std::optional<RegionCycle> cycle_over(const RegionTie& tie, int first, std::size
     const auto edges = edges_at(tie.polytope, region);
     if (!edges || cycle.regions.size() > static_cast<std::size_t>(tie.polytope.regions())) return std::nullopt;
     const std::size_t exit = (*edges)[0] == edge ? (*edges)[1] : (*edges)[0];
-    Eigen::Matrix2d directions;
+    linalg::Matrix directions(2, 2);
     directions.col(0) = -tie.rates.col(region);
     directions.col(1) = border(exit);
-    const Eigen::Vector2d parts = directions.partialPivLu().solve(border(edge));
-    if (!(parts[0] > 0.0 && parts[1] > 0.0) || !parts.allFinite()) return std::nullopt;
+    const linalg::Vector parts = linalg::Lu(directions).solve(border(edge));
+    if (!(parts[0] > 0.0 && parts[1] > 0.0) || !parts.all_finite()) return std::nullopt;
     cycle.regions.push_back(region);
     cycle.durations.push_back(cycle.cycle_ratio * parts[0]);
     cycle.cycle_ratio *= parts[1];

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/factors.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/switching/regions/region_polytope.hpp"
 
 namespace saltus::switching {
@@ -33,7 +33,7 @@ class RegionWeights {
   ///               behind an exit
   /// @return false if there is no root near by. Several starts may have several roots.
   /// Cost: per iteration n m powers and one linear system of order m; 2 to 4 iterations from nearby.
-  [[nodiscard]] bool solve(const Eigen::MatrixXd& rates, double* theta);
+  [[nodiscard]] bool solve(const linalg::Matrix& rates, double* theta);
 
   /// Returns, behind solve(), the sum of the weights that are not on a facet: > 0 inside, and 0 where the solution
   /// leaves the other regions.
@@ -48,30 +48,29 @@ class RegionWeights {
   [[nodiscard]] double stability() const;
 
  private:
-  using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 12, 12>;
-  using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 12, 1>;
-
   void choose_chart(const double* theta);
   void place_start(const double* theta);
-  void evaluate(const Eigen::MatrixXd& rates);
-  [[nodiscard]] bool iterate(const Eigen::MatrixXd& rates);
-  void finish(const Eigen::MatrixXd& rates, double* theta);
+  void evaluate(const linalg::Matrix& rates);
+  [[nodiscard]] bool iterate(const linalg::Matrix& rates);
+  void finish(const linalg::Matrix& rates, double* theta);
 
   RegionPolytope polytope_;
   std::vector<double> excess_;
   std::vector<std::size_t> order_;
   std::vector<std::size_t> chart_;  ///< m facets through a vertex
   bool is_box_ = false;             ///< all corners of a parallelepiped
-  Small exponents_;                 ///< n x m
-  SmallVector p_, value_, step_, monomials_;
-  Small slopes_;    ///< n x m: derivatives of the monomials
-  Small jacobian_;  ///< m x m
+  linalg::Matrix exponents_;        ///< n x m
+  linalg::Vector p_, value_, step_, monomials_;
+  linalg::Matrix slopes_;          ///< n x m: derivatives of the monomials
+  linalg::Matrix jacobian_;        ///< m x m
+  linalg::Matrix basis_, matrix_;  ///< work, m x m
+  linalg::Lu factors_;             ///< work
   double determinant_ = 0.0;
 };
 
 /// Returns d (ds/dt) / dv at weights theta: its eigenvalues say whether the weights return, R (diag theta - theta
 /// theta^T) Y.
-[[nodiscard]] Eigen::MatrixXd weight_dynamics(const Eigen::MatrixXd& points, const Eigen::MatrixXd& rates,
-                                              const Eigen::VectorXd& theta);
+[[nodiscard]] linalg::Matrix weight_dynamics(linalg::ConstView points, linalg::ConstView rates,
+                                             linalg::ConstView theta);
 
 }  // namespace saltus::switching

@@ -4,18 +4,17 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/matrix.hpp"
+#include "saltus/linalg/spectra.hpp"
 #include "saltus/switching/table/matrix_stability.hpp"
 
 namespace saltus::switching {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using linalg::Index;
+using linalg::Matrix;
+using linalg::Vector;
 
 double largest(const std::vector<double>& values) {
   double size = 0.0;
@@ -25,7 +24,7 @@ double largest(const std::vector<double>& values) {
 
 /// The equations of a set at alpha = 0 and 1: rows of its regions over the size of the rates, and that of psi over its.
 struct Pencil {
-  MatrixXd below, above;
+  Matrix below, above;
 };
 
 struct Sizes {
@@ -38,38 +37,38 @@ Sizes sizes_of(const RegionsOnSurface& point) {
   return {rates > 0.0 ? rates : 1.0, velocity > 0.0 ? velocity : 1.0};
 }
 
-MatrixXd equations(const RegionRates& rates, const std::vector<double>& velocity, const std::vector<int>& active,
-                   const Sizes& sizes) {
+Matrix equations(const RegionRates& rates, const std::vector<double>& velocity, const std::vector<int>& active,
+                 const Sizes& sizes) {
   const auto k = static_cast<Index>(active.size());
-  MatrixXd matrix = MatrixXd::Zero(k + 1, k + 1);
+  Matrix matrix = Matrix::zero(k + 1, k + 1);
   for (Index column = 0; column < k; ++column) {
     const auto j = at(active[at(column)]);
     for (Index row = 0; row < k; ++row) matrix(row, column) = rates.rate(at(active[at(row)]), j) / sizes.rates;
     matrix(k, column) = velocity[j] / sizes.velocity;
   }
-  matrix.block(0, k, k, 1).setConstant(-1.0);
+  matrix.block(0, k, k, 1).set_constant(-1.0);
   return matrix;
 }
 
 /// theta and mu at an eigenvalue; false if they are not determined or do not sum to 1.
-bool weights_at(const Pencil& pencil, double alpha, VectorXd& weights) {
-  const MatrixXd matrix = (1.0 - alpha) * pencil.below + alpha * pencil.above;
-  const Eigen::JacobiSVD<MatrixXd> svd(matrix, Eigen::ComputeFullV);
+bool weights_at(const Pencil& pencil, double alpha, Vector& weights) {
+  const Matrix matrix = (1.0 - alpha) * pencil.below + alpha * pencil.above;
+  const auto [sizes, right] = linalg::singular_values(matrix);
   const auto last = matrix.cols() - 1;
   constexpr double several = 1e-9;
-  if (last > 0 && !(svd.singularValues()[last - 1] > several * svd.singularValues()[0])) return false;
-  weights = svd.matrixV().col(last);
+  if (last > 0 && !(sizes[last - 1] > several * sizes[0])) return false;
+  weights = right.col(last);
   const double sum = weights.head(last).sum();
   if (!(std::abs(sum) > several)) return false;
   weights /= sum;
-  return weights.allFinite();
+  return weights.all_finite();
 }
 
-double margin_of_slide(const RegionsOnSurface& point, const Sizes& sizes, const VectorXd& weights,
+double margin_of_slide(const RegionsOnSurface& point, const Sizes& sizes, const Vector& weights,
                        const RegionSlide& slide) {
   const auto& active = slide.regions.active;
   double margin = std::min(slide.alpha, 1.0 - slide.alpha);
-  if (active.size() > 1) margin = std::min(margin, weights.head(weights.size() - 1).minCoeff());
+  if (active.size() > 1) margin = std::min(margin, weights.head(weights.size() - 1).min());
   const double mu = weights[weights.size() - 1];
   for (int i = 0; i < point.below.regions; ++i) {
     if (std::binary_search(active.begin(), active.end(), i)) continue;
@@ -86,18 +85,18 @@ double margin_of_slide(const RegionsOnSurface& point, const Sizes& sizes, const 
 /// d (psi_i', psi') / d (u, w) with theta_i ~ exp(u_i), alpha = 1 / (1 + exp(-w)), over the sizes.
 bool slide_attracts(const Pencil& pencil, const RegionSlide& slide) {
   const auto k = static_cast<Index>(slide.regions.active.size());
-  const Eigen::Map<const VectorXd> theta(slide.regions.weights.data(), k);
-  const MatrixXd mixed = (1.0 - slide.alpha) * pencil.below + slide.alpha * pencil.above;
+  const linalg::ConstView theta(slide.regions.weights.data(), k);
+  const Matrix mixed = (1.0 - slide.alpha) * pencil.below + slide.alpha * pencil.above;
   // Rates of psi_i = g_r - g_i for all but the first, and of psi.
-  const auto rates_of = [&](const MatrixXd& matrix) {
-    MatrixXd rates(k, k);
+  const auto rates_of = [&](const Matrix& matrix) {
+    Matrix rates(k, k);
     for (Index i = 1; i < k; ++i) rates.row(i - 1) = matrix.row(0).head(k) - matrix.row(i).head(k);
     rates.row(k - 1) = matrix.row(k).head(k);
     return rates;
   };
-  const MatrixXd spread = MatrixXd(theta.asDiagonal()) - theta * theta.transpose();
-  MatrixXd dynamics(k, k);
-  dynamics.leftCols(k - 1) = rates_of(mixed) * spread.rightCols(k - 1);
+  const Matrix spread = Matrix::diagonal_of(theta) - theta * theta.transpose();
+  Matrix dynamics(k, k);
+  dynamics.left_cols(k - 1) = rates_of(mixed) * spread.right_cols(k - 1);
   dynamics.col(k - 1) = slide.alpha * (1.0 - slide.alpha) * (rates_of(pencil.above) - rates_of(pencil.below)) * theta;
   std::vector<double> entries;
   for (Index row = 0; row < k; ++row) {
@@ -111,12 +110,10 @@ std::vector<RegionSlide> slides_of(const RegionsOnSurface& point, const std::vec
   const Pencil pencil{equations(point.below, point.velocity_below, active, sizes),
                       equations(point.above, point.velocity_above, active, sizes)};
   std::vector<RegionSlide> found;
-  if (!pencil.below.allFinite() || !pencil.above.allFinite()) return found;
-  const Eigen::GeneralizedEigenSolver<MatrixXd> eigen(pencil.below, pencil.below - pencil.above, false);
-  if (eigen.info() != Eigen::Success) return found;
-  for (Index i = 0; i < eigen.alphas().size(); ++i) {
-    const auto numerator = eigen.alphas()[i];
-    const double denominator = eigen.betas()[i];
+  if (!pencil.below.all_finite() || !pencil.above.all_finite()) return found;
+  const auto values = linalg::pencil_eigenvalues(pencil.below, pencil.below - pencil.above);
+  if (!values) return found;
+  for (const auto& [numerator, denominator] : *values) {
     // Infinite ones, or pairs of complex ones.
     if (!(std::abs(denominator) > 1e-14 * std::abs(numerator)) ||
         std::abs(numerator.imag()) > 1e-10 * std::abs(denominator)) {
@@ -124,7 +121,7 @@ std::vector<RegionSlide> slides_of(const RegionsOnSurface& point, const std::vec
     }
     RegionSlide slide;
     slide.alpha = numerator.real() / denominator;
-    VectorXd weights;
+    Vector weights;
     if (!weights_at(pencil, slide.alpha, weights)) continue;
     slide.regions.active = active;
     slide.regions.weights.assign(weights.data(), weights.data() + active.size());

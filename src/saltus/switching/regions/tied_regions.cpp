@@ -3,57 +3,59 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/factors.hpp"
 #include "saltus/switching/regions/region_weights.hpp"
 #include "saltus/switching/table/matrix_stability.hpp"
 
 namespace saltus::switching {
 namespace {
 
-using Eigen::MatrixXd;
+using linalg::Matrix;
+using linalg::Vector;
 
 /// A face as a polytope of its own, in differences from its first region along a basis of them.
 struct Face {
   std::vector<int> active;
   RegionPolytope polytope;
-  MatrixXd rates;  ///< of the coordinates along the basis, for the regions of the face
+  Matrix rates;  ///< of the coordinates along the basis, for the regions of the face
 };
 
 /// Part of a difference that the ones before do not span, relative to it, below which it depends on them.
 constexpr double independent_difference = 1e-6;
 
 std::optional<Face> face_of(const RegionTie& tie, const std::vector<int>& active) {
-  const MatrixXd& points = tie.polytope.points();
+  const Matrix& points = tie.polytope.points();
   const auto count = index(active.size());
-  MatrixXd differences(count, points.cols());
-  for (Eigen::Index k = 0; k < count; ++k) {
+  Matrix differences(count, points.cols());
+  for (linalg::Index k = 0; k < count; ++k) {
     differences.row(k) = points.row(active[static_cast<std::size_t>(k)]) - points.row(active[0]);
   }
   // The largest remainder first, so that coordinates are of the order of one.
-  MatrixXd rest = differences;
-  std::vector<Eigen::Index> basis;
-  const double size = differences.rowwise().norm().maxCoeff();
+  Matrix rest = differences;
+  std::vector<linalg::Index> basis;
+  const double size = differences.row_norms().max();
   while (basis.size() < static_cast<std::size_t>(std::min(points.cols(), count - 1))) {
-    Eigen::Index best = 0;
-    if (!(rest.rowwise().norm().maxCoeff(&best) > independent_difference * size)) break;
-    const Eigen::RowVectorXd direction = rest.row(best).normalized();
-    rest -= (rest * direction.transpose()) * direction;
+    const Vector left = rest.row_norms();
+    const linalg::Index best = left.index_of_max();
+    if (!(left[best] > independent_difference * size)) break;
+    const Vector direction = rest.row(best).normalized();
+    rest -= (rest * direction) * direction.transpose();
     basis.push_back(best);
   }
   std::sort(basis.begin(), basis.end());
-  MatrixXd spanning(index(basis.size()), points.cols());
+  Matrix spanning(index(basis.size()), points.cols());
   for (std::size_t k = 0; k < basis.size(); ++k) spanning.row(index(k)) = differences.row(basis[k]);
-  MatrixXd coordinates(count, index(basis.size()));
+  Matrix coordinates(count, index(basis.size()));
   if (!basis.empty()) {
-    coordinates = (spanning * spanning.transpose()).ldlt().solve(spanning * differences.transpose()).transpose();
+    const linalg::Ldl products(spanning * spanning.transpose());
+    coordinates = products.solve(spanning * differences.transpose()).transpose();
   }
-  MatrixXd rates(index(basis.size()), count);
-  for (Eigen::Index k = 0; k < count; ++k) {
+  Matrix rates(index(basis.size()), count);
+  for (linalg::Index k = 0; k < count; ++k) {
     rates.col(k) = spanning * tie.rates.col(active[static_cast<std::size_t>(k)]);
   }
   auto polytope = RegionPolytope::make(std::move(coordinates));
@@ -65,11 +67,11 @@ std::optional<Face> face_of(const RegionTie& tie, const std::vector<int>& active
 double margin_of_tie(const RegionTie& tie, const RegionWeights& weights, const RegionSet& set) {
   double margin = std::numeric_limits<double>::infinity();
   for (std::size_t f = 0; f < weights.polytope().facets().size(); ++f) margin = std::min(margin, weights.excess(f));
-  Eigen::VectorXd velocity = Eigen::VectorXd::Zero(tie.rates.rows());
+  Vector velocity = Vector::zero(tie.rates.rows());
   for (std::size_t k = 0; k < set.active.size(); ++k) velocity += set.weights[k] * tie.rates.col(set.active[k]);
-  const Eigen::VectorXd ahead = tie.polytope.points() * velocity;
-  const double scale = (tie.polytope.points() * tie.rates).cwiseAbs().maxCoeff();
-  for (Eigen::Index i = 0; i < ahead.size(); ++i) {
+  const Vector ahead = tie.polytope.points() * velocity;
+  const double scale = (tie.polytope.points() * tie.rates).max_abs();
+  for (linalg::Index i = 0; i < ahead.size(); ++i) {
     if (std::binary_search(set.active.begin(), set.active.end(), static_cast<int>(i))) continue;
     margin = std::min(margin, (ahead[set.active[0]] - ahead[i]) / (scale > 0.0 ? scale : 1.0));
   }
@@ -89,29 +91,32 @@ bool solve_on(const RegionTie& tie, const Face& face, RegionWeights& weights, co
 bool face_attracts(const Face& face, const RegionSet& set) {
   const auto m = face.rates.rows();
   if (m == 0) return true;
-  const Eigen::Map<const Eigen::VectorXd> theta(set.weights.data(), index(set.weights.size()));
-  const MatrixXd dynamics = weight_dynamics(face.polytope.points(), face.rates, theta);
+  const linalg::ConstView theta(set.weights.data(), index(set.weights.size()));
+  const Matrix dynamics = weight_dynamics(face.polytope.points(), face.rates, theta);
   std::vector<double> entries;
-  for (Eigen::Index row = 0; row < m; ++row) {
-    for (Eigen::Index column = 0; column < m; ++column) entries.push_back(dynamics(row, column));
+  for (linalg::Index row = 0; row < m; ++row) {
+    for (linalg::Index column = 0; column < m; ++column) entries.push_back(dynamics(row, column));
   }
   return is_hurwitz(entries, static_cast<int>(m));
 }
 
 /// Weights to start from: the centre, and near each region and the side opposite of it.
 std::vector<std::vector<double>> starts(const RegionPolytope& polytope) {
-  const MatrixXd centred = polytope.points().rowwise() - polytope.points().colwise().mean();
-  const double size = centred.rowwise().squaredNorm().maxCoeff();
+  const Matrix& points = polytope.points();
+  const Matrix centred = linalg::plus_row(points, points.col_sums() / -static_cast<double>(points.rows()));
+  const double radius = centred.row_norms().max(), size = radius * radius;
   std::vector<std::vector<double>> found;
-  const auto add = [&](const Eigen::VectorXd& exponents) {
-    const Eigen::ArrayXd weights = (exponents.array() - exponents.maxCoeff()).exp();
-    found.emplace_back(weights.data(), weights.data() + weights.size());
-    for (double& weight : found.back()) weight /= weights.sum();
+  const auto add = [&](const Vector& exponents) {
+    const double largest = exponents.max();
+    auto& weights = found.emplace_back(exponents.begin(), exponents.end());
+    for (double& weight : weights) weight = std::exp(weight - largest);
+    const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+    for (double& weight : weights) weight /= sum;
   };
-  add(Eigen::VectorXd::Zero(centred.rows()));
+  add(Vector::zero(centred.rows()));
   if (!(size > 0.0)) return found;
-  for (Eigen::Index i = 0; i < centred.rows(); ++i) {
-    const Eigen::VectorXd towards = 2.0 / size * (centred * centred.row(i).transpose());
+  for (linalg::Index i = 0; i < centred.rows(); ++i) {
+    const Vector towards = 2.0 / size * (centred * centred.row(i).transpose());
     add(towards);
     add(-towards);
   }
@@ -165,42 +170,42 @@ bool can_be_held(const RegionTie& tie) {
   if (n <= m) return false;
   std::vector<bool> taken(static_cast<std::size_t>(n), false);
   std::fill(taken.begin(), taken.begin() + m + 1, true);
-  MatrixXd equations(m + 1, m + 1);
-  const Eigen::VectorXd sum_is_one = Eigen::VectorXd::Unit(m + 1, m);
+  Matrix equations(m + 1, m + 1);
+  const Vector sum_is_one = Vector::unit(m + 1, m);
   do {
-    Eigen::Index column = 0;
-    for (Eigen::Index i = 0; i < n; ++i) {
+    linalg::Index column = 0;
+    for (linalg::Index i = 0; i < n; ++i) {
       if (!taken[static_cast<std::size_t>(i)]) continue;
       equations.col(column).head(m) = tie.rates.col(i);
       equations(m, column++) = 1.0;
     }
     // A corner that is 0 to rounding may be on either side: a face of the others has it, too.
-    const Eigen::VectorXd weights = equations.partialPivLu().solve(sum_is_one);
-    if (weights.allFinite() && weights.minCoeff() >= 0.0) return true;
+    const Vector weights = linalg::Lu(equations).solve(sum_is_one);
+    if (weights.all_finite() && weights.min() >= 0.0) return true;
   } while (std::prev_permutation(taken.begin(), taken.end()));
   return false;
 }
 
-bool motion_depends_on_weights(const RegionTie& tie, const RegionSet& set, const Eigen::MatrixXd& fields) {
+bool motion_depends_on_weights(const RegionTie& tie, const RegionSet& set, const Matrix& fields) {
   const auto face = face_of(tie, set.active);
   if (!face) return false;
   const auto count = index(set.active.size());
-  MatrixXd equations(face->rates.rows() + 1, count);
-  equations.topRows(face->rates.rows()) = face->rates;
-  equations.bottomRows(1).setOnes();
-  const double size = face->rates.size() > 0 ? face->rates.cwiseAbs().maxCoeff() : 0.0;
-  if (size > 0.0) equations.topRows(face->rates.rows()) /= size;
-  Eigen::FullPivLU<MatrixXd> factors(equations);
-  factors.setThreshold(1e-12);
-  if (factors.dimensionOfKernel() == 0) return false;
-  MatrixXd own(fields.rows(), count);
-  for (Eigen::Index k = 0; k < count; ++k) own.col(k) = fields.col(set.active[static_cast<std::size_t>(k)]);
+  Matrix equations(face->rates.rows() + 1, count);
+  equations.top_rows(face->rates.rows()) = face->rates;
+  equations.bottom_rows(1).set_constant(1.0);
+  const double size = face->rates.max_abs();
+  if (size > 0.0) equations.top_rows(face->rates.rows()) /= size;
+  linalg::FullLu factors(equations);
+  factors.set_threshold(1e-12);
+  if (factors.dimension_of_kernel() == 0) return false;
+  Matrix own(fields.rows(), count);
+  for (linalg::Index k = 0; k < count; ++k) own.col(k) = fields.col(set.active[static_cast<std::size_t>(k)]);
   // Weights are between 0 and 1: what their changes move, against what the fields do, state by state.
-  const MatrixXd kernel = factors.kernel();
-  const MatrixXd motion = own * kernel;
-  const double change = kernel.cwiseAbs().maxCoeff();
-  for (Eigen::Index row = 0; row < own.rows(); ++row) {
-    if (motion.row(row).cwiseAbs().maxCoeff() > 1e-9 * change * own.row(row).cwiseAbs().maxCoeff()) return true;
+  const Matrix kernel = factors.kernel();
+  const Matrix motion = own * kernel;
+  const double change = kernel.max_abs();
+  for (linalg::Index row = 0; row < own.rows(); ++row) {
+    if (motion.row(row).max_abs() > 1e-9 * change * own.row(row).max_abs()) return true;
   }
   return false;
 }

@@ -3,8 +3,7 @@
 
 #include <vector>
 
-#include <Eigen/Core>
-
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/switching/regions/region_decision.hpp"
 #include "saltus/switching/regions/region_polytope.hpp"
 
@@ -13,7 +12,7 @@ namespace saltus::switching {
 /// Holds regions that meet, with g_r - g_i = sum_k y_ik s_k, and how their fields move them.
 struct RegionTie {
   RegionPolytope polytope;  ///< the y_i
-  Eigen::MatrixXd rates;    ///< m x n: ds/dt along the field of each region
+  linalg::Matrix rates;     ///< m x n: ds/dt along the field of each region
 };
 
 /// Finds the set of regions of a face, the largest sums y_i . ds/dt being theirs, with the weights of RegionWeights.
@@ -38,6 +37,6 @@ struct RegionTie {
 /// Returns whether the motion of a set depends on which of all weights with the same ds/dt are taken: then Stewart's
 /// system has solutions that move differently.
 /// @param fields  n_x x n, in the order of the tie
-[[nodiscard]] bool motion_depends_on_weights(const RegionTie& tie, const RegionSet& set, const Eigen::MatrixXd& fields);
+[[nodiscard]] bool motion_depends_on_weights(const RegionTie& tie, const RegionSet& set, const linalg::Matrix& fields);
 
 }  // namespace saltus::switching

@@ -8,9 +8,9 @@
 namespace saltus::switching {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using linalg::Index;
+using linalg::Matrix;
+using linalg::Vector;
 
 /// Of columns of length 1: they come from gradients and fields, good to 12 digits.
 constexpr double no_length = 1e-9;
@@ -19,16 +19,18 @@ using Members = std::vector<bool>;
 
 /// What is left of columns outside the span of some of them, and which have nothing left.
 struct Rest {
-  MatrixXd columns;
+  Matrix columns;
   Members members;
 
-  explicit Rest(MatrixXd unit_columns) : columns(std::move(unit_columns)), members(count()) { note_members(); }
+  explicit Rest(Matrix unit_columns) : columns(std::move(unit_columns)), members(count()) { note_members(); }
 
   /// The span gets column i, which has something left.
   void take(Index i) {
-    const VectorXd direction = columns.col(i).normalized();
+    const Vector direction = columns.col(i).normalized();
     // Twice: what is left of the first time are roundings of what was taken.
-    for (int pass = 0; pass < 2; ++pass) columns -= direction * (direction.transpose() * columns);
+    for (int pass = 0; pass < 2; ++pass) {
+      for (Index j = 0; j < columns.cols(); ++j) columns.col(j).add_scaled(-direction.dot(columns.col(j)), direction);
+    }
     note_members();
   }
   [[nodiscard]] bool has(Index i) const { return members[at(i)]; }
@@ -37,19 +39,19 @@ struct Rest {
   [[nodiscard]] std::size_t count() const { return static_cast<std::size_t>(columns.cols()); }
   void note_members() {
     for (std::size_t i = 0; i < count(); ++i) {
-      members[i] = !(columns.col(static_cast<Index>(i)).squaredNorm() > no_length * no_length);
+      members[i] = !(columns.col(static_cast<Index>(i)).squared_norm() > no_length * no_length);
     }
   }
 };
 
-Rest rest_of(const MatrixXd& unit_columns, const std::vector<Index>& basis) {
+Rest rest_of(const Matrix& unit_columns, const std::vector<Index>& basis) {
   Rest rest(unit_columns);
   for (const Index i : basis) rest.take(i);
   return rest;
 }
 
 /// Of its bases the first one in lexical order.
-std::vector<Index> first_basis(const MatrixXd& unit_columns, const Members& members, Index rank) {
+std::vector<Index> first_basis(const Matrix& unit_columns, const Members& members, Index rank) {
   Rest rest(unit_columns);
   std::vector<Index> basis;
   for (Index i = 0; i < unit_columns.cols() && static_cast<Index>(basis.size()) < rank; ++i) {
@@ -67,14 +69,14 @@ struct Flat {
 
 }  // namespace
 
-std::optional<std::vector<std::vector<Index>>> column_hyperplanes(const MatrixXd& columns, std::size_t most) {
-  if (!columns.allFinite()) return std::nullopt;
-  MatrixXd unit = columns;
+std::optional<std::vector<std::vector<Index>>> column_hyperplanes(const Matrix& columns, std::size_t most) {
+  if (!columns.all_finite()) return std::nullopt;
+  Matrix unit = columns;
   for (Index i = 0; i < unit.cols(); ++i) {
     if (const double size = unit.col(i).norm(); size > 0.0) unit.col(i) /= size;
   }
   std::vector<Flat> flats{{{}, Rest(unit).members}};
-  VectorXd direction(columns.rows()), left(columns.rows());
+  Vector direction(columns.rows()), left(columns.rows());
   for (Index rank = 1; rank < columns.rows(); ++rank) {
     std::vector<Flat> next;
     std::unordered_set<Members> known;
@@ -89,8 +91,9 @@ std::optional<std::vector<std::vector<Index>>> column_hyperplanes(const MatrixXd
         for (Index j = i; j < unit.cols(); ++j) {
           const auto place = static_cast<std::size_t>(j);
           if (reached[place]) continue;
-          left = rest.columns.col(j) - direction * direction.dot(rest.columns.col(j));
-          if (j == i || !(left.squaredNorm() > no_length * no_length)) members[place] = reached[place] = true;
+          left = rest.columns.col(j);
+          left.add_scaled(-direction.dot(left), direction);
+          if (j == i || !(left.squared_norm() > no_length * no_length)) members[place] = reached[place] = true;
         }
         if (!known.insert(members).second) continue;
         if (next.size() == most) return std::nullopt;

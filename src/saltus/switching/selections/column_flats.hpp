@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::switching {
 
@@ -14,7 +14,7 @@ namespace saltus::switching {
 /// @return nothing where some rank has more than `most` flats, or a column is not finite
 /// Method: flats of rank k + 1 hold those of rank k, and what is outside of one of rank k is parted by those that hold
 /// it. Cost: r q (k + q) per flat of rank k; columns within 1e-9 of a span are in it.
-[[nodiscard]] std::optional<std::vector<std::vector<Eigen::Index>>> column_hyperplanes(const Eigen::MatrixXd& columns,
-                                                                                       std::size_t most);
+[[nodiscard]] std::optional<std::vector<std::vector<linalg::Index>>> column_hyperplanes(const linalg::Matrix& columns,
+                                                                                        std::size_t most);
 
 }  // namespace saltus::switching

@@ -10,7 +10,7 @@
 
 namespace saltus::switching {
 
-Balances balances_of(const Eigen::MatrixXd& effects, const Eigen::MatrixXd& terms) {
+Balances balances_of(const linalg::Matrix& effects, const linalg::Matrix& terms) {
   const auto r = static_cast<std::size_t>(effects.rows()), q = static_cast<std::size_t>(effects.cols());
   const auto acts = [&](std::size_t k, std::size_t i) {
     return std::abs(effects(index(k), index(i))) > field_accuracy * terms(index(k), index(i));

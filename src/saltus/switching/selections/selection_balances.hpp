@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::switching {
 
@@ -23,6 +23,6 @@ struct Balances {
 /// @param effects  B, r x q
 /// @param terms    sizes of what each entry is the sum of (gradient times jump): what is below 1e-9 of these is 0
 /// @return         by their first function; no function and no selection is in two of them
-[[nodiscard]] Balances balances_of(const Eigen::MatrixXd& effects, const Eigen::MatrixXd& terms);
+[[nodiscard]] Balances balances_of(const linalg::Matrix& effects, const linalg::Matrix& terms);
 
 }  // namespace saltus::switching

@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::switching {
 
 /// Holds a solution of: lambda in [0, 1]^m, y = w + W lambda, y_i > 0 only where lambda_i = 1, y_i < 0 only where
 /// lambda_i = 0.
 struct Complementarity {
-  Eigen::VectorXd lambda;
+  linalg::Vector lambda;
   std::vector<int> mode;         ///< 1, -1 where the surface is left to that side; 0 where it is slid on
   bool unique_velocity = false;  ///< y is the same for all solutions: D W + W^T D <= 0 for a positive diagonal D
 };
@@ -19,7 +19,7 @@ struct Complementarity {
 /// steps), and reads the mode from it: surfaces whose y is below `tolerance` relative to its terms are slid on.
 /// Not every W has a solution that this finds: the caller checks the mode by its own field.
 /// Cost: m^2 operations an iteration, 20000 iterations at most.
-[[nodiscard]] Complementarity solve_complementarity(const Eigen::MatrixXd& effects, const Eigen::VectorXd& constant,
+[[nodiscard]] Complementarity solve_complementarity(const linalg::Matrix& effects, const linalg::Vector& constant,
                                                     double tolerance);
 
 }  // namespace saltus::switching

@@ -5,31 +5,44 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/SparseLU>
-
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/matrix.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/switching/table/field_accuracy.hpp"
 
 namespace saltus::switching {
 namespace {
 
-using SparseSquare = Eigen::SparseMatrix<double>;
+using linalg::Vector;
+using SparseSquare = linalg::SparseColumns;
 
-/// w of C w = 1, the rows of C being divided by their diagonals; NaN where C is singular, or a diagonal not positive.
-Eigen::VectorXd weights_of(const SparseSquare& comparison) {
-  const auto m = comparison.rows();
-  const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(m, std::numeric_limits<double>::quiet_NaN());
-  const Eigen::VectorXd own = comparison.diagonal();
-  if (!(own.minCoeff() > 0.0)) return nothing;
-  const SparseSquare scaled = own.cwiseInverse().asDiagonal() * comparison;
-  Eigen::SparseLU<SparseSquare> lu(scaled);
-  if (lu.info() != Eigen::Success) return nothing;
-  return lu.solve(Eigen::VectorXd::Ones(m));
+/// Changes each entry of a matrix to change(row, column, value).
+template <class Change>
+void change_entries(SparseSquare& matrix, const Change& change) {
+  const auto start = matrix.start(), rows = matrix.inner();
+  const auto values = matrix.values();
+  for (linalg::Index column = 0; column < matrix.cols(); ++column) {
+    for (std::size_t k = at(start[at(column)]); k < at(start[at(column) + 1]); ++k)
+      values[k] = change(linalg::Index{rows[k]}, column, values[k]);
+  }
 }
 
-double margin_of(const Eigen::VectorXd& weights) {
+/// w of C w = 1, the rows of C being divided by their diagonals; NaN where C is singular, or a diagonal not positive.
+Vector weights_of(const SparseSquare& comparison) {
+  const auto m = comparison.rows();
+  const Vector nothing = Vector::constant(m, std::numeric_limits<double>::quiet_NaN());
+  const Vector own = comparison.diagonal();
+  if (!(own.min() > 0.0)) return nothing;
+  SparseSquare scaled = comparison;
+  scaled.scale_rows(own.inverses());
+  const linalg::SparseLu lu(scaled);
+  if (!lu.is_factorised()) return nothing;
+  return lu.solve(Vector::ones(m));
+}
+
+double margin_of(const Vector& weights) {
   double margin = 1.0;
-  for (Eigen::Index j = 0; j < weights.size(); ++j) {
+  for (linalg::Index j = 0; j < weights.size(); ++j) {
     const double part = 1.0 / weights[j];
     if (!std::isfinite(part)) return -1.0;
     margin = std::min(margin, part);
@@ -47,7 +60,7 @@ class BoundedSearch {
         weights_(weights_of(comparison)),
         alpha_(std::move(start)) {
     velocity_.resize(index(alpha_.size()));
-    largest_ = Eigen::VectorXd::Zero(velocity_.size());
+    largest_ = Vector::zero(velocity_.size());
   }
 
   [[nodiscard]] bool applies() const { return margin_of(weights_) > 0.0; }
@@ -57,14 +70,14 @@ class BoundedSearch {
     constexpr int iterations = 2000;
     SparseEffects effects(influence_);
     evaluate(alpha_);
-    for (int k = 0; k < iterations && velocity_.allFinite(); ++k) {
+    for (int k = 0; k < iterations && velocity_.all_finite(); ++k) {
       const double before = distance(alpha_);
       if (before <= 4e-16) return finish();
       effects.find(g_, alpha_.data(), velocity_.data());
       own_ = effects.matrix().diagonal();
       std::vector<double> next = newton_step(effects.matrix());
       evaluate(next);
-      if (!velocity_.allFinite() || !(distance(next) < 0.5 * before)) {
+      if (!velocity_.all_finite() || !(distance(next) < 0.5 * before)) {
         evaluate(alpha_);
         next = contracted();
         evaluate(next);
@@ -79,7 +92,7 @@ class BoundedSearch {
  private:
   void evaluate(std::vector<double>& alpha) {
     g_(alpha.data(), velocity_.data());
-    if (velocity_.allFinite()) largest_ = largest_.cwiseMax(velocity_.cwiseAbs());
+    if (velocity_.all_finite()) largest_ = largest_.at_least(velocity_.abs());
   }
   /// Of the step that contracts, in its norm; behind evaluate() there.
   [[nodiscard]] double distance(const std::vector<double>& alpha) const {
@@ -88,12 +101,12 @@ class BoundedSearch {
       const double step = std::clamp(alpha[j] + speed(j), 0.0, 1.0) - alpha[j];
       result = std::max(result, std::abs(step) / weights_[index(j)]);
     }
-    return result * weights_.minCoeff();
+    return result * weights_.min();
   }
   /// By the largest -G_jj that was seen: no step goes beyond the balance of its surface.
   [[nodiscard]] double speed(std::size_t j) const {
     const auto i = index(j);
-    const double own = own_.size() > 0 ? std::max(-own_[i], comparison_.coeff(i, i)) : comparison_.coeff(i, i);
+    const double own = own_.size() > 0 ? std::max(-own_[i], comparison_(i, i)) : comparison_(i, i);
     return velocity_[i] / own;
   }
   [[nodiscard]] std::vector<double> contracted() const {
@@ -104,22 +117,20 @@ class BoundedSearch {
   /// With the selections that stay at their bounds taken out.
   [[nodiscard]] std::vector<double> newton_step(const SparseSquare& effects) const {
     std::vector<bool> bound(alpha_.size());
-    Eigen::VectorXd right = -velocity_;
+    Vector right = -velocity_;
     for (std::size_t j = 0; j < alpha_.size(); ++j) {
       const double target = alpha_[j] + speed(j);
       bound[j] = target <= 0.0 || target >= 1.0;
       if (bound[j]) right[index(j)] = std::clamp(target, 0.0, 1.0) - alpha_[j];
     }
     SparseSquare matrix = effects;
-    for (Eigen::Index column = 0; column < matrix.outerSize(); ++column) {
-      for (SparseSquare::InnerIterator entry(matrix, column); entry; ++entry) {
-        if (bound[at(entry.row())]) entry.valueRef() = entry.row() == column ? 1.0 : 0.0;
-      }
-    }
-    Eigen::SparseLU<SparseSquare> lu(matrix);
+    change_entries(matrix, [&](linalg::Index row, linalg::Index column, double value) {
+      return !bound[at(row)] ? value : row == column ? 1.0 : 0.0;
+    });
+    const linalg::SparseLu lu(matrix);
     std::vector<double> next = alpha_;
-    if (lu.info() != Eigen::Success) return next;
-    const Eigen::VectorXd step = lu.solve(right);
+    if (!lu.is_factorised()) return next;
+    const Vector step = lu.solve(right);
     for (std::size_t j = 0; j < next.size(); ++j) next[j] = std::clamp(next[j] + step[index(j)], 0.0, 1.0);
     return next;
   }
@@ -128,7 +139,7 @@ class BoundedSearch {
     BoundedRoot root{std::vector<int>(alpha_.size(), 0), alpha_, false};
     for (std::size_t j = 0; j < alpha_.size(); ++j) {
       const double velocity = velocity_[index(j)];
-      const double rounding = field_accuracy * std::max(largest_[index(j)], comparison_.coeff(index(j), index(j)));
+      const double rounding = field_accuracy * std::max(largest_[index(j)], comparison_(index(j), index(j)));
       const bool low = alpha_[j] <= field_accuracy, high = alpha_[j] >= 1.0 - field_accuracy;
       if (low && velocity < -rounding) root.mode[j] = -1;
       if (high && velocity > rounding) root.mode[j] = 1;
@@ -140,7 +151,7 @@ class BoundedSearch {
   const Influence& influence_;
   ProjectedField g_;
   const SparseSquare& comparison_;
-  Eigen::VectorXd weights_, velocity_, largest_, own_;
+  Vector weights_, velocity_, largest_, own_;
   std::vector<double> alpha_;
 };
 
@@ -150,11 +161,9 @@ double attraction_margin(const SparseSquare& comparison) { return margin_of(weig
 
 SparseSquare comparison_of(const SparseSquare& effects) {
   SparseSquare comparison = effects;
-  for (Eigen::Index column = 0; column < comparison.outerSize(); ++column) {
-    for (SparseSquare::InnerIterator entry(comparison, column); entry; ++entry) {
-      entry.valueRef() = entry.row() == column ? -entry.value() : -std::abs(entry.value());
-    }
-  }
+  change_entries(comparison, [](linalg::Index row, linalg::Index column, double value) {
+    return row == column ? -value : -std::abs(value);
+  });
   return comparison;
 }
 
@@ -173,13 +182,10 @@ std::optional<SparseSquare> comparison_in_cube(const Influence& influence, Proje
       least = here;
       continue;
     }
-    for (Eigen::Index k = 0; k < least.nonZeros(); ++k) {
-      least.valuePtr()[k] = std::min(least.valuePtr()[k], here.valuePtr()[k]);
-    }
+    const auto values = least.values();
+    for (std::size_t k = 0; k < values.size(); ++k) values[k] = std::min(values[k], here.values()[k]);
   }
-  for (Eigen::Index k = 0; k < least.nonZeros(); ++k) {
-    if (!std::isfinite(least.valuePtr()[k])) return std::nullopt;
-  }
+  if (!least.all_finite()) return std::nullopt;
   return least;
 }
 

@@ -5,8 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/SparseCore>
-
+#include "saltus/linalg/sparse.hpp"
 #include "saltus/switching/sparse/influence.hpp"
 #include "saltus/switching/sparse/sparse_newton.hpp"
 #include "saltus/switching/table/projected_field.hpp"
@@ -19,15 +18,14 @@ namespace saltus::switching {
 /// and attracts, and det G is not 0. It is positive wherever influence is one-way and every surface attracts by itself.
 /// At most 1, and the same for all scalings of rows; 0 or less where the certificate fails.
 /// @param comparison  C, m x m
-[[nodiscard]] double attraction_margin(const Eigen::SparseMatrix<double>& comparison);
+[[nodiscard]] double attraction_margin(const linalg::SparseColumns& comparison);
 
 /// Returns C of G at one point.
-[[nodiscard]] Eigen::SparseMatrix<double> comparison_of(const Eigen::SparseMatrix<double>& effects);
+[[nodiscard]] linalg::SparseColumns comparison_of(const linalg::SparseColumns& effects);
 
 /// Returns C with the least c_j and the largest other entries that multi-affine g has anywhere in the cube: those at
 /// its corners. nullopt where there are more than `most_colours` colours. Cost: 2^colours evaluations of g.
-[[nodiscard]] std::optional<Eigen::SparseMatrix<double>> comparison_in_cube(const Influence& influence,
-                                                                            ProjectedField g);
+[[nodiscard]] std::optional<linalg::SparseColumns> comparison_in_cube(const Influence& influence, ProjectedField g);
 inline constexpr int most_colours = 8;
 
 /// Holds a mode of all surfaces with its selections: g_j = 0 with alpha_j in (0, 1) where the mode is 0, else k_j g_j >
@@ -43,7 +41,7 @@ struct BoundedRoot {
 /// positive, or g is not finite.
 /// @param start  m selections in [0, 1]
 [[nodiscard]] std::optional<BoundedRoot> bounded_root(const Influence& influence, ProjectedField g,
-                                                      const Eigen::SparseMatrix<double>& comparison,
+                                                      const linalg::SparseColumns& comparison,
                                                       std::vector<double> start);
 
 }  // namespace saltus::switching

@@ -14,18 +14,17 @@ SparseEffects::SparseEffects(const Influence& influence)
     : colour_(selection_colours(influence)), shifted_(influence.size()), here_(influence.size()) {
   for (const int c : colour_) colours_ = std::max(colours_, c + 1);
   const auto m = index(influence.size());
-  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<linalg::Triplet> entries;
   for (std::size_t i = 0; i < influence.size(); ++i) {
-    const int row = static_cast<int>(i);
-    entries.emplace_back(row, row, 1.0);
-    for (const int j : influence[i]) entries.emplace_back(row, j, 1.0);
+    entries.push_back({index(i), index(i), 1.0});
+    for (const int j : influence[i]) entries.push_back({index(i), j, 1.0});
   }
-  matrix_.resize(m, m);
-  matrix_.setFromTriplets(entries.begin(), entries.end());
-  matrix_.makeCompressed();
+  matrix_ = linalg::SparseColumns(m, m, entries);
 }
 
 void SparseEffects::find(ProjectedField field, double* alpha, const double* g) {
+  const auto start = matrix_.start(), rows = matrix_.inner();
+  const auto values = matrix_.values();
   std::copy(alpha, alpha + here_.size(), here_.begin());
   for (int c = 0; c < colours_; ++c) {
     for (std::size_t j = 0; j < here_.size(); ++j) {
@@ -36,9 +35,8 @@ void SparseEffects::find(ProjectedField field, double* alpha, const double* g) {
       if (colour_[j] != c) continue;
       const double width = alpha[j] - here_[j];
       alpha[j] = here_[j];
-      for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix_, index(j)); entry; ++entry) {
-        entry.valueRef() = (shifted_[at(entry.row())] - g[entry.row()]) / width;
-      }
+      for (std::size_t k = at(start[j]); k < at(start[j + 1]); ++k)
+        values[k] = (shifted_[at(rows[k])] - g[rows[k]]) / width;
     }
   }
 }
@@ -54,19 +52,18 @@ bool SparseNewton::solve(ProjectedField g, double* alpha) {
   for (int k = 0; k < iterations; ++k) {
     g(alpha, g_.data());
     effects_.find(g, alpha, g_.data());
-    if (!g_.allFinite()) return false;
-    if (!analysed_) lu_.analyzePattern(effects_.matrix());
+    if (!g_.all_finite()) return false;
+    if (!analysed_) lu_.analyse(effects_.matrix());
     analysed_ = true;
-    lu_.factorize(effects_.matrix());
-    if (lu_.info() != Eigen::Success) return false;
+    if (!lu_.factorise(effects_.matrix())) return false;
     step_ = lu_.solve(g_);
     double reach = 0.0;
-    for (Eigen::Index j = 0; j < step_.size(); ++j) {
+    for (linalg::Index j = 0; j < step_.size(); ++j) {
       alpha[j] -= step_[j];
       reach = std::max(reach, std::abs(alpha[j]));
     }
-    if (!step_.allFinite() || !(reach < astray)) return false;
-    if (steps.end_with({step_.cwiseAbs().maxCoeff(), reach})) return true;
+    if (!step_.all_finite() || !(reach < astray)) return false;
+    if (steps.end_with({step_.max_abs(), reach})) return true;
   }
   return false;
 }

@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
-
+#include "saltus/linalg/matrix.hpp"
+#include "saltus/linalg/sparse.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/switching/sparse/influence.hpp"
 #include "saltus/switching/table/projected_field.hpp"
 
@@ -21,7 +21,7 @@ class SparseEffects {
   /// @param alpha  m selections; changed during the call and put back
   /// @param g      g(alpha), m
   void find(ProjectedField field, double* alpha, const double* g);
-  [[nodiscard]] const Eigen::SparseMatrix<double>& matrix() const { return matrix_; }
+  [[nodiscard]] const linalg::SparseColumns& matrix() const { return matrix_; }
   [[nodiscard]] int colours() const { return colours_; }
   [[nodiscard]] const std::vector<int>& colour() const { return colour_; }
 
@@ -29,7 +29,7 @@ class SparseEffects {
   int colours_ = 0;
   std::vector<int> colour_;
   std::vector<double> shifted_, here_;
-  Eigen::SparseMatrix<double> matrix_;
+  linalg::SparseColumns matrix_;
 };
 
 /// Applies Newton's method to g(alpha) = 0 with a sparse G: SelectionNewton of many surfaces.
@@ -41,13 +41,13 @@ class SparseNewton {
   /// iteration.
   bool solve(ProjectedField g, double* alpha);
   /// Returns G at the last point where it was formed.
-  [[nodiscard]] const Eigen::SparseMatrix<double>& jacobian() const { return effects_.matrix(); }
+  [[nodiscard]] const linalg::SparseColumns& jacobian() const { return effects_.matrix(); }
 
  private:
   SparseEffects effects_;
   bool analysed_ = false;
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu_;
-  Eigen::VectorXd g_, step_;
+  linalg::SparseLu lu_;
+  linalg::Vector g_, step_;
 };
 
 }  // namespace saltus::switching

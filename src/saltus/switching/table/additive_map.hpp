@@ -6,18 +6,18 @@
 #include <optional>
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::switching {
 
 /// Holds value(alpha) = constant + effects alpha for alpha in [0, 1]^q.
 struct AdditiveMap {
-  Eigen::VectorXd constant;  ///< r
-  Eigen::MatrixXd effects;   ///< r x q
+  linalg::Vector constant;  ///< r
+  linalg::Matrix effects;   ///< r x q
 };
 
 /// What depends on q selections: a field, or velocities of switching functions.
-using OfSelections = std::function<void(const std::vector<double>& alpha, Eigen::VectorXd& value)>;
+using OfSelections = std::function<void(const std::vector<double>& alpha, linalg::Vector& value)>;
 
 /// Asks at alpha = 0 and at each selection alone. Then it asks at corners with ones at every second, third, fourth
 /// place, from each of the first ones on, and everywhere. Products of selections show in these.

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <Eigen/Core>
+#include "saltus/linalg/matrix.hpp"
 
 namespace saltus::switching {
 
@@ -16,6 +16,6 @@ inline constexpr double dependent_part = 1e-6;
 /// ascending: a basis of all rows. Rows of zeros are in none.
 /// @param gradients  J, m x n
 /// Cost: m^2 n.
-[[nodiscard]] std::vector<std::size_t> independent_rows(const Eigen::MatrixXd& gradients);
+[[nodiscard]] std::vector<std::size_t> independent_rows(const linalg::Matrix& gradients);
 
 }  // namespace saltus::switching

@@ -27,15 +27,15 @@ PolynomialProblem hock_schittkowski_15() {
   statement.variables = 2;
   statement.f = {{{100.0, {4}}, {-200.0, {2, 1}}, {100.0, {0, 2}}, {1.0, {2}}, {-2.0, {1}}, {1.0, {}}}};
   statement.g = {{{{1.0, {1, 1}}}}, {{{1.0, {1}}, {1.0, {0, 2}}}}};
-  statement.g_bounds = {Eigen::Vector2d(1.0, 0.0), Eigen::Vector2d(infinity, infinity)};
-  statement.w_bounds = {Eigen::Vector2d(-infinity, -infinity), Eigen::Vector2d(0.5, infinity)};
+  statement.g_bounds = {linalg::Vector{1.0, 0.0}, linalg::Vector{infinity, infinity}};
+  statement.w_bounds = {linalg::Vector{-infinity, -infinity}, linalg::Vector{0.5, infinity}};
   return PolynomialProblem(statement);
 }
 
 TEST(Ipopt, SolvesANonlinearProgramWithMultipliers) {
   auto problem = hock_schittkowski_15();
   adapters::IpoptSolver solver;
-  NlpPoint point{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+  NlpPoint point{.w = linalg::Vector{-2.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
   const NlpReport report = solver.solve(problem, point, {});
   EXPECT_EQ(report.termination, Termination::completed) << report.message;
   EXPECT_NEAR(point.w[0], 0.5, 1e-10);
@@ -55,7 +55,7 @@ TEST(Ipopt, SolvesANonlinearProgramWithMultipliers) {
 TEST(Ipopt, SaysWhatWentWrong) {
   adapters::IpoptSolver solver;
   auto problem = hock_schittkowski_15();
-  NlpPoint point{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+  NlpPoint point{.w = linalg::Vector{-2.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
   EXPECT_EQ(solver.solve(problem, point, {.iteration_limit = 2, .time_limit = {}, .warm_barrier_mu = {}}).termination,
             Termination::iteration_limit);
 
@@ -63,17 +63,17 @@ TEST(Ipopt, SaysWhatWentWrong) {
   contradiction.variables = 2;
   contradiction.f = {{{1.0, {0, 2}}}};
   contradiction.g = {{{{1.0, {2}}}}};
-  contradiction.g_bounds = {Eigen::VectorXd::Constant(1, -1.0), Eigen::VectorXd::Constant(1, -1.0)};
+  contradiction.g_bounds = {linalg::Vector::constant(1, -1.0), linalg::Vector::constant(1, -1.0)};
   PolynomialProblem infeasible(contradiction);
-  NlpPoint start{.w = Eigen::Vector2d(1.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+  NlpPoint start{.w = linalg::Vector{1.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
   EXPECT_EQ(solver.solve(infeasible, start, {}).termination, Termination::infeasible);
 
   PolynomialStatement undefined;  // 1/w at 0
   undefined.variables = 1;
   undefined.f = {{{1.0, {-1}}}};
-  undefined.g_bounds = {Eigen::VectorXd(0), Eigen::VectorXd(0)};
+  undefined.g_bounds = {linalg::Vector(0), linalg::Vector(0)};
   PolynomialProblem singular(undefined);
-  NlpPoint zero{.w = Eigen::VectorXd::Zero(1), .y = {}, .z_lower = {}, .z_upper = {}};
+  NlpPoint zero{.w = linalg::Vector::zero(1), .y = {}, .z_lower = {}, .z_upper = {}};
   EXPECT_EQ(solver.solve(singular, zero, {}).termination, Termination::evaluation_failed);
 }
 
@@ -82,7 +82,7 @@ TEST(Ipopt, GivesUpWhereTheObjectiveIsOfNoUse) {
   auto problem = hock_schittkowski_15();
   NlpOptions options;
   for (const double cutoff : {300.0, 310.0}) {
-    NlpPoint point{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+    NlpPoint point{.w = linalg::Vector{-2.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
     options.objective_cutoff = cutoff;  // the optimum is 306.5
     const NlpReport report = solver.solve(problem, point, options);
     EXPECT_EQ(report.termination, cutoff > 306.5 ? Termination::completed : Termination::not_converged) << cutoff;
@@ -92,7 +92,7 @@ TEST(Ipopt, GivesUpWhereTheObjectiveIsOfNoUse) {
 
 TEST(Ipopt, SameProblemTwiceSameBits) {
   auto problem = hock_schittkowski_15();
-  const NlpPoint start{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+  const NlpPoint start{.w = linalg::Vector{-2.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
   adapters::IpoptSolver solver;
   NlpPoint first = start;
   NlpPoint second = start;
@@ -104,7 +104,7 @@ TEST(Ipopt, SameProblemTwiceSameBits) {
 
 TEST(Ipopt, OtherProblemsBeforeLeaveNoTrace) {
   auto problem = hock_schittkowski_15();
-  const NlpPoint start{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+  const NlpPoint start{.w = linalg::Vector{-2.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
   NlpPoint fresh = start;
   EXPECT_EQ(adapters::IpoptSolver().solve(problem, fresh, {}).termination, Termination::completed);
 
@@ -112,14 +112,14 @@ TEST(Ipopt, OtherProblemsBeforeLeaveNoTrace) {
   line.variables = 1;
   line.f = {{{1.0, {2}}}};
   line.g = {{{{1.0, {1}}}}};
-  line.g_bounds = {Eigen::VectorXd::Ones(1), Eigen::VectorXd::Constant(1, infinity)};
+  line.g_bounds = {linalg::Vector::ones(1), linalg::Vector::constant(1, infinity)};
   PolynomialProblem other(line);
   line.g = {{{{1.0, {1}}}}, {{{1.0, {1}}}}};
-  line.g_bounds = {Eigen::Vector2d(1.0, 2.0), Eigen::Vector2d(1.0, 2.0)};
+  line.g_bounds = {linalg::Vector{1.0, 2.0}, linalg::Vector{1.0, 2.0}};
   PolynomialProblem impossible(line);
   adapters::IpoptSolver solver;
   for (PolynomialProblem* before : {&other, &impossible, &other}) {
-    NlpPoint point{.w = Eigen::VectorXd::Zero(1), .y = {}, .z_lower = {}, .z_upper = {}};
+    NlpPoint point{.w = linalg::Vector::zero(1), .y = {}, .z_lower = {}, .z_upper = {}};
     const NlpReport report = solver.solve(*before, point, {});
     EXPECT_EQ(report.termination == Termination::completed, before == &other);
     NlpPoint again = start;
@@ -138,14 +138,14 @@ TEST(Ipopt, KeepsAFeasibleIterateWhereTheLimitEndsIt) {
   statement.variables = 3;
   statement.f = {{{-1e-2, {2}}, {1e-2, {4}}, {1.0, {0, 0, 1}}}};
   statement.g = {{{{1.0, {0, 1}}, {-10.0, {2}}}}};
-  statement.g_bounds = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
-  statement.w_bounds = {Eigen::Vector3d(-infinity, -infinity, 0.0), Eigen::Vector3d::Constant(infinity)};
+  statement.g_bounds = {linalg::Vector::zero(1), linalg::Vector::zero(1)};
+  statement.w_bounds = {linalg::Vector{-infinity, -infinity, 0.0}, linalg::Vector::constant(3, infinity)};
   PolynomialProblem problem(statement);
   adapters::IpoptSolver solver;
   bool was_feasible = false;
   int left = 0;
   for (int limit = 1; limit < 60; ++limit) {
-    NlpPoint point{.w = Eigen::Vector3d(1e-6, 1e-11, 1e-3), .y = {}, .z_lower = {}, .z_upper = {}};
+    NlpPoint point{.w = linalg::Vector{1e-6, 1e-11, 1e-3}, .y = {}, .z_lower = {}, .z_upper = {}};
     const NlpReport report = solver.solve(problem, point, {.iteration_limit = limit});
     if (report.termination != Termination::iteration_limit) break;
     const bool is_feasible = std::abs(point.w[1] - 10.0 * point.w[0] * point.w[0]) <= 1e-9;
@@ -159,7 +159,7 @@ TEST(Ipopt, KeepsAFeasibleIterateWhereTheLimitEndsIt) {
 TEST(Ipopt, StopsBetweenIterations) {
   auto problem = hock_schittkowski_15();
   adapters::IpoptSolver solver;
-  NlpPoint point{.w = Eigen::Vector2d(-2.0, 1.0), .y = {}, .z_lower = {}, .z_upper = {}};
+  NlpPoint point{.w = linalg::Vector{-2.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
   int asked = 0;
   NlpOptions options;
   options.is_interrupted = [&asked] { return ++asked > 3; };
@@ -167,12 +167,12 @@ TEST(Ipopt, StopsBetweenIterations) {
   EXPECT_EQ(report.termination, Termination::stopped_by_user);
   EXPECT_LE(report.iterations, 3);
   EXPECT_GE(report.evaluation_seconds, 0.0);
-  EXPECT_TRUE(point.w.allFinite());
+  EXPECT_TRUE(point.w.all_finite());
 }
 
 class EveryRelaxation : public testing::TestWithParam<Relaxation> {
  protected:
-  homotopy::PathResult follow(mpcc::Problem& problem, const Eigen::VectorXd& start) {
+  homotopy::PathResult follow(mpcc::Problem& problem, const linalg::Vector& start) {
     PathOptions options;
     options.relaxation = GetParam();
     adapters::IpoptSolver solver;
@@ -194,11 +194,11 @@ TEST_P(EveryRelaxation, MinimumOnOneAxis) {
   PolynomialStatement statement;  // (w0 - 1)^2 + w1^3 + w1^2
   statement.variables = 2;
   statement.f = {{{1.0, {2}}, {-2.0, {1}}, {1.0, {}}, {1.0, {0, 3}}, {1.0, {0, 2}}}};
-  statement.g_bounds = {Eigen::VectorXd(0), Eigen::VectorXd(0)};
+  statement.g_bounds = {linalg::Vector(0), linalg::Vector(0)};
   statement.G = {{{{1.0, {1}}}}};
   statement.H = {{{{1.0, {0, 1}}}}};
   PolynomialProblem problem(statement);
-  const auto path = follow(problem, Eigen::Vector2d(0.0, 5.0));
+  const auto path = follow(problem, linalg::Vector{0.0, 5.0});
   EXPECT_NEAR(path.point.w[0], 1.0, strictly);
   EXPECT_NEAR(path.point.w[1], 0.0, biactive);  // f grows with its square only: 1e-5 costs 1e-10
 }
@@ -210,11 +210,11 @@ TEST_P(EveryRelaxation, BiactiveMinimumOfLinearProblem) {
   statement.variables = 3;
   statement.f = {{{1.0, {1}}, {1.0, {0, 1}}, {-1.0, {0, 0, 1}}}};
   statement.g = {{{{4.0, {1}}, {-1.0, {0, 0, 1}}}}, {{{4.0, {0, 1}}, {-1.0, {0, 0, 1}}}}};
-  statement.g_bounds = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Constant(infinity)};
+  statement.g_bounds = {linalg::Vector::zero(2), linalg::Vector::constant(2, infinity)};
   statement.G = {{{{1.0, {1}}}}};
   statement.H = {{{{1.0, {0, 1}}}}};
   PolynomialProblem problem(statement);
-  const auto path = follow(problem, Eigen::Vector3d(0.0, 1.0, 0.0));
+  const auto path = follow(problem, linalg::Vector{0.0, 1.0, 0.0});
   // On the boundary of the relaxed set w0 = w1 = sqrt(sigma), w2 = 4 sqrt(sigma), with sigma <= 1e-9.
   EXPECT_NEAR(path.point.w.norm(), 0.0, 6.0 * std::sqrt(1e-9));
 }
@@ -227,16 +227,16 @@ TEST_P(EveryRelaxation, FollowerInABilevelProblem) {
   statement.f = {{{1.0, {2}}, {-10.0, {1}}, {25.0, {}}, {4.0, {0, 2}}, {4.0, {0, 1}}, {1.0, {}}}};
   statement.g = {
       {{{2.0, {0, 1}}, {-2.0, {}}, {-1.5, {1}}, {1.0, {0, 0, 1}}, {-0.5, {0, 0, 0, 1}}, {1.0, {0, 0, 0, 0, 1}}}}};
-  statement.g_bounds = {Eigen::VectorXd::Zero(1), Eigen::VectorXd::Zero(1)};
+  statement.g_bounds = {linalg::Vector::zero(1), linalg::Vector::zero(1)};
   // 3x - y - 3 >= 0, -x + y/2 + 4 >= 0, -x - y + 7 >= 0
   statement.G = {{{{3.0, {1}}, {-1.0, {0, 1}}, {-3.0, {}}}},
                  {{{-1.0, {1}}, {0.5, {0, 1}}, {4.0, {}}}},
                  {{{-1.0, {1}}, {-1.0, {0, 1}}, {7.0, {}}}}};
   statement.H = {{{{1.0, {0, 0, 1}}}}, {{{1.0, {0, 0, 0, 1}}}}, {{{1.0, {0, 0, 0, 0, 1}}}}};
-  statement.w_bounds = {Eigen::VectorXd::Constant(5, -infinity), Eigen::VectorXd::Constant(5, infinity)};
-  statement.w_bounds.lower.head(2).setZero();
+  statement.w_bounds = {linalg::Vector::constant(5, -infinity), linalg::Vector::constant(5, infinity)};
+  statement.w_bounds.lower.head(2).set_zero();
   PolynomialProblem problem(statement);
-  const auto path = follow(problem, Eigen::VectorXd::Ones(5));
+  const auto path = follow(problem, linalg::Vector::ones(5));
   EXPECT_NEAR(path.point.w[0], 1.0, strictly);
   EXPECT_NEAR(path.point.w[1], 0.0, strictly);
   EXPECT_NEAR(path.point.w[2], 3.5, strictly);
@@ -251,12 +251,12 @@ TEST(Homotopy, NoSolutionIsNotCalledOne) {
   statement.variables = 2;
   statement.f = {{{1.0, {1}}}};
   statement.g = {{{{1.0, {1, 1}}}}};
-  statement.g_bounds = {Eigen::VectorXd::Ones(1), Eigen::VectorXd::Ones(1)};
+  statement.g_bounds = {linalg::Vector::ones(1), linalg::Vector::ones(1)};
   statement.G = {{{{1.0, {1}}}}};
   statement.H = {{{{1.0, {0, 1}}}}};
   PolynomialProblem problem(statement);
   adapters::IpoptSolver solver;
-  const auto path = homotopy::follow_path(problem, Eigen::Vector2d(1.0, 1.0), solver, {});
+  const auto path = homotopy::follow_path(problem, linalg::Vector{1.0, 1.0}, solver, {});
   ASSERT_TRUE(path.has_value());
   EXPECT_NE(path->termination, Termination::completed);
   EXPECT_FALSE(path->message.empty());
@@ -273,11 +273,11 @@ TEST(Homotopy, ScheduleEndsAtItsLastSigma) {
   PolynomialStatement pair;
   pair.variables = 2;
   pair.f = {{{-1.0, {1}}, {-1.0, {0, 1}}, {0.5, {2}}, {0.5, {0, 2}}}};
-  pair.g_bounds = {Eigen::VectorXd(0), Eigen::VectorXd(0)};
+  pair.g_bounds = {linalg::Vector(0), linalg::Vector(0)};
   pair.G = {{{{1.0, {1}}}}};
   pair.H = {{{{1.0, {0, 1}}}}};
   PolynomialProblem unreachable(pair);
-  const auto path = homotopy::follow_path(unreachable, Eigen::Vector2d(0.3, 0.4), solver, options,
+  const auto path = homotopy::follow_path(unreachable, linalg::Vector{0.3, 0.4}, solver, options,
                                           [&](const homotopy::PathStep& step) {
                                             sigmas.push_back(step.sigma);
                                             return true;
@@ -288,7 +288,7 @@ TEST(Homotopy, ScheduleEndsAtItsLastSigma) {
   for (std::size_t i = 0; i < sigmas.size(); ++i) EXPECT_DOUBLE_EQ(sigmas[i], expected[i]);
   EXPECT_EQ(path->termination, Termination::verification_failed);
 
-  const auto stopped = homotopy::follow_path(unreachable, Eigen::Vector2d(0.3, 0.4), solver, options,
+  const auto stopped = homotopy::follow_path(unreachable, linalg::Vector{0.3, 0.4}, solver, options,
                                              [](const homotopy::PathStep& step) { return step.sigma > 0.05; });
   EXPECT_EQ(stopped->termination, Termination::stopped_by_user);
   EXPECT_EQ(stopped->steps.size(), 3u);
@@ -298,7 +298,7 @@ TEST(Homotopy, RefusesOptionsOutOfRange) {
   auto problem = hock_schittkowski_15();
   adapters::IpoptSolver solver;
   const auto refused = [&](const PathOptions& options) {
-    return !homotopy::follow_path(problem, Eigen::Vector2d(-2.0, 1.0), solver, options).has_value();
+    return !homotopy::follow_path(problem, linalg::Vector{-2.0, 1.0}, solver, options).has_value();
   };
   PathOptions options;
   EXPECT_FALSE(refused(options));

@@ -2,24 +2,24 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/resolution.hpp"
+#include "saltus/linalg/matrix.hpp"
 #include "saltus/switching/regions/region_spiral.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
+using linalg::Index;
+using linalg::Matrix;
 
 /// psi' of all candidates but the reference along the field of each, as a matrix.
-MatrixXd velocities_of(const switching::RegionRates& rates) {
+Matrix velocities_of(const switching::RegionRates& rates) {
   const Index n = rates.regions;
-  MatrixXd velocities(n - 1, n);
+  Matrix velocities(n - 1, n);
   for (Index i = 1; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
       velocities(i - 1, j) = -rates.rate(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
@@ -31,14 +31,14 @@ MatrixXd velocities_of(const switching::RegionRates& rates) {
 }  // namespace
 
 /// grad psi of all candidates but the reference.
-MatrixXd Decider::region_gradients(const std::vector<int>& candidates, double t, const double* x) {
+Matrix Decider::region_gradients(const std::vector<int>& candidates, double t, const double* x) {
   const auto n = at(s_.kernel.states());
-  MatrixXd rows(static_cast<Index>(candidates.size()) - 1, static_cast<Index>(n));
+  Matrix rows(static_cast<Index>(candidates.size()) - 1, static_cast<Index>(n));
   std::vector<double> row(n);
   for (std::size_t k = 1; k < candidates.size(); ++k) {
     double rate = 0.0;
     s_.kernel.gradient(candidates[k], t, x, base_.alpha.data(), row.data(), &rate);
-    rows.row(static_cast<Index>(k) - 1) = Eigen::Map<const Eigen::RowVectorXd>(row.data(), static_cast<Index>(n));
+    rows.row(static_cast<Index>(k) - 1) = linalg::ConstView(row.data(), static_cast<Index>(n));
   }
   return rows;
 }
@@ -47,14 +47,14 @@ MatrixXd Decider::region_gradients(const std::vector<int>& candidates, double t,
 /// that do are found as if they were independent.
 MeetingRegions Decider::meeting_of(std::vector<int> candidates) {
   MeetingRegions meeting{std::move(candidates), std::nullopt};
-  const MatrixXd rows = region_gradients(meeting.candidates, switching_point_.t, switching_point_.x);
-  if (!rows.allFinite()) return meeting;
+  const Matrix rows = region_gradients(meeting.candidates, switching_point_.t, switching_point_.x);
+  if (!rows.all_finite()) return meeting;
   RegionBasis basis = basis_of(rows);
   if (basis.spans_all(rows.rows()) || basis.base.empty()) return meeting;
-  const MatrixXd velocities = velocities_of(region_rates(meeting.candidates, switching_point_.t, switching_point_.x));
-  const MatrixXd followed = coordinates_in(basis, rows).bottomRows(rows.rows()) * velocities(basis.base, Eigen::all);
+  const Matrix velocities = velocities_of(region_rates(meeting.candidates, switching_point_.t, switching_point_.x));
+  const Matrix followed = coordinates_in(basis, rows).bottom_rows(rows.rows()) * velocities.selected_rows(basis.base);
   constexpr double same = 1e-6;  // as for gradients
-  if ((velocities - followed).cwiseAbs().maxCoeff() <= same * velocities.cwiseAbs().maxCoeff()) {
+  if ((velocities - followed).max_abs() <= same * velocities.max_abs()) {
     meeting.basis = std::move(basis);
   }
   return meeting;
@@ -63,8 +63,8 @@ MeetingRegions Decider::meeting_of(std::vector<int> candidates) {
 switching::RegionTie Decider::tie_at(const MeetingRegions& meeting, double t, const double* x) {
   const auto& basis = *meeting.basis;
   auto polytope = switching::RegionPolytope::make(coordinates_in(basis, region_gradients(meeting.candidates, t, x)));
-  const MatrixXd velocities = velocities_of(region_rates(meeting.candidates, t, x));
-  return {std::move(*polytope), velocities(basis.base, Eigen::all)};
+  const Matrix velocities = velocities_of(region_rates(meeting.candidates, t, x));
+  return {std::move(*polytope), velocities.selected_rows(basis.base)};
 }
 
 /// Whether the regions of a set depend on each other a little later along its motion, too: elsewhere a point at which
@@ -139,14 +139,14 @@ bool Decider::spiral_out(const MeetingRegions& meeting, const evaluation::Region
 
 /// Whether all weights that keep the indicators of a set equal move the solution alike.
 bool Decider::moves_in_one_way(const MeetingRegions& meeting, const switching::RegionSet& set) {
-  MatrixXd fields(s_.kernel.states(), static_cast<Index>(meeting.candidates.size()));
+  Matrix fields(s_.kernel.states(), static_cast<Index>(meeting.candidates.size()));
   std::vector<double> f(at(s_.kernel.states()));
   for (std::size_t k = 0; k < meeting.candidates.size(); ++k) {
     std::vector<double> alpha = base_.alpha;
     for (const int region : meeting.candidates) alpha[at(region)] = 0.0;
     alpha[at(meeting.candidates[k])] = 1.0;
     s_.kernel.field(switching_point_.t, switching_point_.x, alpha.data(), f.data());
-    fields.col(static_cast<Index>(k)) = Eigen::Map<const Eigen::VectorXd>(f.data(), fields.rows());
+    fields.col(static_cast<Index>(k)) = linalg::ConstView(f.data(), fields.rows());
   }
   return !switching::motion_depends_on_weights(tie_at(meeting, switching_point_.t, switching_point_.x), set, fields);
 }

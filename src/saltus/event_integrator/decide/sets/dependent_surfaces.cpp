@@ -4,11 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include <Eigen/QR>
-
 #include "saltus/event_integrator/decide/transition.hpp"
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/event_integrator/field/higher_order.hpp"
+#include "saltus/linalg/factors.hpp"
 #include "saltus/switching/table/additive_map.hpp"
 #include "saltus/switching/table/field_accuracy.hpp"
 #include "saltus/switching/table/independent_rows.hpp"
@@ -16,7 +15,7 @@
 namespace saltus::event_integrator {
 namespace {
 
-using Eigen::Index;
+using linalg::Index;
 
 /// Selections whose corners are numbered by bits.
 constexpr std::size_t most_numbered_surfaces = 60;
@@ -69,16 +68,19 @@ class DependentSearch {
   bool velocities_depend() {
     functions_.differentiate(t_, x_.data());
     if (!fields(t_, x_)) return false;
-    const Eigen::MatrixXd effects = effects_on(functions_.rows());
-    const bool all_move = (effects.cwiseAbs().rowwise().maxCoeff().array() > 0.0).all();
+    const linalg::Matrix effects = effects_on(functions_.rows());
+    const bool all_move = effects.row_max_abs().min() > 0.0;
     return all_move && switching::independent_rows(effects).size() < sliding_.size();
   }
 
   /// What each selection adds to the velocities of functions, without what is rounding.
-  [[nodiscard]] Eigen::MatrixXd effects_on(const Eigen::MatrixXd& rows) const {
-    const Eigen::MatrixXd terms = switching::field_accuracy * (rows.cwiseAbs() * jumps_.cwiseAbs());
-    const Eigen::MatrixXd effects = rows * jumps_;
-    return (effects.cwiseAbs().array() > terms.array()).select(effects, 0.0);
+  [[nodiscard]] linalg::Matrix effects_on(const linalg::Matrix& rows) const {
+    const linalg::Matrix terms = switching::field_accuracy * (rows.abs() * jumps_.abs());
+    linalg::Matrix effects = rows * jumps_;
+    for (Index i = 0; i < effects.size(); ++i) {
+      if (!(std::abs(effects.data()[i]) > terms.data()[i])) effects.data()[i] = 0.0;
+    }
+    return effects;
   }
 
   /// The functions that were not chosen vanish with the others, now, near by on the set, and as time goes.
@@ -90,18 +92,18 @@ class DependentSearch {
       if (pattern > 0) x = functions_.displaced(t_, x_.data(), 0x1p-10, pattern);
       functions_.differentiate(t_, x.data());
       s_.kernel.functions(t_, x.data(), alpha_.data(), values.data());
-      const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> spanned(functions_.rows().transpose());
+      const linalg::OrthogonalFactors spanned(functions_.rows().transpose());
       for (const int j : dependent_) {
         double rate = 0.0, size = 0.0;
         s_.kernel.gradient(j, t_, x.data(), alpha_.data(), row.data(), &rate);
         for (std::size_t i = 0; i < x.size(); ++i) size += std::abs(row[i]) * (1.0 + std::abs(x[i]));
         if (!(std::abs(values[at(j)]) <= switching::field_accuracy * size)) return reject("they part again");
-        const Eigen::Map<const Eigen::VectorXd> gradient(row.data(), index(row.size()));
-        const Eigen::VectorXd shares = spanned.solve(gradient);
-        const double rest = (functions_.rows().transpose() * shares - gradient).cwiseAbs().maxCoeff();
-        if (!(rest <= 1e-6 * gradient.cwiseAbs().maxCoeff())) return reject("they part again");
+        const linalg::ConstView gradient(row.data(), index(row.size()));
+        const linalg::Vector shares = spanned.solve(gradient);
+        const double rest = (functions_.rows().transpose() * shares - gradient).max_abs();
+        if (!(rest <= 1e-6 * gradient.max_abs())) return reject("they part again");
         const double follows = functions_.rates().dot(shares);
-        const double terms = std::abs(rate) + functions_.rates().cwiseAbs().dot(shares.cwiseAbs());
+        const double terms = std::abs(rate) + functions_.rates().abs().dot(shares.abs());
         if (!(std::abs(follows - rate) <= 1e-6 * terms)) return reject("they part again");
       }
     }
@@ -111,14 +113,15 @@ class DependentSearch {
   /// What each of the selections adds to f.
   bool fields(double t, const std::vector<double>& x) {
     std::vector<double> trial = alpha_, f(x.size());
-    const auto field = [&](const std::vector<double>& selections, Eigen::VectorXd& value) {
+    const auto field = [&](const std::vector<double>& selections, linalg::Vector& value) {
       for (std::size_t i = 0; i < sliding_.size(); ++i) trial[at(sliding_[i])] = selections[i];
       s_.kernel.field(t, x.data(), trial.data(), f.data());
-      value = Eigen::Map<const Eigen::VectorXd>(f.data(), index(f.size()));
+      value = linalg::ConstView(f.data(), index(f.size()));
     };
     auto map = switching::additive_map(sliding_.size(), field);
     if (!map) return reject("their selections multiply each other");
-    if (!map->constant.allFinite() || !map->effects.allFinite()) return reject("a field is not finite on the surfaces");
+    if (!map->constant.all_finite() || !map->effects.all_finite())
+      return reject("a field is not finite on the surfaces");
     jumps_ = std::move(map->effects);
     base_.assign(map->constant.begin(), map->constant.end());
     return true;
@@ -127,10 +130,10 @@ class DependentSearch {
   /// Functions that share selections are balanced together, as far as these move them independently.
   bool make_balances() {
     functions_.differentiate(t_, x_.data());
-    const Eigen::MatrixXd effects = functions_.rows() * jumps_;
-    auto found = switching::balances_of(effects, functions_.rows().cwiseAbs() * jumps_.cwiseAbs());
+    const linalg::Matrix effects = functions_.rows() * jumps_;
+    auto found = switching::balances_of(effects, functions_.rows().abs() * jumps_.abs());
     for (const std::size_t i : found.unused) {
-      if (jumps_.col(index(i)).cwiseAbs().maxCoeff() > 0.0) {
+      if (jumps_.col(index(i)).max_abs() > 0.0) {
         return reject("the motion depends on a selection that nothing determines");
       }
       set_.undetermined.push_back(sliding_[i]);
@@ -138,7 +141,7 @@ class DependentSearch {
     for (auto& balance : found.all) {
       if (balance.rows.empty()) return reject("no selection moves some of the surfaces");
       Followers own{{}, balance.functions};
-      Eigen::MatrixXd part(index(own.functions.size()), effects.cols());
+      linalg::Matrix part(index(own.functions.size()), effects.cols());
       for (std::size_t k = 0; k < own.functions.size(); ++k) part.row(index(k)) = effects.row(index(own.functions[k]));
       for (const std::size_t k : switching::independent_rows(part)) own.leaders.push_back(own.functions[k]);
       balance.functions = own.leaders;
@@ -178,20 +181,19 @@ class DependentSearch {
   bool follows(std::size_t function, const std::vector<std::size_t>& leaders) {
     const auto velocity_at_0 = [&](std::size_t i) { return functions_.velocity(i, base_); };
     const auto terms_of = [&](std::size_t i) {
-      return functions_.velocity_terms(i, base_) +
-             functions_.rows().row(index(i)).cwiseAbs().dot(jumps_.cwiseAbs().rowwise().sum());
+      return functions_.velocity_terms(i, base_) + functions_.rows().row(index(i)).abs().dot(jumps_.abs().row_sums());
     };
-    const Eigen::MatrixXd effects = functions_.rows() * jumps_;
-    Eigen::MatrixXd leading(effects.cols(), index(leaders.size()));
+    const linalg::Matrix effects = functions_.rows() * jumps_;
+    linalg::Matrix leading(effects.cols(), index(leaders.size()));
     for (std::size_t k = 0; k < leaders.size(); ++k) leading.col(index(k)) = effects.row(index(leaders[k]));
-    const Eigen::VectorXd own = effects.row(index(function));
-    const Eigen::VectorXd shares = leading.completeOrthogonalDecomposition().solve(own);
+    const linalg::Vector own = effects.row(index(function));
+    const linalg::Vector shares = linalg::least_squares(leading, own);
     double velocity = velocity_at_0(function), terms = terms_of(function);
     for (std::size_t k = 0; k < leaders.size(); ++k) {
       velocity -= shares[index(k)] * velocity_at_0(leaders[k]);
       terms += std::abs(shares[index(k)]) * terms_of(leaders[k]);
     }
-    const double rest = std::max(std::abs(velocity), (own - leading * shares).cwiseAbs().maxCoeff());
+    const double rest = std::max(std::abs(velocity), (own - leading * shares).max_abs());
     return rest <= switching::field_accuracy * terms;
   }
 
@@ -226,7 +228,7 @@ class DependentSearch {
   std::vector<double> alpha_;
   std::vector<int> dependent_;
   std::vector<Followers> followers_;
-  Eigen::MatrixXd jumps_;     ///< n_x x q
+  linalg::Matrix jumps_;      ///< n_x x q
   std::vector<double> base_;  ///< f with all selections at 0
   HeldFunctions functions_;
   HigherOrderSet set_;

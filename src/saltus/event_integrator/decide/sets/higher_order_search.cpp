@@ -175,7 +175,7 @@ class SetSearch {
 
   /// A derivative that the functions of the set fix must be zero where they are, and stay so.
   bool follows(std::size_t place) {
-    const double later = resolved_ * std::abs(functions_.rates()[static_cast<Eigen::Index>(place)]);
+    const double later = resolved_ * std::abs(functions_.rates()[static_cast<linalg::Index>(place)]);
     const bool rests = vanishes(place) && later <= change_of(place);
     functions_.set(set_.functions, alpha_);
     return rests || reject("a derivative of a surface that no selection changes does not stay at zero");

@@ -23,13 +23,13 @@ std::optional<switching::AdditiveMap> additive_velocities(const SwitchingContext
   const auto& meeting = switching_point.at_zero;
   const ProjectedFields fields(s.kernel, switching_point);
   std::vector<double> alpha = state.alpha;
-  const auto velocities = [&](const std::vector<double>& selections, Eigen::VectorXd& value) {
+  const auto velocities = [&](const std::vector<double>& selections, linalg::Vector& value) {
     for (std::size_t i = 0; i < meeting.size(); ++i) alpha[at(meeting[i])] = selections[i];
     const auto values = fields.velocities(alpha, meeting);
-    value = Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+    value = linalg::ConstView(values.data(), static_cast<linalg::Index>(values.size()));
   };
   auto map = switching::additive_map(meeting.size(), velocities);
-  if (!map || !map->effects.allFinite() || !map->constant.allFinite()) return std::nullopt;
+  if (!map || !map->effects.all_finite() || !map->constant.all_finite()) return std::nullopt;
   return map;
 }
 
