@@ -140,6 +140,7 @@ class GrowingFiles(tool.ToolTest):
         # The times that are asked for are there: 8 bytes for each row; and a block of the archive.
         self.assertLess(peaks[1], peaks[0] + 40, peaks)
 
+    @tool.not_sanitized
     def test_rows_between_very_many_events_are_thinned(self):
         self.write("m.toml", PARABOLAS)
         table, notes = self.run_tool("simulate", "m.toml", "--out", "r.json", "--out", "r.events.csv", code=0)
