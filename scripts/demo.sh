@@ -7,6 +7,7 @@ export OPENBLAS_NUM_THREADS=1
 scripts/install.sh
 cmake --preset release --log-level=NOTICE
 cmake --build --preset demo --parallel "$(nproc)"
+built=$SECONDS
 
 tool=build/release/bin/saltus
 mkdir -p demo
@@ -26,3 +27,4 @@ simulate sliding --method fesd --set simulate.fesd.steps=10
 printf '\n$ %s\n' "$tool optimize cart-pole --out demo/cart-pole.json --report demo/cart-pole.html"
 "$tool" optimize cart-pole --out demo/cart-pole.json --report demo/cart-pole.html
 printf '\nReports: %s\n         %s\n' "$PWD/demo/stick-slip.html" "$PWD/demo/cart-pole.html"
+printf '%d s: installed and built %d s, ran %d s\n' "$SECONDS" "$built" $((SECONDS - built))

@@ -106,7 +106,7 @@ def test_control_c():
     threading.Timer(0.3, interrupt).start()
     with pytest.raises(KeyboardInterrupt) as stopped:
         model.simulate(until=1e7, max_steps=10**9, max_events=10**9)
-    assert time.perf_counter() - sent[0] < 0.5
+    assert time.perf_counter() - sent[0] < 5  # some 0.05 s; a busy machine takes longer
     r = stopped.value.result
     assert r.status == "stopped_by_user"
     assert 0 < r.status.time_reached < 1e7

@@ -3,7 +3,7 @@
 import json
 import subprocess
 
-from tool import TOOL, ToolTest, main
+from tool import TOOL, WAIT, ToolTest, main
 
 BREAKS = """
 [model]
@@ -69,7 +69,7 @@ class BreaksTest(ToolTest):
 
 class StreamsTest(ToolTest):
     def run_with_input(self, text, *arguments, code):
-        done = subprocess.run([TOOL, *arguments], cwd=self.folder, input=text, capture_output=True, text=True, timeout=60)
+        done = subprocess.run([TOOL, *arguments], cwd=self.folder, input=text, capture_output=True, text=True, timeout=WAIT)
         self.assertEqual(done.returncode, code, done.stderr)
         return done.stdout, done.stderr
 
@@ -84,7 +84,7 @@ class StreamsTest(ToolTest):
         for arguments in (["simulate", "friction.toml"], ["models"], ["check", "friction.toml"]):
             with open("/dev/full", "w") as full, self.subTest(arguments=arguments):
                 done = subprocess.run([TOOL, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE,
-                                      text=True, timeout=60)
+                                      text=True, timeout=WAIT)
                 self.assertEqual(done.returncode, 2)
                 self.assertIn("cannot write to standard output: No space left on device", done.stderr)
 

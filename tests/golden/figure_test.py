@@ -204,7 +204,7 @@ class Figure(tool.ToolTest):
         browser.write_text("#!/bin/sh\necho \"$1\" > seen.tmp && mv seen.tmp seen\n", encoding="utf-8")
         browser.chmod(browser.stat().st_mode | stat.S_IXUSR)
         self.run_tool("report", "r.json", "--open", code=0, environment={"BROWSER": str(browser)})
-        end = time.monotonic() + 20
+        end = time.monotonic() + tool.WAIT
         while not (self.folder / "seen").exists() and time.monotonic() < end:
             time.sleep(0.02)
         self.assertEqual((self.folder / "seen").read_text(encoding="utf-8").strip(),

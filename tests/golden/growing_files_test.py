@@ -3,7 +3,6 @@
 import csv
 import json
 import os
-import pathlib
 import resource
 import signal
 import subprocess
@@ -105,7 +104,7 @@ class GrowingFiles(tool.ToolTest):
             self.assertIsNone(process.poll(), "ended by itself")
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
-        process.wait(timeout=60)
+        process.wait(timeout=tool.WAIT)
         self.assertFalse((self.folder / "r.csv").exists())
         head, *lines = part.read_text(encoding="utf-8").splitlines()
         self.assertEqual(head, "t,side,x,v,alpha(v),mode(v)")
@@ -117,17 +116,17 @@ class GrowingFiles(tool.ToolTest):
         self.write("m.toml", LONG.replace("UNTIL", "1e7"))
         process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--quiet", "--out", "r.json"], cwd=self.folder,
                                    stderr=subprocess.DEVNULL)
-        time.sleep(2.0)
+        tool.wait_for_cpu(process, 2.0)
         self.assertIsNone(process.poll(), "ended by itself")
         process.send_signal(signal.SIGTERM)
-        self.assertEqual(process.wait(timeout=60), 3)
+        self.assertEqual(process.wait(timeout=tool.WAIT), 3)
         result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
         self.assertEqual(result["status"]["termination"], "stopped_by_user")
         self.assertEqual(result["trajectory"]["t"][-1], result["final"]["t"])
 
     def test_memory_does_not_grow_with_the_rows(self):
         # The address sanitizer keeps what is freed: its peaks say nothing.
-        if b"__asan_init" in pathlib.Path(tool.TOOL).read_bytes():
+        if tool.SANITIZED:
             self.skipTest("a sanitized tool")
         self.write("m.toml", LONG.replace("UNTIL", "2000"))
         peaks = []
@@ -141,6 +140,7 @@ class GrowingFiles(tool.ToolTest):
         # The times that are asked for are there: 8 bytes for each row; and a block of the archive.
         self.assertLess(peaks[1], peaks[0] + 40, peaks)
 
+    @tool.not_sanitized
     def test_rows_between_very_many_events_are_thinned(self):
         self.write("m.toml", PARABOLAS)
         table, notes = self.run_tool("simulate", "m.toml", "--out", "r.json", "--out", "r.events.csv", code=0)
@@ -164,7 +164,7 @@ class GrowingFiles(tool.ToolTest):
         for name in ("r.npz", "r.json"):
             process = subprocess.run([tool.TOOL, "simulate", "m.toml", "--quiet", "--out", name,
                                       "--set", "simulate.output.points=500000"], cwd=self.folder, text=True,
-                                     capture_output=True, timeout=120,
+                                     capture_output=True, timeout=tool.WAIT,
                                      preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
                                                          resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))
             self.assertEqual(process.returncode, 2, process.stderr)

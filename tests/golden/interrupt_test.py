@@ -46,17 +46,17 @@ class Interrupt(tool.ToolTest):
 
     def test_a_violated_contract_ends_with_the_code_of_an_internal_error(self):
         process = self.start(stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        time.sleep(1.0)
+        tool.wait_for_cpu(process, 1.0)
         self.assertIsNone(process.poll(), "ended by itself")
         process.send_signal(signal.SIGABRT)  # what std::abort sends
-        self.assertEqual(process.wait(timeout=60), 1)
+        self.assertEqual(process.wait(timeout=tool.WAIT), 1)
 
     def test_the_first_one_stops_and_writes(self):
         process = self.start(stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(2.0)
+        tool.wait_for_cpu(process, 2.0)
         self.assertIsNone(process.poll(), "ended by itself")
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=tool.WAIT)
         self.assertEqual(process.returncode, 3, err)
         self.assertIn("stopped_by_user", out)
         self.assertIn("stopped_by_user", err)
@@ -70,10 +70,10 @@ class Interrupt(tool.ToolTest):
     def test_a_sweep_writes_the_runs_that_began(self):
         process = self.start(["sweep", "--over", "x=0:1:10000", "--set", "simulate.until=10000", "--out", "s.csv"],
                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(3.0)
+        tool.wait_for_cpu(process, 3.0)
         self.assertIsNone(process.poll(), "ended by itself")
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=tool.WAIT)
         self.assertEqual(process.returncode, 3, err)
         rows = (self.folder / "s.csv").read_text(encoding="utf-8").splitlines()[1:]
         self.assertIn(f"{len(rows)} of 10000 runs began: the others have no rows", err)
@@ -90,7 +90,7 @@ class Interrupt(tool.ToolTest):
             self.assertIsNone(process.poll(), "ended by itself")
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=tool.WAIT)
         self.assertEqual(process.returncode, 3, err)
         self.assertIn("writing r.json was interrupted", err)
         self.assertEqual((self.folder / "r.json").read_text(), "precious")
@@ -101,23 +101,23 @@ class Interrupt(tool.ToolTest):
         self.write("m.toml", ENDLESS.replace('"-x"', '"-sign(x)"').replace("max_steps", "max_events = 1000000000\nmax_steps"))
         process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--report", "r.html"], cwd=self.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-        time.sleep(6.0)
+        tool.wait_for_cpu(process, 6.0)
         self.assertIsNone(process.poll(), "ended by itself")
         process.send_signal(signal.SIGINT)
         said = process.stderr.readline()
         self.assertIn("writing r.html; Ctrl-C once more leaves it out", said)
         process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=tool.WAIT)
         self.assertEqual(process.returncode, 3, err)
         self.assertIn("writing r.html was interrupted", err)
         self.assertEqual([path.name for path in self.folder.iterdir()], ["m.toml"])
 
     def test_check_says_what_it_knows(self):
         process = self.start(["check", "--well-posedness"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(2.0)
+        tool.wait_for_cpu(process, 2.0)
         self.assertIsNone(process.poll(), "ended by itself")
         process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=tool.WAIT)
         self.assertEqual(process.returncode, 3, err)
         self.assertIn("the simulation stopped at t = ", out)
         self.assertIn("stopped_by_user", err)
@@ -135,7 +135,7 @@ class Interrupt(tool.ToolTest):
                 text += os.read(seen, 4096)
             except OSError:  # the other side closed
                 break
-        self.assertEqual(process.wait(timeout=60), 3)
+        self.assertEqual(process.wait(timeout=tool.WAIT), 3)
         os.close(seen)
         self.assertRegex(text.decode(), r"\rt = [0-9.e+]+   0 %   \d+ steps   0 events")
 

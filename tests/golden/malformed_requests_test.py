@@ -197,7 +197,7 @@ class Outputs(RequestTest):
         script = 'trap "" XFSZ; ulimit -f 1; exec "$@"'
         done = subprocess.run(["sh", "-c", script, "sh", tool.TOOL, "simulate", "m.toml", "--out", "r.json", "--set",
                                "simulate.output.points=1000"], cwd=self.folder, capture_output=True, text=True,
-                              timeout=60)
+                              timeout=tool.WAIT)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertRegex(done.stderr, r"r.json: error: cannot write: .*File too large")
         self.assertIn("completed", done.stdout)  # the table is all that is left of the computation

@@ -282,7 +282,7 @@ class Colours(tool.ToolTest):
         seen, shown = pty.openpty()
         process = subprocess.Popen([tool.TOOL, "simulate", "none"], stderr=shown, stdout=subprocess.DEVNULL,
                                    env=os.environ | {"TERM": "xterm"} | environment)
-        self.assertEqual(process.wait(timeout=60), 2)
+        self.assertEqual(process.wait(timeout=tool.WAIT), 2)
         os.close(shown)
         text = os.read(seen, 4096).decode()
         os.close(seen)

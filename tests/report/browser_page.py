@@ -39,7 +39,7 @@ class Page(unittest.TestCase):
         self.assertEqual(self.browser.complaints, [])
 
     def tool(self, *arguments, exit_code=0):
-        done = subprocess.run([TOOL, *arguments], cwd=self.folder, capture_output=True, timeout=120)
+        done = subprocess.run([TOOL, *arguments], cwd=self.folder, capture_output=True, timeout=600)
         self.assertEqual(done.returncode, exit_code, done.stderr)
 
     def show(self, model):
@@ -54,7 +54,7 @@ class Page(unittest.TestCase):
 
     def becomes(self, expression, expected):
         """Waits until an expression has a value: drawing takes its time on a busy machine."""
-        end = time.monotonic() + 30
+        end = time.monotonic() + 300
         while (found := self.value(expression)) != expected and time.monotonic() < end:
             time.sleep(0.05)
         self.assertEqual(found, expected, expression)

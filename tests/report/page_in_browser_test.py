@@ -302,7 +302,7 @@ class Accessibility(Page):
         self.value(AXE.read_text(encoding="utf-8") + "; 1")
         self.value("axe.run(document).then((found) => { window.passed = found.passes.length; window.broken ="
                    " found.violations.map((rule) => rule.id + ' ' + rule.nodes[0].target); }); 1")
-        end = time.monotonic() + 60
+        end = time.monotonic() + 600
         while self.value("window.passed ?? 0") == 0 and time.monotonic() < end:
             time.sleep(0.1)
         self.assertGreater(self.value("window.passed"), 20)

@@ -1,6 +1,6 @@
 """Random bodies with random contacts: nothing passes through, no energy comes from nowhere, every run ends.
 
-usage: random_contacts.py [--runs 10000] [--first 1] [--also 683 …] [--until 5] [--rtol 1e-9]
+usage: random_contacts.py [--runs 10000] [--first 1] [--also 683 …] [--until 5] [--rtol 1e-9] [--outcomes]
 
 Run number k has 1 to 4 positions in a potential well, a random mass matrix, and 1 to 4 contacts with sloped and curved
 gaps: without friction, with one tangent or with two, mu in [0, 2], e in [0, 1]. The checker shares nothing with the
@@ -11,6 +11,7 @@ engine: it reads the rows of the trajectory and the events.
   that of a slip on its edge and against the velocity;
   an impact changes velocities by its impulses, leaves no approach behind and makes no energy, to rounding;
   a status of its own for what has no solution (jamming, Painleve), never an end of the steps.
+With --outcomes nothing is checked, and each run has a line of outcomes.hpp (outcomes.py compares them).
 """
 
 import argparse
@@ -21,6 +22,8 @@ import time
 
 import numpy as np
 import saltus
+
+import outcomes
 
 
 class Bodies:
@@ -164,6 +167,34 @@ def faults_of(bodies, run, tolerance=1e-7):
     return found + faults_of_modes(bodies, run, rows, tolerance) + faults_of_impacts(bodies, run)
 
 
+def print_outcomes(seeds, settings):
+    print("seed,status,events,kinds,hash,times,end,x")
+    for seed in seeds:
+        run = Bodies(seed).model.simulate(**settings)
+        print(outcomes.line_of(seed, str(run.status), run.events, run.final.x), flush=True)
+
+
+def check(seeds, settings):
+    """Runs, judges, prints what is wrong and a summary; returns the exit code."""
+    fates = collections.Counter()
+    bad = []
+    slowest = (0.0, 0)
+    for seed in seeds:
+        bodies = Bodies(seed)
+        begin = time.perf_counter()
+        run = bodies.model.simulate(**settings)
+        slowest = max(slowest, (time.perf_counter() - begin, seed))
+        fates[str(run.status)] += 1
+        faults = faults_of(bodies, run)
+        if str(run.status) not in ("completed", "outside_class"):
+            faults.append(f"{run.status}: {run.status.message}")
+        if faults:
+            bad.append(seed)
+            print(f"{seed}: {bodies.count} positions, {bodies.contacts} contacts: {'; '.join(faults)}", flush=True)
+    print(f"{len(seeds)} runs: {dict(fates)}; {len(bad)} with faults; slowest {slowest[0]:.2f} s (run {slowest[1]})")
+    return 1 if bad else 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--runs", type=int, default=10000)
@@ -171,28 +202,13 @@ def main():
     parser.add_argument("--also", type=int, nargs="*", default=[])
     parser.add_argument("--until", type=float, default=5.0)
     parser.add_argument("--rtol", type=float)
+    parser.add_argument("--outcomes", action="store_true")
     arguments = parser.parse_args()
-    outcomes = collections.Counter()
-    bad = []
-    slowest = (0.0, 0)
     settings = {"until": arguments.until, "max_steps": 200000}
     if arguments.rtol:
         settings["rtol"] = arguments.rtol
     seeds = [*range(arguments.first, arguments.first + arguments.runs), *arguments.also]
-    for seed in seeds:
-        bodies = Bodies(seed)
-        begin = time.perf_counter()
-        run = bodies.model.simulate(**settings)
-        slowest = max(slowest, (time.perf_counter() - begin, seed))
-        outcomes[str(run.status)] += 1
-        faults = faults_of(bodies, run)
-        if str(run.status) not in ("completed", "outside_class"):
-            faults.append(f"{run.status}: {run.status.message}")
-        if faults:
-            bad.append(seed)
-            print(f"{seed}: {bodies.count} positions, {bodies.contacts} contacts: {'; '.join(faults)}", flush=True)
-    print(f"{len(seeds)} runs: {dict(outcomes)}; {len(bad)} with faults; slowest {slowest[0]:.2f} s (run {slowest[1]})")
-    return 1 if bad else 0
+    return print_outcomes(seeds, settings) if arguments.outcomes else check(seeds, settings)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "campaign.hpp"
 #include "random_systems_model.hpp"
 
 namespace saltus::robustness {
@@ -84,9 +85,10 @@ class RandomElements : public testing::TestWithParam<Campaign> {};
 TEST_P(RandomElements, AgreeWithTheEventEngineWhereTheSolutionIsUnique) {
   const Campaign& campaign = GetParam();
   ElementTally tally;
-  for (std::uint64_t seed = 0; seed < campaign.systems; ++seed) compare(campaign, seed, tally);
+  const std::uint64_t systems = of_campaign(campaign.systems);
+  for (std::uint64_t seed = 0; seed < systems; ++seed) compare(campaign, seed, tally);
   EXPECT_EQ(tally.disagreements, "") << tally.compared << " compared, " << tally.left_out << " left out";
-  EXPECT_GE(10 * static_cast<std::uint64_t>(tally.compared), 7 * campaign.systems);
+  EXPECT_GE(10 * static_cast<std::uint64_t>(tally.compared), 7 * systems);
 }
 
 INSTANTIATE_TEST_SUITE_P(Campaigns, RandomElements,

@@ -1,7 +1,7 @@
 // Systems stated in C++.
 #include "saltus/model/builder.hpp"
 
-#include <chrono>
+#include <ctime>
 
 #include "model_text.hpp"
 
@@ -96,7 +96,7 @@ TEST(BuilderTest, MistakesAreKeptAndReturned) {
 }
 
 TEST(BuilderTest, FiveHundredThresholdsTakeWellUnderASecond) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of this process: others do not count
   Builder model("network");
   constexpr int size = 500;
   std::vector<SX> x;
@@ -109,9 +109,9 @@ TEST(BuilderTest, FiveHundredThresholdsTakeWellUnderASecond) {
                                (1 - model.step(right - 0.5 - 1e-3 * static_cast<double>((i + 7) % size))));
   }
   const System system = finished(model);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   EXPECT_EQ(system.columns.size(), static_cast<std::size_t>(size));
-  // Some 0.1 s in a release build; the allowance is for sanitizers on a busy machine.
+  // Some 0.1 s in a release build; the allowance is for sanitizers.
   EXPECT_LT(seconds, 5.0);
   RecordProperty("milliseconds", static_cast<int>(1e3 * seconds));
 }
