@@ -75,10 +75,11 @@ int main(int count, char** arguments) {
   SUNMatrix matrix = SUNSparseMatrix(rod.n, rod.n, 3 * rod.n, CSC_MAT, context);
   SUNLinearSolver solver = SUNLinSol_KLU(x, matrix, context);
   bool good = CVodeInit(memory, right_hand_side, 0.0, x) == CV_SUCCESS &&
-              CVodeSStolerances(memory, rtol, 1e-2 * rtol) == CV_SUCCESS && CVodeSetUserData(memory, &rod) == CV_SUCCESS &&
-              CVodeSetLinearSolver(memory, solver, matrix) == CV_SUCCESS && CVodeSetJacFn(memory, jacobian) == CV_SUCCESS &&
-              CVodeRootInit(memory, 1, threshold) == CV_SUCCESS && CVodeSetMaxNumSteps(memory, 1000000) == CV_SUCCESS &&
-              CVodeSetStopTime(memory, end) == CV_SUCCESS;
+              CVodeSStolerances(memory, rtol, 1e-2 * rtol) == CV_SUCCESS &&
+              CVodeSetUserData(memory, &rod) == CV_SUCCESS &&
+              CVodeSetLinearSolver(memory, solver, matrix) == CV_SUCCESS &&
+              CVodeSetJacFn(memory, jacobian) == CV_SUCCESS && CVodeRootInit(memory, 1, threshold) == CV_SUCCESS &&
+              CVodeSetMaxNumSteps(memory, 1000000) == CV_SUCCESS && CVodeSetStopTime(memory, end) == CV_SUCCESS;
   require(good, "setting up CVODE");
   double t = 0.0;
   long steps = 0;

@@ -356,9 +356,9 @@ TEST(TerminalSliding, SpeedsThatAreBounded) {
     const char* speed;
     double c, q;
   };
-  for (const Case& m : {Case{"min(1.2*abs(x)^0.5,1)*sign(x)", 1.2, 0.5},
-                        Case{"max(-1,min(1,1.2*sqrt(abs(x))*sign(x)))", 1.2, 0.5},
-                        Case{"min(0.9*abs(x)^0.75,1)*sign(x)", 0.9, 0.75}}) {
+  for (const Case& m :
+       {Case{"min(1.2*abs(x)^0.5,1)*sign(x)", 1.2, 0.5}, Case{"max(-1,min(1,1.2*sqrt(abs(x))*sign(x)))", 1.2, 0.5},
+        Case{"min(0.9*abs(x)^0.75,1)*sign(x)", 0.9, 0.75}}) {
     for (const double side : {1.0, -1.0}) {
       // v' = -2 side until v = -side.
       const double met = 0.5;

@@ -19,7 +19,9 @@ class CountingProblem final : public Problem {
   void forget_counts() { functions_ = jacobian_ = hessian_ = 0; }
   /// One number per pair.
   void set_groups(std::vector<int> groups) { groups_ = std::move(groups); }
-  void set_closure(std::function<BranchClosure(const std::vector<ActiveSide>&)> closure) { closure_ = std::move(closure); }
+  void set_closure(std::function<BranchClosure(const std::vector<ActiveSide>&)> closure) {
+    closure_ = std::move(closure);
+  }
 
   [[nodiscard]] int variables() const override { return problem_.variables(); }
   [[nodiscard]] int constraints() const override { return problem_.constraints(); }

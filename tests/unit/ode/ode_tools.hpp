@@ -12,7 +12,8 @@
 
 namespace saltus::ode::trial {
 
-inline constexpr std::array all_methods{Method::dopri5, Method::dop853, Method::radau5, Method::radau9, Method::radau13};
+inline constexpr std::array all_methods{Method::dopri5, Method::dop853, Method::radau5, Method::radau9,
+                                        Method::radau13};
 inline constexpr std::array radau_methods{Method::radau5, Method::radau9, Method::radau13};
 /// How much more of a rounding the transformation of many stages leaves.
 inline double rounding_growth(Method method) {

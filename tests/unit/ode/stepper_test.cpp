@@ -28,7 +28,8 @@ TEST_P(EachMethod, error_falls_with_the_order) {
   for (const int steps : order(GetParam()) > 8 ? std::vector{coarse} : std::vector{coarse, 2 * coarse}) {
     const double error = nonlinear_error(GetParam(), steps);
     const double finer = nonlinear_error(GetParam(), 2 * steps);
-    EXPECT_NEAR(std::log2(error / finer), order(GetParam()), order(GetParam()) == 13 ? 1.0 : 0.5) << "errors " << error << ", " << finer;
+    EXPECT_NEAR(std::log2(error / finer), order(GetParam()), order(GetParam()) == 13 ? 1.0 : 0.5)
+        << "errors " << error << ", " << finer;
   }
 }
 

@@ -23,26 +23,16 @@ struct OperationForm {
 };
 
 constexpr std::array operation_forms{
-    OperationForm{casadi::OP_ASSIGN, "{0}"},
-    OperationForm{casadi::OP_ADD, "{0}+{1}"},
-    OperationForm{casadi::OP_SUB, "{0}-{1}"},
-    OperationForm{casadi::OP_MUL, "{0}*{1}"},
-    OperationForm{casadi::OP_DIV, "{0}/{1}"},
-    OperationForm{casadi::OP_NEG, "-{0}"},
-    OperationForm{casadi::OP_SQ, "{0}*{0}"},
-    OperationForm{casadi::OP_TWICE, "2.*{0}"},
-    OperationForm{casadi::OP_INV, "1./{0}"},
-    OperationForm{casadi::OP_SQRT, "sqrt({0})"},
-    OperationForm{casadi::OP_EXP, "exp({0})"},
-    OperationForm{casadi::OP_LOG, "log({0})"},
-    OperationForm{casadi::OP_SIN, "sin({0})"},
-    OperationForm{casadi::OP_COS, "cos({0})"},
-    OperationForm{casadi::OP_TANH, "tanh({0})"},
-    OperationForm{casadi::OP_FABS, "fabs({0})"},
-    OperationForm{casadi::OP_POW, "pow({0},{1})"},
-    OperationForm{casadi::OP_CONSTPOW, "pow({0},{1})"},
-    OperationForm{casadi::OP_NE, "({0}!={1})"},
-    OperationForm{casadi::OP_IF_ELSE_ZERO, "({0}?{1}:0)"},
+    OperationForm{casadi::OP_ASSIGN, "{0}"},       OperationForm{casadi::OP_ADD, "{0}+{1}"},
+    OperationForm{casadi::OP_SUB, "{0}-{1}"},      OperationForm{casadi::OP_MUL, "{0}*{1}"},
+    OperationForm{casadi::OP_DIV, "{0}/{1}"},      OperationForm{casadi::OP_NEG, "-{0}"},
+    OperationForm{casadi::OP_SQ, "{0}*{0}"},       OperationForm{casadi::OP_TWICE, "2.*{0}"},
+    OperationForm{casadi::OP_INV, "1./{0}"},       OperationForm{casadi::OP_SQRT, "sqrt({0})"},
+    OperationForm{casadi::OP_EXP, "exp({0})"},     OperationForm{casadi::OP_LOG, "log({0})"},
+    OperationForm{casadi::OP_SIN, "sin({0})"},     OperationForm{casadi::OP_COS, "cos({0})"},
+    OperationForm{casadi::OP_TANH, "tanh({0})"},   OperationForm{casadi::OP_FABS, "fabs({0})"},
+    OperationForm{casadi::OP_POW, "pow({0},{1})"}, OperationForm{casadi::OP_CONSTPOW, "pow({0},{1})"},
+    OperationForm{casadi::OP_NE, "({0}!={1})"},    OperationForm{casadi::OP_IF_ELSE_ZERO, "({0}?{1}:0)"},
 };
 
 /// Empty for what is not known.

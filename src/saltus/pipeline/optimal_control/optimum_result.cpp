@@ -51,8 +51,8 @@ result::Optimization solved_point(const SolvedOcp& solved) {
   const auto& multipliers = solution.multipliers;
   if (multipliers.rows.size() == problem.constraints()) {
     const linalg::Vector bounds = multipliers.upper.size() == problem.variables()
-                                       ? linalg::Vector(multipliers.upper - multipliers.lower)
-                                       : linalg::Vector();
+                                      ? linalg::Vector(multipliers.upper - multipliers.lower)
+                                      : linalg::Vector();
     found.multipliers = problem.constraint_multipliers(solution.w, multipliers.rows, bounds);
   }
   found.primal = list_of(solution.w);
