@@ -2,7 +2,7 @@
 # install them yourself and point CMAKE_PREFIX_PATH at them.
 #
 # name            version  licence   Debian package, why
-# Eigen           >= 3.4   MPL-2.0   libeigen3-dev; small dense linear algebra of the integrators
+# Eigen           >= 3.4   MPL-2.0   libeigen3-dev; factorisations and eigenvalues, in sources of linalg only
 # CasADi          >= 3.7   LGPL-3    wheel of PyPI in .venv; symbolic expressions of the model, their derivatives
 # Ipopt           >= 3.14  EPL-2.0   the same wheel, with MUMPS and OpenBLAS; nonlinear programs (cmake/ipopt.cmake)
 # HiGHS           >= 1.7   MIT       the same wheel; linear programs (cmake/highs.cmake)
