@@ -13,7 +13,7 @@ TOOL = sys.argv[1]
 MODELS = pathlib.Path(sys.argv[2]) / "models"
 ALL = "--all" in sys.argv
 # At most five seconds of one core each.
-QUICK = {"ball-to-rest", "cart-pole", "carts-with-friction", "estimator", "hysteresis-car", "slide-and-hide",
+QUICK = {"ball-to-rest", "cart-pole", "estimator", "hysteresis-car", "slide-and-hide",
          "slide-and-hide-rates", "stewart-anitescu", "throw-mirrored", "turbo-car", "turbo-hysteresis", "two-carts",
          "voice-coil", "voice-coil-time"}
 # Takes too long even at night: stopped by a time limit, which it says.
