@@ -93,6 +93,7 @@ class ContactOptima(time_freezing_test.FrozenTest):
         # A pendulum upside down, not a ball that falls through the hump.
         self.assertLess(result["verification"]["open_loop"]["amplification"], 1e3)
 
+    @tool.not_sanitized
     def test_an_impact_at_the_end_of_an_interval_is_moved_or_told(self):
         """A body that falls brakes by friction, best without control: two elements have no room for that. One interval gets
         a third, unless no iterations are left for it."""
