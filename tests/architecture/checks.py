@@ -92,7 +92,18 @@ def check_third_party(root, table):
                 continue
             where = "its public headers" if module in rule["sources"] else module
             complaints.append(f"{path.relative_to(root)}:{number}: {rule['name']} ({name}) has no place in {where}")
-    return complaints
+    return complaints + check_facades(root, table)
+
+
+def check_facades(root, table):
+    """(a) what has `facade = true` is included by one file of a module: the others include that file."""
+    files = {}
+    for path, _, module, _, name in module_includes(root):
+        for rule in table["third_party"]:
+            if rule.get("facade") and re.fullmatch(rule["header"], name):
+                files.setdefault((rule["name"], module), set()).add(str(path.relative_to(root)))
+    return [f"{module}: {name} is included by {len(own)} files ({', '.join(sorted(own)[:3])}, ...): one header is enough"
+            for (name, module), own in sorted(files.items()) if len(own) > 1]
 
 
 def cmake_modules(text):

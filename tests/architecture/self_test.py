@@ -67,6 +67,10 @@ class SelfTest(unittest.TestCase):
         bad = "#include <nlohmann/json.hpp>\n"
         self.assert_complains("third_party", {"src/saltus/report/a.hpp": bad}, "nlohmann-json")
 
+    def test_a_facade_beside_another_one(self):
+        both = {f"src/saltus/report/{name}.cpp": "#include <nlohmann/json.hpp>\n" for name in "ab"}
+        self.assert_complains("third_party", both, "nlohmann-json", "2 files")
+
     def test_command_line_outside_the_tool(self):
         self.assert_complains("third_party", {"src/saltus/pipeline/a.cpp": "#include <CLI/CLI.hpp>\n"}, "CLI11")
 

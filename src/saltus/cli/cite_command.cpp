@@ -3,11 +3,11 @@
 #include <string_view>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "references.hpp"
 #include "saltus/base/version.hpp"
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/frontend/model_input.hpp"

@@ -1,8 +1,7 @@
 #include <array>
 #include <memory>
 
-#include <CLI/CLI.hpp>
-
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/run_command.hpp"
 #include "saltus/pipeline/compare.hpp"

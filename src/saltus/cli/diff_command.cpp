@@ -1,10 +1,10 @@
 #include <filesystem>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "saltus/base/text.hpp"
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/frontend/difference_text.hpp"

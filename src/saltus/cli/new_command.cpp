@@ -4,10 +4,10 @@
 #include <memory>
 #include <string_view>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/frontend/catalogue.hpp"

@@ -1,5 +1,5 @@
-#include <CLI/CLI.hpp>
 
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/pipeline/options/optimize_fields.hpp"

@@ -2,9 +2,9 @@
 #include <memory>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/text/figure_file.hpp"

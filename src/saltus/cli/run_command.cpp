@@ -6,11 +6,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "saltus/base/text.hpp"
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/progress.hpp"
 #include "saltus/cli/text/source_excerpt.hpp"

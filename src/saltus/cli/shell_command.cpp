@@ -3,10 +3,10 @@
 #include <memory>
 #include <set>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "saltus/base/version.hpp"
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/text/completion_text.hpp"
 #include "saltus/cli/text/terminal.hpp"

@@ -1,9 +1,9 @@
 #include <array>
 #include <memory>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/run_command.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"

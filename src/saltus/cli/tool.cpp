@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
 #include "saltus/base/version.hpp"
+#include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/exit_code.hpp"
 #include "saltus/cli/text/terminal.hpp"

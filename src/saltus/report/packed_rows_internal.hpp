@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include "saltus/report/json_internal.hpp"
 
 namespace saltus::report {
 

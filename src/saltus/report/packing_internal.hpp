@@ -6,9 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "saltus/report/html.hpp"
+#include "saltus/report/json_internal.hpp"
 
 namespace saltus::report {
 

@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "saltus/report/json_internal.hpp"
 #include "saltus/report/thinning_internal.hpp"
 
 namespace saltus::report {

@@ -1,8 +1,7 @@
 // What the page of a comparison or of an order study shows, as JSON.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
+#include "saltus/report/json_internal.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {

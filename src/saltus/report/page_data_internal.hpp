@@ -5,9 +5,8 @@
 #include <optional>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "saltus/report/html.hpp"
+#include "saltus/report/json_internal.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {

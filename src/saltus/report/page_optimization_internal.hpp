@@ -3,8 +3,7 @@
 
 #include <cstddef>
 
-#include <nlohmann/json.hpp>
-
+#include "saltus/report/json_internal.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::report {

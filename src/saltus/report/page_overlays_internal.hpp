@@ -4,8 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
+#include "saltus/report/json_internal.hpp"
 #include "saltus/report/overlay.hpp"
 
 namespace saltus::report {

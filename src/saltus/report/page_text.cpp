@@ -2,8 +2,7 @@
 
 #include <variant>
 
-#include <nlohmann/json.hpp>
-
+#include "saltus/report/json_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
 
 namespace saltus::report {

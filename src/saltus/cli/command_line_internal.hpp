@@ -1,0 +1,4 @@
+// CLI11 for this module: its headers take long, and what is set for them is set once.
+#pragma once
+
+#include <CLI/CLI.hpp>
