@@ -1,11 +1,47 @@
 # Headers of others that most sources include, compiled once per set of compiler options. Only where SALTUS_JOINED_SOURCES is
 # on, so that a plain build shows which source does not include what it uses.
-# saltus_share_headers(TARGET PLAIN|SYMBOLIC|TESTS options of TARGET…): SYMBOLIC has CasADi's, too, TESTS GoogleTest's and CasADi's.
+# saltus_share_headers(TARGET PLAIN|SYMBOLIC|TESTS|SYMBOLIC_TESTS options of TARGET…): SYMBOLIC has CasADi's, too, TESTS
+# GoogleTest's.
 set(SALTUS_PLAIN_HEADERS <algorithm> <array> <cmath> <cstddef> <cstdint> <functional> <limits> <map> <memory> <optional> <set> <span>
   <string> <string_view> <tuple> <type_traits> <utility> <variant> <vector> <fmt/format.h> <tl/expected.hpp>)
 set(SALTUS_SYMBOLIC_HEADERS ${SALTUS_PLAIN_HEADERS} <casadi/core/function.hpp> <casadi/core/sx.hpp>
   <casadi/core/sx_elem.hpp>)
-set(SALTUS_TESTS_HEADERS ${SALTUS_SYMBOLIC_HEADERS} <gtest/gtest.h>)
+set(SALTUS_TESTS_HEADERS ${SALTUS_PLAIN_HEADERS} <gtest/gtest.h>)
+set(SALTUS_SYMBOLIC_TESTS_HEADERS ${SALTUS_SYMBOLIC_HEADERS} <gtest/gtest.h>)
+
+# saltus_uses_casadi(TARGET VARIABLE): whether it links CasADi, by whatever way.
+function(saltus_uses_casadi target variable)
+  set(waiting ${target})
+  set(seen "")
+  while(waiting)
+    list(POP_FRONT waiting next)
+    if(NOT TARGET ${next} OR next IN_LIST seen)
+      continue()
+    endif()
+    list(APPEND seen ${next})
+    foreach(property LINK_LIBRARIES INTERFACE_LINK_LIBRARIES)
+      get_target_property(libraries ${next} ${property})
+      if(libraries)
+        list(APPEND waiting ${libraries})
+      endif()
+    endforeach()
+  endwhile()
+  if("casadi::casadi" IN_LIST seen)
+    set(${variable} ON PARENT_SCOPE)
+  else()
+    set(${variable} OFF PARENT_SCOPE)
+  endif()
+endfunction()
+
+# saltus_share_headers_of_tests(TARGET): behind its target_link_libraries.
+function(saltus_share_headers_of_tests target)
+  saltus_uses_casadi(${target} symbolic)
+  if(symbolic)
+    saltus_share_headers(${target} SYMBOLIC_TESTS ${SALTUS_TEST_OPTIONS})
+  else()
+    saltus_share_headers(${target} TESTS ${SALTUS_TEST_OPTIONS})
+  endif()
+endfunction()
 
 function(saltus_share_headers target kind)
   if(NOT SALTUS_JOINED_SOURCES)
@@ -17,7 +53,7 @@ function(saltus_share_headers target kind)
   string(TOLOWER saltus_headers_${kind}_${options} headers)
   if(NOT TARGET ${headers})
     set(source ${PROJECT_BINARY_DIR}/${headers}.cpp)
-    if(kind STREQUAL "TESTS")
+    if(kind MATCHES "TESTS$")
       # A program, as tests are: their code is not that of libraries.
       file(CONFIGURE OUTPUT ${source} CONTENT "int main() {}\n")
       add_executable(${headers} ${source})
@@ -27,7 +63,7 @@ function(saltus_share_headers target kind)
       add_library(${headers} OBJECT ${source})
     endif()
     target_link_libraries(${headers} PRIVATE fmt::fmt tl::expected saltus_warnings)
-    if(NOT kind STREQUAL "PLAIN")
+    if(kind MATCHES "^SYMBOLIC")
       target_link_libraries(${headers} PRIVATE casadi::casadi)
     endif()
     target_compile_options(${headers} PRIVATE ${ARGN})

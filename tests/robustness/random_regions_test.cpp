@@ -77,7 +77,7 @@ Integration run(const RandomRegions& system) {
   IntegrationOptions options;
   options.tolerances = {1e-8, 1e-10};
   options.until = 10.0;
-  return integrate(*kernel, *built, options);
+  return integrate(*kernel, options);
 }
 
 double indicator(const Cell& cell, const std::vector<double>& x) {

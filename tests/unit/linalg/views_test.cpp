@@ -196,7 +196,7 @@ TEST(View, SelectsInAnyOrder) {
   EXPECT_TRUE(a.selected(rows, columns) == Matrix({{6, 4}, {3, 1}, {6, 4}}));
   EXPECT_TRUE(a.selected_rows(rows) == Matrix({{4, 5, 6}, {1, 2, 3}, {4, 5, 6}}));
   EXPECT_TRUE(a.selected_cols(columns) == Matrix({{3, 1}, {6, 4}}));
-  EXPECT_TRUE(a.selected_cols({}).empty());
+  EXPECT_TRUE(a.selected_cols(std::span<const Index>()).empty());
 }
 
 }  // namespace
