@@ -6,23 +6,36 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/linalg/loops_internal.hpp"
 #include "saltus/linalg/matrix.hpp"
 
 namespace saltus::linalg {
 namespace {
 
-/// Sum of term(i, j) over all entries of a shape; four sums at a time, so that one need not wait for the last.
+/// Sum of term(k) for k below n; four sums at a time, so that one need not wait for the last.
 template <class Term>
-double sum_of(Index rows, Index columns, const Term& term) {
+double sum_of(Index n, const Term& term) {
+  double part[4] = {0.0, 0.0, 0.0, 0.0};
+  Index i = 0;
+  for (; i + 4 <= n; i += 4) {
+    for (Index k = 0; k < 4; ++k) part[k] += term(i + k);
+  }
+  for (; i < n; ++i) part[0] += term(i);
+  return (part[0] + part[1]) + (part[2] + part[3]);
+}
+
+/// Sum of term(entry of a, entry of b).
+template <class Term>
+double sum_over(ConstView a, ConstView b, const Term& term) {
+  const bool flat = a.is_contiguous() && b.is_contiguous();
+  const Index rows = flat ? a.size() : a.rows(), columns = flat ? 1 : a.cols();
+  const Index own = flat ? 1 : a.row_step(), other = flat ? 1 : b.row_step();
   double total = 0.0;
   for (Index j = 0; j < columns; ++j) {
-    double part[4] = {0.0, 0.0, 0.0, 0.0};
-    Index i = 0;
-    for (; i + 4 <= rows; i += 4) {
-      for (Index k = 0; k < 4; ++k) part[k] += term(i + k, j);
-    }
-    for (; i < rows; ++i) part[0] += term(i, j);
-    total += (part[0] + part[1]) + (part[2] + part[3]);
+    const double* const p = a.data() + j * a.column_step();
+    const double* const q = b.data() + j * b.column_step();
+    total += own == 1 && other == 1 ? sum_of(rows, [&](Index i) { return term(p[i], q[i]); })
+                                    : sum_of(rows, [&](Index i) { return term(p[i * own], q[i * other]); });
   }
   return total;
 }
@@ -37,28 +50,22 @@ template <class Value>
 double largest_of(ConstView a, const Value& value) {
   if (a.empty()) return 0.0;
   double largest = value(a(0, 0));
-  for (Index j = 0; j < a.cols(); ++j) {
-    for (Index i = 0; i < a.rows(); ++i) largest = larger(largest, value(a(i, j)));
-  }
+  for_each_entry(a, [&](double entry) { largest = larger(largest, value(entry)); });
   return largest;
 }
 
 template <class Change>
 Matrix changed(ConstView a, const Change& change) {
   Matrix result(a.rows(), a.cols());
-  for (Index j = 0; j < a.cols(); ++j) {
-    for (Index i = 0; i < a.rows(); ++i) result(i, j) = change(a(i, j));
-  }
+  for_each_pair(result, a, [&](double& entry, double old) { entry = change(old); });
   return result;
 }
 
 template <class Change>
 Matrix combined(ConstView a, ConstView b, const Change& change) {
   SALTUS_ASSERT(a.rows() == b.rows() && a.cols() == b.cols());
-  Matrix result(a.rows(), a.cols());
-  for (Index j = 0; j < a.cols(); ++j) {
-    for (Index i = 0; i < a.rows(); ++i) result(i, j) = change(a(i, j), b(i, j));
-  }
+  Matrix result(a);
+  for_each_pair(result, b, [&](double& entry, double other) { entry = change(entry, other); });
   return result;
 }
 
@@ -110,12 +117,12 @@ Matrix ConstView::selected_cols(std::span<const int> columns) const { return tak
 double ConstView::dot(ConstView other) const {
   SALTUS_ASSERT(size() == other.size());
   const ConstView a = upright(*this), b = a.cols() == 1 && other.rows() == 1 ? other.transpose() : other;
-  return sum_of(a.rows(), a.cols(), [&](Index i, Index j) { return a(i, j) * b(i, j); });
+  return sum_over(a, b, [](double own, double factor) { return own * factor; });
 }
 
 double ConstView::sum() const {
   const ConstView a = upright(*this);
-  return sum_of(a.rows(), a.cols(), [&](Index i, Index j) { return a(i, j); });
+  return sum_over(a, a, [](double entry, double) { return entry; });
 }
 
 double ConstView::squared_norm() const { return dot(*this); }
@@ -124,7 +131,7 @@ double ConstView::norm() const { return std::sqrt(squared_norm()); }
 
 double ConstView::sum_abs() const {
   const ConstView a = upright(*this);
-  return sum_of(a.rows(), a.cols(), [&](Index i, Index j) { return std::abs(a(i, j)); });
+  return sum_over(a, a, [](double entry, double) { return std::abs(entry); });
 }
 
 double ConstView::max_abs() const {
@@ -227,17 +234,13 @@ Vector ConstView::row_max_abs() const {
 
 template <class Self>
 Self& Writable<Self>::operator*=(double factor) {
-  for (Index j = 0; j < columns_; ++j) {
-    for (Index i = 0; i < rows_; ++i) (*this)(i, j) *= factor;
-  }
+  for_each_pair(all(), *this, [factor](double& entry, double) { entry *= factor; });
   return self();
 }
 
 template <class Self>
 Self& Writable<Self>::operator/=(double divisor) {
-  for (Index j = 0; j < columns_; ++j) {
-    for (Index i = 0; i < rows_; ++i) (*this)(i, j) /= divisor;
-  }
+  for_each_pair(all(), *this, [divisor](double& entry, double) { entry /= divisor; });
   return self();
 }
 
@@ -245,34 +248,26 @@ template <class Self>
 Self& Writable<Self>::add_scaled(double factor, ConstView other) {
   if (rows_ != other.rows() && rows_ == other.cols()) other = other.transpose();
   SALTUS_ASSERT(rows_ == other.rows() && columns_ == other.cols());
-  for (Index j = 0; j < columns_; ++j) {
-    for (Index i = 0; i < rows_; ++i) (*this)(i, j) += factor * other(i, j);
-  }
+  for_each_pair(all(), other, [factor](double& entry, double summand) { entry += factor * summand; });
   return self();
 }
 
 template <class Self>
 Self& Writable<Self>::add_to_all(double summand) {
-  for (Index j = 0; j < columns_; ++j) {
-    for (Index i = 0; i < rows_; ++i) (*this)(i, j) += summand;
-  }
+  for_each_pair(all(), *this, [summand](double& entry, double) { entry += summand; });
   return self();
 }
 
 template <class Self>
 Self& Writable<Self>::times_each_in_place(ConstView other) {
   SALTUS_ASSERT(rows_ == other.rows() && columns_ == other.cols());
-  for (Index j = 0; j < columns_; ++j) {
-    for (Index i = 0; i < rows_; ++i) (*this)(i, j) *= other(i, j);
-  }
+  for_each_pair(all(), other, [](double& entry, double factor) { entry *= factor; });
   return self();
 }
 
 template <class Self>
 Self& Writable<Self>::set_constant(double value) {
-  for (Index j = 0; j < columns_; ++j) {
-    for (Index i = 0; i < rows_; ++i) (*this)(i, j) = value;
-  }
+  for_each_pair(all(), *this, [value](double& entry, double) { entry = value; });
   return self();
 }
 
@@ -301,13 +296,7 @@ Self& Writable<Self>::scale_cols(ConstView factors) {
 View& View::operator=(ConstView other) {
   if (rows_ != other.rows() && rows_ == other.cols()) other = other.transpose();
   SALTUS_ASSERT(rows_ == other.rows() && columns_ == other.cols());
-  if (is_contiguous() && other.is_contiguous()) {
-    std::copy_n(other.data(), size(), data_);
-    return *this;
-  }
-  for (Index j = 0; j < columns_; ++j) {
-    for (Index i = 0; i < rows_; ++i) (*this)(i, j) = other(i, j);
-  }
+  for_each_pair(View(*this), other, [](double& entry, double value) { entry = value; });
   return *this;
 }
 

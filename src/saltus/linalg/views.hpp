@@ -170,6 +170,7 @@ class Writable : public ConstView {
 
  private:
   [[nodiscard]] Self& self() { return static_cast<Self&>(*this); }
+  [[nodiscard]] View all();
 };
 
 /// What is written: assignment copies entries into the memory that it shows, whose shape stays.
@@ -192,6 +193,10 @@ class View : public Writable<View> {
   View& operator=(std::initializer_list<double> values);
 };
 
+template <class Self>
+View Writable<Self>::all() {
+  return {data_, rows_, columns_, row_step_, column_step_};
+}
 template <class Self>
 View Writable<Self>::block(Index i, Index j, Index rows, Index columns) {
   return {data_ + i * row_step_ + j * column_step_, rows, columns, row_step_, column_step_};

@@ -113,7 +113,7 @@ std::vector<std::pair<int, int>> Resimulation::wanted_mode(const Integration& ru
 
 Resimulation::Segment Resimulation::from_node(std::size_t k, IntegrationOptions options,
                                               const std::function<bool()>& is_interrupted) {
-  system_.initial_state = path_->nodes[k];
+  kernel_.set_initial_state(path_->nodes[k]);
   const auto is_complete = [&](const Integration& run) {
     // What happens at the end itself, where controls jump, belongs to the next interval, and so do its failures.
     return run.status.termination != Termination::stopped_by_user && run.status.time_reached >= options.until &&
@@ -139,7 +139,7 @@ Resimulation::Segment Resimulation::open_loop(const std::function<bool()>& is_in
 
 linalg::Vector Resimulation::end_of(std::size_t k, std::vector<double> start,
                                     const std::function<bool()>& is_interrupted) {
-  system_.initial_state = std::move(start);
+  kernel_.set_initial_state(std::move(start));
   const double until = path_->times[k + 1];
   const auto ended = run(resimulation_options(path_->times[k], until, 1), is_interrupted);
   if (ended.status.termination == Termination::stopped_by_user || !(ended.status.time_reached >= until)) {
