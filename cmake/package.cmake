@@ -15,7 +15,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libc6 (>= 2.36), libstdc++6 (>= 12), libgcc-s1, zlib1g")
 # To write programs: what the headers include. CasADi's headers are in the wheel of PyPI.
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS
-  "cmake, g++, libeigen3-dev, libfmt-dev, libexpected-dev, libtomlplusplus-dev, zlib1g-dev, gcc")
+  "cmake, g++, libfmt-dev, libexpected-dev, libtomlplusplus-dev, zlib1g-dev, gcc")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_CURRENT_LIST_DIR}/package_options.cmake)
 include(CPack)
