@@ -8,7 +8,8 @@
 
 namespace saltus::linalg {
 
-/// A member that is copied with its owner and whose type only the source knows.
+/// A member that is copied with its owner and whose type only the source knows. What is left behind a move begins
+/// anew where it is used or copied.
 template <class Part>
 class Hidden {
  public:
@@ -18,7 +19,7 @@ class Hidden {
   Hidden& operator=(const Hidden& other);
   Hidden& operator=(Hidden&& other) noexcept;
   ~Hidden();
-  Part* operator->() { return part_.get(); }
+  Part* operator->();
   const Part* operator->() const { return part_.get(); }
 
  private:

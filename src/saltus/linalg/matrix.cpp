@@ -87,9 +87,10 @@ void Matrix::set_constant(Index rows, Index columns, double value) {
 
 void Matrix::resize(Index rows, Index columns) {
   if (rows * columns > capacity_) {
-    capacity_ = rows * columns;
-    memory_.reset(new double[static_cast<std::size_t>(capacity_)]);
+    // First the memory: where there is none, the matrix stays as it is.
+    memory_.reset(new double[static_cast<std::size_t>(rows * columns)]);
     data_ = memory_.get();
+    capacity_ = rows * columns;
   }
   rows_ = rows;
   columns_ = columns;
