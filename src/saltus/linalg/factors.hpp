@@ -104,13 +104,13 @@ class Cholesky {
   Cholesky() = default;
   explicit Cholesky(ConstView a) { compute(a); }
   void compute(ConstView a);
-  [[nodiscard]] bool is_positive() const;  ///< false: no factors
+  [[nodiscard]] bool is_positive() const { return is_positive_; }  ///< false: no factors
   [[nodiscard]] Matrix solve(ConstView right) const;
   void solve_in_place(View right) const;
-  struct Parts;
 
  private:
-  Hidden<Parts> parts_;
+  Matrix factors_;  ///< L in the lower triangle
+  bool is_positive_ = false;
 };
 
 /// P A P' = L D L' of a symmetric semi-definite matrix.
@@ -133,7 +133,6 @@ class Ldl {
 extern template class Hidden<FullLu::Parts>;
 extern template class Hidden<PivotedQr::Parts>;
 extern template class Hidden<OrthogonalFactors::Parts>;
-extern template class Hidden<Cholesky::Parts>;
 extern template class Hidden<Ldl::Parts>;
 
 /// The least-squares solution of least norm. Cost: that of OrthogonalFactors.
