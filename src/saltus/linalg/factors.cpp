@@ -40,6 +40,22 @@ void eliminate(Matrix& a, std::vector<Index>& pivots) {
   }
 }
 
+/// L of A = L L' in the place of the lower triangle of A. False where a pivot is not positive.
+bool take_roots(Matrix& a) {
+  const Index n = a.rows();
+  for (Index k = 0; k < n; ++k) {
+    double* const column = a.data() + k * n;
+    if (!(column[k] > 0.0)) return false;
+    column[k] = std::sqrt(column[k]);
+    for (Index i = k + 1; i < n; ++i) column[i] /= column[k];
+    for (Index j = k + 1; j < n; ++j) {
+      double* const other = a.data() + j * n;
+      for (Index i = j; i < n; ++i) other[i] -= column[i] * column[j];
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 void Lu::compute(ConstView a) {
@@ -132,20 +148,40 @@ Matrix OrthogonalFactors::null_space() const {
 }
 Matrix OrthogonalFactors::pseudo_inverse() const { return matrix_of(parts_->factors.pseudoInverse()); }
 
-struct Cholesky::Parts {
-  Eigen::LLT<Eigen::MatrixXd> factors;
-};
-void Cholesky::compute(ConstView a) { parts_->factors.compute(eigen(a)); }
-bool Cholesky::is_positive() const { return parts_->factors.info() == Eigen::Success; }
+void Cholesky::compute(ConstView a) {
+  SALTUS_ASSERT(a.rows() == a.cols());
+  factors_ = a;
+  const Index n = a.rows();
+  if (n < many) {
+    is_positive_ = take_roots(factors_);
+  } else {
+    Eigen::Map<Eigen::MatrixXd> own(factors_.data(), n, n);
+    is_positive_ = Eigen::internal::llt_inplace<double, Eigen::Lower>::blocked(own) == -1;
+  }
+}
+
 Matrix Cholesky::solve(ConstView right) const {
   Matrix solution(right);
   solve_in_place(solution);
   return solution;
 }
+
 void Cholesky::solve_in_place(View right) const {
-  auto own = eigen(right);
-  parts_->factors.matrixL().solveInPlace(own);
-  parts_->factors.matrixU().solveInPlace(own);
+  const Index n = factors_.rows();
+  SALTUS_ASSERT(right.rows() == n);
+  for (Index column = 0; column < right.cols(); ++column) {
+    View b = right.col(column);
+    for (Index k = 0; k < n; ++k) {
+      const double* const own = factors_.data() + k * n;
+      b[k] /= own[k];
+      for (Index i = k + 1; i < n; ++i) b[i] -= own[i] * b[k];
+    }
+    for (Index k = n - 1; k >= 0; --k) {
+      const double* const own = factors_.data() + k * n;
+      for (Index i = k + 1; i < n; ++i) b[k] -= own[i] * b[i];
+      b[k] /= own[k];
+    }
+  }
 }
 
 struct Ldl::Parts {
@@ -168,7 +204,6 @@ Matrix inverse(ConstView a) { return Lu(a).solve(Matrix::identity(a.rows(), a.ro
 template class Hidden<FullLu::Parts>;
 template class Hidden<PivotedQr::Parts>;
 template class Hidden<OrthogonalFactors::Parts>;
-template class Hidden<Cholesky::Parts>;
 template class Hidden<Ldl::Parts>;
 
 }  // namespace saltus::linalg

@@ -8,7 +8,8 @@
 
 namespace saltus::linalg {
 
-/// A member that is copied with its owner and whose type only the source knows.
+/// A member that is copied with its owner and whose type only the source knows. What is left behind a move begins
+/// anew where it is used or copied.
 template <class Part>
 class Hidden {
  public:
@@ -18,7 +19,7 @@ class Hidden {
   Hidden& operator=(const Hidden& other);
   Hidden& operator=(Hidden&& other) noexcept;
   ~Hidden();
-  Part* operator->() { return part_.get(); }
+  Part* operator->();
   const Part* operator->() const { return part_.get(); }
 
  private:
@@ -103,13 +104,13 @@ class Cholesky {
   Cholesky() = default;
   explicit Cholesky(ConstView a) { compute(a); }
   void compute(ConstView a);
-  [[nodiscard]] bool is_positive() const;  ///< false: no factors
+  [[nodiscard]] bool is_positive() const { return is_positive_; }  ///< false: no factors
   [[nodiscard]] Matrix solve(ConstView right) const;
   void solve_in_place(View right) const;
-  struct Parts;
 
  private:
-  Hidden<Parts> parts_;
+  Matrix factors_;  ///< L in the lower triangle
+  bool is_positive_ = false;
 };
 
 /// P A P' = L D L' of a symmetric semi-definite matrix.
@@ -132,7 +133,6 @@ class Ldl {
 extern template class Hidden<FullLu::Parts>;
 extern template class Hidden<PivotedQr::Parts>;
 extern template class Hidden<OrthogonalFactors::Parts>;
-extern template class Hidden<Cholesky::Parts>;
 extern template class Hidden<Ldl::Parts>;
 
 /// The least-squares solution of least norm. Cost: that of OrthogonalFactors.

@@ -87,9 +87,10 @@ void Matrix::set_constant(Index rows, Index columns, double value) {
 
 void Matrix::resize(Index rows, Index columns) {
   if (rows * columns > capacity_) {
-    capacity_ = rows * columns;
-    memory_.reset(new double[static_cast<std::size_t>(capacity_)]);
+    // First the memory: where there is none, the matrix stays as it is.
+    memory_.reset(new double[static_cast<std::size_t>(rows * columns)]);
     data_ = memory_.get();
+    capacity_ = rows * columns;
   }
   rows_ = rows;
   columns_ = columns;
@@ -199,14 +200,17 @@ void multiply(ConstView a, ConstView b, View out) {
     return;
   }
   for (Index j = 0; j < b.cols(); ++j) {
-    const ConstView factors = b.col(j);
-    View column = out.col(j);
+    double* const column = out.data() + j * out.column_step();
     if (by_rows) {
-      for (Index i = 0; i < a.rows(); ++i) column[i] = a.row(i).dot(factors);
+      for (Index i = 0; i < a.rows(); ++i) column[i * out.row_step()] = a.row(i).dot(b.col(j));
       continue;
     }
-    column.set_zero();
-    for (Index k = 0; k < a.cols(); ++k) column.add_scaled(factors[k], a.col(k));
+    for (Index i = 0; i < a.rows(); ++i) column[i * out.row_step()] = 0.0;
+    for (Index k = 0; k < a.cols(); ++k) {
+      const double factor = b(k, j);
+      const double* const own = a.data() + k * a.column_step();
+      for (Index i = 0; i < a.rows(); ++i) column[i * out.row_step()] += own[i * a.row_step()] * factor;
+    }
   }
 }
 

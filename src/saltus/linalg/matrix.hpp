@@ -10,7 +10,8 @@
 namespace saltus::linalg {
 
 /// A matrix that owns its entries, column by column. Up to `inside` of them lie in the object itself, so that small
-/// ones allocate nothing; larger ones keep their memory when they shrink. Entries of a new one are not set.
+/// ones allocate nothing; larger ones keep their memory when they shrink. Entries of a new one are not set. Views of it
+/// are void behind a resize and behind the assignment of a result, whose memory it takes.
 class Matrix : public Writable<Matrix> {
  public:
   Matrix() : Matrix(0, 0) {}

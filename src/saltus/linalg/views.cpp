@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -43,15 +44,18 @@ double sum_over(ConstView a, ConstView b, const Term& term) {
 /// One row is gone through as one column.
 [[nodiscard]] ConstView upright(ConstView a) { return a.rows() == 1 ? a.transpose() : a; }
 
-/// The larger of both, NaN where one is.
-[[nodiscard]] double larger(double a, double b) { return b > a || std::isnan(b) ? b : a; }
-
+/// NaN where an entry is.
 template <class Value>
 double largest_of(ConstView a, const Value& value) {
   if (a.empty()) return 0.0;
   double largest = value(a(0, 0));
-  for_each_entry(a, [&](double entry) { largest = larger(largest, value(entry)); });
-  return largest;
+  bool is_number = true;
+  for_each_entry(a, [&](double entry) {
+    const double own = value(entry);
+    largest = own > largest ? own : largest;
+    is_number = is_number && own == own;
+  });
+  return is_number ? largest : std::numeric_limits<double>::quiet_NaN();
 }
 
 template <class Change>
@@ -116,8 +120,13 @@ Matrix ConstView::selected_cols(std::span<const int> columns) const { return tak
 
 double ConstView::dot(ConstView other) const {
   SALTUS_ASSERT(size() == other.size());
-  const ConstView a = upright(*this), b = a.cols() == 1 && other.rows() == 1 ? other.transpose() : other;
-  return sum_over(a, b, [](double own, double factor) { return own * factor; });
+  const bool are_vectors = (rows_ == 1 || columns_ == 1) && (other.rows_ == 1 || other.columns_ == 1);
+  if (!are_vectors) return sum_over(*this, other, [](double own, double factor) { return own * factor; });
+  const double* const p = data_;
+  const double* const q = other.data_;
+  const Index n = size(), own = step(), step = other.step();
+  if (own == 1 && step == 1) return sum_of(n, [&](Index i) { return p[i] * q[i]; });
+  return sum_of(n, [&](Index i) { return p[i * own] * q[i * step]; });
 }
 
 double ConstView::sum() const {
@@ -267,7 +276,11 @@ Self& Writable<Self>::times_each_in_place(ConstView other) {
 
 template <class Self>
 Self& Writable<Self>::set_constant(double value) {
-  for_each_pair(all(), *this, [value](double& entry, double) { entry = value; });
+  if (is_contiguous()) {
+    std::fill_n(data_, size(), value);
+  } else {
+    for_each_pair(all(), *this, [value](double& entry, double) { entry = value; });
+  }
   return self();
 }
 
@@ -296,7 +309,11 @@ Self& Writable<Self>::scale_cols(ConstView factors) {
 View& View::operator=(ConstView other) {
   if (rows_ != other.rows() && rows_ == other.cols()) other = other.transpose();
   SALTUS_ASSERT(rows_ == other.rows() && columns_ == other.cols());
-  for_each_pair(View(*this), other, [](double& entry, double value) { entry = value; });
+  if (is_contiguous() && other.is_contiguous()) {
+    std::copy_n(other.data(), size(), data_);
+  } else {
+    for_each_pair(View(*this), other, [](double& entry, double value) { entry = value; });
+  }
   return *this;
 }
 

@@ -43,6 +43,20 @@ TEST(Lu, Solves) {
   }
 }
 
+TEST(Lu, SolvesInPlaceWhereverTheRightSideLies) {
+  std::mt19937 random(11);
+  for (const Index n : orders) {
+    const Matrix a = random_matrix(random, n, n);
+    const Lu factors(a);
+    Matrix rows = random_matrix(random, 3, n);
+    const Matrix before = rows;
+    factors.solve_in_place(rows.middle_rows(1, 1).transpose());
+    EXPECT_TRUE(rows.row(1).transpose() == factors.solve(before.row(1).transpose()));
+    EXPECT_TRUE(rows.row(0) == before.row(0));
+    EXPECT_TRUE(rows.row(2) == before.row(2));
+  }
+}
+
 TEST(Lu, HasDeterminants) {
   std::mt19937 random(2);
   EXPECT_EQ(determinant(Matrix{{0, 1}, {1, 0}}), -1.0);
@@ -205,6 +219,19 @@ TEST(Factors, AreCopiedAndMovedWithTheirOwners) {
   EXPECT_TRUE(moved.solve(b) == b);
   moved = copy;
   EXPECT_TRUE(moved.solve(b) == x);
+}
+
+TEST(Factors, BeginAnewBehindAMove) {
+  Cholesky first(Matrix::identity(2, 2));
+  const Cholesky moved = std::move(first);
+  Cholesky copy = first;  // NOLINT(bugprone-use-after-move)
+  const Matrix a{{4, 0}, {0, 1}};
+  copy.compute(a);
+  first.compute(a);
+  EXPECT_TRUE(copy.solve(Vector{4, 1}) == Vector({1, 1}));
+  EXPECT_TRUE(first.solve(Vector{4, 1}) == Vector({1, 1}));
+  copy = moved;
+  EXPECT_TRUE(copy.solve(Vector{4, 1}) == Vector({4, 1}));
 }
 
 }  // namespace
