@@ -12,7 +12,7 @@
 #include "saltus/fesd_integrator/integrate.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/build.hpp"
-#include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/model/frozen_system.hpp"
 #include "saltus/reformulation/dcs.hpp"
 #include "value_or_exit.hpp"
 

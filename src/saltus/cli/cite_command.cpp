@@ -12,6 +12,7 @@
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/frontend/model_input.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/frozen_system.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::cli {

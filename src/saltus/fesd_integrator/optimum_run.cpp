@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/discretization/ocp/ocp_problem.hpp"
 #include "saltus/discretization/point_functions.hpp"
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/element/facts.hpp"
@@ -176,7 +177,7 @@ void find_frozen(std::vector<OptimizedPiece>& pieces, std::size_t clock, double 
 }
 
 result::Elements recorded_elements(const std::vector<OptimizedPiece>& pieces, ElementRecorder recorder,
-                                   std::optional<std::size_t> clock) {
+                                   const std::optional<OptimumClock>& clock) {
   for (const auto& piece : pieces) {
     recorder.add(piece.element, piece.left, piece.right, piece.end, piece.set, piece.held.data());
   }
@@ -185,11 +186,11 @@ result::Elements recorded_elements(const std::vector<OptimizedPiece>& pieces, El
   elements.t.clear();
   for (const auto& piece : pieces) {
     const auto& element = piece.element;
-    elements.t.push_back(element.x[*clock]);
-    for (std::size_t i = *clock; i < element.stage_states.size(); i += element.x.size()) {
+    elements.t.push_back(element.x[clock->state]);
+    for (std::size_t i = clock->state; i < element.stage_states.size(); i += element.x.size()) {
       elements.t.push_back(element.stage_states[i]);
     }
-    elements.t.push_back(element.end[*clock]);
+    elements.t.push_back(element.end[clock->state]);
   }
   return elements;
 }
@@ -198,14 +199,14 @@ result::Elements recorded_elements(const std::vector<OptimizedPiece>& pieces, El
 
 Expected<OptimumRun> optimum_run(const model::System& system, const reformulation::Dcs& dcs,
                                  const discretization::OcpSolution& solution, const std::vector<double>& times,
-                                 const ButcherTableau& tableau, std::optional<std::size_t> clock) {
+                                 const ButcherTableau& tableau, const std::optional<OptimumClock>& clock) {
   auto kernel = discretization::StageKernel::compile(dcs, solution.parameters);
   if (!kernel) return tl::unexpected(kernel.error());
   auto functions = discretization::PointFunctions::compile(dcs, solution.parameters);
   if (!functions) return tl::unexpected(functions.error());
   const Facts known = facts(system, dcs);
   auto pieces = optimized_pieces(solution, times, *kernel, *functions, known);
-  if (clock) find_frozen(pieces, *clock, solution.horizon);
+  if (clock) find_frozen(pieces, clock->state, solution.horizon);
 
   OptimumRun run;
   Recording whole(*kernel, *functions, known, tableau);
@@ -213,10 +214,10 @@ Expected<OptimumRun> optimum_run(const model::System& system, const reformulatio
   run.events_of_all = whole.recorder().event_list();
   run.elements = recorded_elements(pieces, {*kernel, known, tableau}, clock);
   Recording moving(*kernel, *functions, known, tableau);
-  const bool by_hand = clock && !system.freezing;
+  const bool by_hand = clock && clock->by_hand;
   if (by_hand) {
     moving.record(pieces, Recording::Pieces::moving);
-    moving.set_clock(*clock);
+    moving.set_clock(clock->state);
   }
   Recorder& shown = by_hand ? moving.recorder() : whole.recorder();
   run.final = shown.last();

@@ -6,6 +6,7 @@
 #include "saltus/frontend/overview_text.hpp"
 #include "saltus/frontend/reformulation_text.hpp"
 #include "saltus/model/build.hpp"
+#include "saltus/model/frozen_system.hpp"
 #include "saltus/model/summary.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"

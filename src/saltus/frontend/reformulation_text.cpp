@@ -8,9 +8,11 @@
 
 #include <fmt/format.h>
 
+#include "saltus/model/frozen_system.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/well_posedness.hpp"
+#include "saltus/reformulation/dcs.hpp"
 #include "saltus/reformulation/sizes.hpp"
 
 namespace saltus::frontend {

@@ -11,6 +11,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/frozen_system.hpp"
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
 #include "saltus/model/mechanics/mechanics_internal.hpp"
 #include "saltus/model/mistakes.hpp"

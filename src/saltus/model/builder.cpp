@@ -10,6 +10,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/model/builder_parts_internal.hpp"
+#include "saltus/model/frozen_system.hpp"
 
 namespace saltus::model {
 

@@ -13,6 +13,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/model/graph/sharing_internal.hpp"
 #include "saltus/model/recognition/decisions_internal.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::model {
 namespace {

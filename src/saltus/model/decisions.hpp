@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/system.hpp"
 
 namespace saltus::model {
+
+struct System;
 
 /// Says why a system may not be simulated with the values it holds: as many as it has names, and of parameters those
 /// with which everything would be decided as it was: what folds, what coincides, where nothing jumps. Others have to be

@@ -28,6 +28,7 @@ struct Layout {
     bool continuous = false;     ///< listed, though nothing jumps on it
     double alpha_at_zero = 0.5;  ///< role discrete: alpha where psi is 0, as written
     std::vector<int> states{};   ///< role discrete: those that psi reads, ascending; of a compiled model
+    bool named = false;          ///< declared in [switching]
   };
   /// Holds a comparison in a condition, or a guard.
   struct Guard {

@@ -19,8 +19,13 @@ std::vector<Layout::Guard> guards_of(const casadi::SX& guards, const std::vector
 
 void add_switching(const System& system, Layout& layout) {
   for (const auto& function : system.switching) {
-    layout.surfaces.push_back(
-        {function.name, function.role, function.is_kink(), function.continuous, function.alpha_at_zero});
+    layout.surfaces.push_back({function.name,
+                               function.role,
+                               function.is_kink(),
+                               function.continuous,
+                               function.alpha_at_zero,
+                               {},
+                               function.named});
   }
   layout.columns = system.columns;
   for (const auto& group : system.mode_groups) {

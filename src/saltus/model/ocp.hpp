@@ -8,52 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "saltus/linalg/matrix.hpp"
 #include "saltus/model/description.hpp"
 #include "saltus/model/ocp_description.hpp"
+#include "saltus/model/ocp_terms.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::model {
-
-/// States lower <= y_output <= upper, y the outputs of Ocp::system; one of both may be infinite.
-struct OcpConstraint {
-  std::string name;  ///< as written
-  int output = 0;
-  double lower = 0.0, upper = 0.0;
-  ConstraintNorm norm = ConstraintNorm::hard;
-  double penalty = 0.0;
-  bool is_slack = false;   ///< of a kink of controls: holds with every control, or at every stage; in no result
-  bool at_stages = false;  ///< of a slack: its slack is one of `stage_slacks`
-};
-
-/// States r'W r, r = y_of - reference.
-struct OcpLeastSquares {
-  std::vector<int> of;
-  std::vector<int> reference;  ///< outputs of t and p; empty: 0, or samples
-  linalg::Matrix samples;      ///< one row per interval; 0 x 0 without
-  linalg::Matrix weight;       ///< symmetric
-  CostPoints at = CostPoints::intervals;
-};
-
-/// Holds what initial_guess says of one quantity.
-struct OcpGuess {
-  enum class Kind { state, control, parameter };
-  Kind kind = Kind::state;
-  int index = 0;
-  int output = 0;  ///< of t and p
-};
-
-struct OcpHorizon {
-  bool free = false;
-  double value = 1.0;  ///< > 0; the guess of a free one
-  double lower = 0.0, upper = 0.0;
-};
-
-/// Holds the time frozen by hand, or for contacts and hysteresis: x_state is physical time, dx_state / dtau its speed.
-struct OcpClock {
-  int state = 0;
-  double speed_lower = 1.0, speed_upper = 1.0;
-};
 
 /// States an optimal control problem:
 ///   min  int L dt + E(x(T), T, p) + w T + least squares + penalties

@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "saltus/model/system.hpp"
+
 namespace saltus::model {
 namespace {
 

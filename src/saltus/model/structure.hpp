@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "saltus/model/system.hpp"
-
 namespace saltus::model {
+
+struct System;
 
 /// Returns the operations of all expressions that a simulation compiles, in their order, with their constants, with
 /// symbols by their places; values of parameters and initial states are not in it. Two systems with the same structure

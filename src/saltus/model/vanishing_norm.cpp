@@ -9,6 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/model/graph/interpret.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::model {
 namespace {

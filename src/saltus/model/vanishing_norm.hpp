@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "saltus/model/system.hpp"
-
 namespace saltus::model {
+
+struct System;
 
 /// Says that states tend to where a norm of theirs vanishes, and what to do: "; vx, vy tend to where" and so on. That
 /// is so if hypot or sqrt of states in the right-hand side is next to nothing at (t, x) of what it was at the start.

@@ -6,6 +6,7 @@
 
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/decisions.hpp"
+#include "saltus/model/frozen_system.hpp"
 #include "saltus/model/mechanics/contacts_at_start.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"

@@ -9,7 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout_of.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/surfaces.hpp"
 
@@ -181,17 +181,18 @@ void add_lines(int j, const result::Surface& surface, const result::Result& resu
   }
 }
 
-bool is_plane(const model::System& system, const result::Result& result) {
+bool is_plane(const model::Layout& layout, const result::Result& result) {
   const auto is_set = [](bool discrete) { return discrete; };
-  return result.states.size() == 2 && system.state_names == result.states && system.cells.empty() &&
-         system.mode_groups.empty() && system.contacts.empty() &&
-         std::none_of(system.discrete_states.begin(), system.discrete_states.end(), is_set);
+  return result.states.size() == 2 && layout.state_names == result.states && layout.cell_names.empty() &&
+         layout.groups.empty() && layout.contacts.empty() &&
+         std::none_of(layout.discrete_states.begin(), layout.discrete_states.end(), is_set);
 }
 
 }  // namespace
 
 std::optional<result::VectorField> vector_field(const model::System& system, const result::Result& result) {
-  if (!is_plane(system, result)) return std::nullopt;
+  const auto layout = model::layout_of(system);
+  if (!is_plane(layout, result)) return std::nullopt;
   const std::array<Interval, 2> box{drawn_range(result, 0), drawn_range(result, 1)};
   for (const auto& [from, to] : box) {
     if (!std::isfinite(from) || !std::isfinite(to) || !(from < to)) return std::nullopt;
@@ -203,10 +204,10 @@ std::optional<result::VectorField> vector_field(const model::System& system, con
   FieldOfTwoStates field(std::move(*kernel), arrows.t, box);
   field.add_grid(arrows.free);
   for (const auto& surface : result.surfaces) {
-    const auto named = [&](const model::SwitchingFunction& function) { return function.name == surface.name; };
-    const auto found = std::find_if(system.switching.begin(), system.switching.end(), named);
-    if (surface.role != result::SurfaceRole::switching || found == system.switching.end()) continue;
-    add_lines(static_cast<int>(found - system.switching.begin()), surface, result, field, arrows);
+    const auto named = [&](const model::Layout::Surface& function) { return function.name == surface.name; };
+    const auto found = std::find_if(layout.surfaces.begin(), layout.surfaces.end(), named);
+    if (surface.role != result::SurfaceRole::switching || found == layout.surfaces.end()) continue;
+    add_lines(static_cast<int>(found - layout.surfaces.begin()), surface, result, field, arrows);
   }
   return arrows;
 }

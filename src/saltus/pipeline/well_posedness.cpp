@@ -5,6 +5,8 @@
 #include "saltus/base/contains.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/pipeline/simulate.hpp"
+#include "saltus/reformulation/dcs.hpp"
+#include "saltus/reformulation/well_posedness.hpp"
 
 namespace saltus::pipeline {
 namespace {

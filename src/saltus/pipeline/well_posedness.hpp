@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "saltus/pipeline/simulate.hpp"
-#include "saltus/reformulation/well_posedness.hpp"
+#include "saltus/reformulation/reformulation_options.hpp"
 #include "saltus/result/status.hpp"
 
 namespace saltus::pipeline {

@@ -6,7 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "saltus/reformulation/dcs.hpp"
+#include "saltus/base/error.hpp"
+#include "saltus/reformulation/reformulation_options.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::reformulation {
 

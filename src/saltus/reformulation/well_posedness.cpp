@@ -10,6 +10,8 @@
 #include "saltus/base/components.hpp"
 #include "saltus/linalg/sparse.hpp"
 #include "saltus/linalg/spectra.hpp"
+#include "saltus/model/system.hpp"
+#include "saltus/reformulation/dcs.hpp"
 #include "saltus/reformulation/expressions_internal.hpp"
 
 namespace saltus::reformulation {

@@ -4,9 +4,13 @@
 #include <memory>
 #include <vector>
 
-#include "saltus/reformulation/dcs.hpp"
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::reformulation {
+
+struct Dcs;
 
 /// Says where a solution is; mode and alpha as in a result, but one entry per function of System::switching. A region
 /// of a group by `indicator` has mode 0 where it is active, and its theta as alpha.

@@ -10,6 +10,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/smoothed/regularise.hpp"
 
 namespace saltus::smoothed {
 namespace {

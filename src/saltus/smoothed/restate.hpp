@@ -4,9 +4,10 @@
 #include <vector>
 
 #include "saltus/result/result.hpp"
-#include "saltus/smoothed/regularise.hpp"
 
 namespace saltus::smoothed {
+
+struct Regularisation;
 
 /// Rewrites what a simulation of regularisation.system computed:
 ///   mode_j = -1, 0, 1 for psi_j < -epsilon, inside the layer |psi_j| <= epsilon, psi_j > epsilon;

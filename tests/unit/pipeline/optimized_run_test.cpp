@@ -8,6 +8,7 @@
 
 #include "ocp_problem.hpp"
 #include "optimized_points.hpp"
+#include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::pipeline {
 namespace {

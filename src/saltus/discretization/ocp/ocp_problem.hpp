@@ -11,9 +11,12 @@
 #include "saltus/discretization/fesd_problem.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/linalg/matrix.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/mpcc/problem.hpp"
 #include "saltus/result/optimization.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::reformulation {
 struct Dcs;

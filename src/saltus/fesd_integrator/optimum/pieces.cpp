@@ -6,6 +6,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/discretization/ocp/ocp_problem.hpp"
 #include "saltus/fesd_integrator/element/element_piece.hpp"
 #include "saltus/fesd_integrator/element/projected_field.hpp"
 #include "saltus/fesd_integrator/watch/held_values.hpp"

@@ -6,13 +6,16 @@
 #include <vector>
 
 #include "saltus/discretization/butcher_tableau.hpp"
-#include "saltus/discretization/ocp/ocp_problem.hpp"
 #include "saltus/discretization/point_functions.hpp"
 #include "saltus/discretization/stage_kernel.hpp"
 #include "saltus/fesd_integrator/element/active_set.hpp"
 #include "saltus/fesd_integrator/element/element.hpp"
 #include "saltus/fesd_integrator/element/facts.hpp"
 #include "saltus/fesd_integrator/solution.hpp"
+
+namespace saltus::discretization {
+struct OcpSolution;
+}
 
 namespace saltus::fesd_integrator {
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/system.hpp"
 
 namespace saltus::model {
 namespace {

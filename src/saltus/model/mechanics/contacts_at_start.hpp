@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/system.hpp"
 
 namespace saltus::model {
+
+struct System;
 
 /// Refuses the gap of a contact that is negative at the start, by more than its rounding, or no number.
 /// @param when  behind "at the start"

@@ -8,6 +8,8 @@
 #include <casadi/core/sx_elem.hpp>
 #include <fmt/format.h>
 
+#include "saltus/model/ocp.hpp"
+
 namespace saltus::model {
 namespace {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "saltus/model/ocp.hpp"
-
 namespace saltus::model {
+
+struct Ocp;
 
 /// Returns one sentence per cost on which nothing free has any influence, by the structure of the expressions. Free are
 /// controls, states, parameters and the horizon. An example is "running_cost" of a state that no control reaches. One,

@@ -232,17 +232,6 @@ void freeze_rates(Statement& statement, const FreezingPlan& plan) {
   statement.automatic_outputs.push_back({"clock_rate", rate.scalar()});
 }
 
-System with_values_of(System frozen, const System& system) {
-  frozen.parameter_values.assign(system.parameter_values.begin(),
-                                 system.parameter_values.begin() + index(frozen.parameter_names.size()));
-  // What both show comes first.
-  const std::size_t most = std::min(frozen.state_names.size(), system.state_names.size());
-  for (std::size_t i = 0; i < most && frozen.state_names[i] == system.state_names[i]; ++i) {
-    frozen.initial_state[i] = system.initial_state[i];
-  }
-  return frozen;
-}
-
 void find_selections(const System& system, FreezingPlan& plan) {
   const SX alpha = SX::densify(system.alpha);
   for (const auto& [selection, found] : plan.selections) {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/system.hpp"
 
 namespace saltus::model {
 
@@ -61,13 +60,5 @@ struct TimeFreezing {
   double stabilisation_initial = 0.0;  ///< its value at the first relaxed problem; at last it has its parameter's
   double penetration = 0.0;            ///< gaps of an optimum are at least -penetration; infinite: whatever they are
 };
-
-/// Holds what a system with contacts or hysteresis is when it is frozen, or why it cannot be.
-struct FrozenSystem {
-  Expected<System> system;
-};
-
-/// Returns a frozen system with the parameters and initial values that the system it stands for has by now.
-[[nodiscard]] System with_values_of(System frozen, const System& system);
 
 }  // namespace saltus::model

@@ -5,7 +5,7 @@
 #include "saltus/event_integrator/solution.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/simulate.hpp"
-#include "saltus/pipeline/simulate/dropped_under_lock_internal.hpp"
+#include "saltus/pipeline/simulate/simulation_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {

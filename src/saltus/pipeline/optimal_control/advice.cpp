@@ -30,12 +30,12 @@ std::string finer_grid(const OptimizeOptions& options, bool has_missed) {
 
 }  // namespace
 
-std::string advice_on_bounces(const model::Ocp& ocp, const OptimizeOptions& options, result::Termination termination) {
+std::string advice_on_bounces(const model::TimeFreezing* freezing, const OptimizeOptions& options,
+                              result::Termination termination) {
   const bool is_unsolved = termination == Termination::infeasible || termination == Termination::not_converged ||
                            termination == Termination::iteration_limit;
-  const auto& freezing = ocp.system.freezing;
-  const bool bounces = freezing && std::any_of(freezing->contacts.begin(), freezing->contacts.end(),
-                                               [](const auto& contact) { return contact.is_elastic; });
+  const bool bounces = freezing != nullptr && std::any_of(freezing->contacts.begin(), freezing->contacts.end(),
+                                                          [](const auto& contact) { return contact.is_elastic; });
   const bool has_all = options.start == StartValues::simulated &&
                        *std::min_element(options.elements.begin(), options.elements.end()) >= 4;
   if (!is_unsolved || !bounces || has_all) return "";
@@ -63,13 +63,13 @@ void judge(const result::Verification& verification, const OptimizeOptions& opti
       finer_grid(options, verification.switches_missed > 0));
 }
 
-void warn_of_path_violations(const model::Ocp& ocp, const result::Verification& verification,
-                             const OptimizeOptions& options, const OptimizeObservers& observers) {
+void warn_of_path_violations(const std::vector<model::OcpConstraint>& path, model::ConstraintPoints points,
+                             const result::Verification& verification, const OptimizeOptions& options,
+                             const OptimizeObservers& observers) {
   for (const auto& [name, time, value, share] : verification.path_violations) {
     if (!(share > options.verification_tolerance)) continue;
-    const bool is_path =
-        std::any_of(ocp.path.begin(), ocp.path.end(), [&](const auto& row) { return row.name == name; });
-    const bool has_points = is_path && ocp.path_at != model::ConstraintPoints::stages;
+    const bool is_path = std::any_of(path.begin(), path.end(), [&](const auto& row) { return row.name == name; });
+    const bool has_points = is_path && points != model::ConstraintPoints::stages;
     observers.on_warning(fmt::format(
         "'{}' is violated by {:.2g} at t = {:.6g} in the simulation, between the points where it is asked for: try "
         "{}control_intervals = {} or elements = {}, or bound it by as much more",

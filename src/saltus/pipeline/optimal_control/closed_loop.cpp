@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
 #include "saltus/pipeline/simulate.hpp"
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/optimal_control/guessed_simulation_internal.hpp"
 #include "saltus/pipeline/optimal_control/linear_targets_internal.hpp"

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/ocp.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::pipeline {
 

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/optimal_control/ocp_guess.hpp"
 #include "saltus/pipeline/options/element_choices_internal.hpp"

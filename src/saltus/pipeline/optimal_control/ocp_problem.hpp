@@ -8,8 +8,11 @@
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/ocp/ocp_problem.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/options/optimize_options.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::reformulation {
 struct Dcs;

@@ -127,7 +127,7 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
     auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), bodies.get(), observers);
     if (!verification) return tl::unexpected(verification.error());
     judge(*verification, options, result.status);
-    warn_of_path_violations(ocp, *verification, options, observers);
+    warn_of_path_violations(ocp.path, ocp.path_at, *verification, options, observers);
     if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);
     result.optimization->verification = std::move(*verification);
   }

@@ -8,9 +8,12 @@
 #include "saltus/base/at.hpp"
 #include "saltus/fesd_integrator/optimum_run.hpp"
 #include "saltus/model/decisions.hpp"
+#include "saltus/model/layout_of.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/options/number_list_internal.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
+#include "saltus/reformulation/dcs.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -72,7 +75,7 @@ void restore_physical_time(const model::Ocp& ocp, double standing, OptimizedRun&
   result::Result rows;
   rows.trajectory = std::move(run.trajectory);
   rows.events = std::move(run.events);
-  run.switching_functions = to_physical_time(ocp.system, standing, rows);
+  run.switching_functions = to_physical_time(model::layout_of(ocp.system), *ocp.system.freezing, standing, rows);
   run.trajectory = std::move(rows.trajectory);
   run.events = std::move(rows.events);
   run.final = std::move(rows.final);
@@ -101,8 +104,8 @@ Expected<OptimizedRun> optimized_run(const model::Ocp& ocp, const OcpSolution& s
   system = model::with_controls(std::move(system), {times.begin(), times.end() - 1}, solution.controls);
   const auto dcs = reformulation::reformulate(system, form);
   if (!dcs) return tl::unexpected(dcs.error());
-  std::optional<std::size_t> clock;
-  if (ocp.clock) clock = at(ocp.clock->state);
+  std::optional<fesd_integrator::OptimumClock> clock;
+  if (ocp.clock) clock = {at(ocp.clock->state), system.freezing == nullptr};
   auto read = fesd_integrator::optimum_run(system, *dcs, solution, times, tableau, clock);
   if (!read) return tl::unexpected(read.error());
 

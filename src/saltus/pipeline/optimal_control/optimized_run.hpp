@@ -8,11 +8,14 @@
 #include "saltus/base/error.hpp"
 #include "saltus/discretization/butcher_tableau.hpp"
 #include "saltus/discretization/ocp/ocp_problem.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/mpcc/problem.hpp"
 #include "saltus/pipeline/optimal_control/verify.hpp"
-#include "saltus/reformulation/dcs.hpp"
+#include "saltus/reformulation/reformulation_options.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::pipeline {
 

@@ -5,6 +5,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/linalg/matrix.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/optimal_control/advice_internal.hpp"
@@ -96,7 +97,7 @@ void add_plan(const model::Ocp& ocp, const discretization::OcpSolution& plan, st
     found.nodes.push_back(list_of(plan.elements[k].back().end));
   }
   if (system.freezing) {
-    for (auto& node : found.nodes) node = shown_states(system, node);
+    for (auto& node : found.nodes) node = shown_states(*system.freezing, node);
   }
   if (ocp.clock) found.speed_of_time = plan.speed_of_time;
 }
@@ -121,7 +122,7 @@ result::Result optimum_result(const model::Ocp& ocp, const OptimizeOptions& opti
   add_plan(ocp, read, result.states.size(), found);
   const auto termination = solved.solution.termination;
   result.status.termination = termination;
-  result.status.message = solved.solution.message + advice_on_bounces(ocp, options, termination);
+  result.status.message = solved.solution.message + advice_on_bounces(ocp.system.freezing.get(), options, termination);
   result.status.time_reached = found.grid.back();
   return result;
 }

@@ -2,11 +2,14 @@
 #pragma once
 
 #include "saltus/discretization/ocp/ocp_problem.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/optimized_run.hpp"
 #include "saltus/pipeline/optimal_control/solve_ocp_internal.hpp"
 #include "saltus/pipeline/options/optimize_options.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::pipeline {
 

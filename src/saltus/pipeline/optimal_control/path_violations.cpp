@@ -28,20 +28,18 @@ double scale_of(double range, double lower, double upper) {
   return scale;
 }
 
-PathViolations::PathViolations(const model::Ocp& ocp, std::size_t shown_states) {
+PathViolations::PathViolations(const std::vector<model::OcpConstraint>& path, const std::vector<StateBounds>& states,
+                               std::optional<std::size_t> clock)
+    : clock_(clock) {
   const auto watch = [&](const std::string& name, bool is_state, std::size_t column, double lower, double upper) {
     if (lower == -infinity && upper == infinity) return;
     watched_.push_back({name, is_state, column, lower, upper, 0.0, 0.0, infinity, -infinity});
   };
-  for (const auto& constraint : ocp.path) {
+  for (const auto& constraint : path) {
     if (constraint.norm != model::ConstraintNorm::hard || constraint.is_slack) continue;
     watch(constraint.name, false, at(constraint.output), constraint.lower, constraint.upper);
   }
-  const auto& system = ocp.system;
-  for (std::size_t i = 0; i < shown_states; ++i) {
-    watch(system.state_names[i], true, i, system.state_lower[i], system.state_upper[i]);
-  }
-  if (ocp.clock) clock_ = at(ocp.clock->state);
+  for (std::size_t i = 0; i < states.size(); ++i) watch(states[i].name, true, i, states[i].lower, states[i].upper);
 }
 
 void PathViolations::include(const event_integrator::Integration& run, double until) {

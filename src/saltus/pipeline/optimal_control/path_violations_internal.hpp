@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "saltus/event_integrator/integrate.hpp"
-#include "saltus/model/ocp.hpp"
+#include "saltus/model/ocp_terms.hpp"
 #include "saltus/result/optimization.hpp"
 
 namespace saltus::pipeline {
@@ -20,11 +20,18 @@ namespace saltus::pipeline {
 /// Returns what errors are divided by: a range, at least 1e-3 of finite bounds and 1e-6.
 [[nodiscard]] double scale_of(double range, double lower, double upper);
 
+/// Holds the bounds of a state, the infinite ones, too.
+struct StateBounds {
+  std::string name;
+  double lower = 0.0, upper = 0.0;
+};
+
 /// Collects the largest violation of every hard path constraint, and of the bounds of every state.
 class PathViolations {
  public:
-  /// @param shown_states  those that have bounds
-  PathViolations(const model::Ocp& ocp, std::size_t shown_states);
+  /// @param clock  state that is physical time
+  PathViolations(const std::vector<model::OcpConstraint>& path, const std::vector<StateBounds>& states,
+                 std::optional<std::size_t> clock);
 
   /// Looks at all rows up to the end of an interval, with its controls.
   void include(const event_integrator::Integration& run, double until);

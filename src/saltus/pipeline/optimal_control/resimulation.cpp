@@ -6,6 +6,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/linalg/spectra.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
 #include "saltus/pipeline/optimal_control/touching_bodies_internal.hpp"
 
@@ -152,7 +153,7 @@ linalg::Vector Resimulation::end_of(std::size_t k, std::vector<double> start,
 double Resimulation::amplification(const std::vector<double>& scales, const std::function<bool()>& is_interrupted) {
   const auto n = index(scales.size());
   linalg::Matrix product = linalg::Matrix::identity(n, n), derivative(n, n);
-  TouchingBodies bodies(system_, kernel_);
+  TouchingBodies bodies(kernel_);
   for (std::size_t k = 0; k < path_->controls.size(); ++k) {
     const auto modes = bodies.modes_at(path_->times[k], path_->nodes[k]);
     for (std::size_t j = 0; j < scales.size(); ++j) {

@@ -2,10 +2,13 @@
 #pragma once
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 #include "saltus/pipeline/optimal_control/optimize.hpp"
 #include "saltus/solver/solve.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::pipeline {
 

@@ -5,7 +5,6 @@
 
 #include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::pipeline {
@@ -14,8 +13,8 @@ namespace saltus::pipeline {
 /// a gap of more than a rounding for open, and one below zero for what cannot be.
 class TouchingBodies {
  public:
-  /// Both must outlive it.
-  TouchingBodies(const model::System& system, const evaluation::ModelKernel& kernel);
+  /// The kernel must outlive it.
+  explicit TouchingBodies(const evaluation::ModelKernel& kernel);
 
   /// Returns modes by gaps and rates alone: closed or open. Without contacts there are none.
   [[nodiscard]] std::vector<result::ContactMode> modes_at(double t, const std::vector<double>& x);
@@ -30,7 +29,6 @@ class TouchingBodies {
   void correct(const std::vector<int>& rows, const linalg::Vector& values, const std::vector<int>& states,
                std::vector<double>& x) const;
 
-  const model::ContactSystem& contacts_;
   const evaluation::ModelKernel& kernel_;
   std::vector<double> alpha_;
   evaluation::ContactValues values_;

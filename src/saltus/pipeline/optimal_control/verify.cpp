@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/bodies/gaps.hpp"
 #include "saltus/pipeline/optimal_control/path_violations_internal.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
@@ -35,6 +36,22 @@ constexpr std::size_t most_kept_rows = 2000;
 std::size_t shown_states(const Ocp& ocp) {
   const auto& system = ocp.system;
   return system.contacts.empty() ? system.state_names.size() : at(system.contacts.first_hidden);
+}
+
+/// Those of the states that a result shows.
+std::vector<StateBounds> state_bounds(const Ocp& ocp) {
+  const auto& system = ocp.system;
+  std::vector<StateBounds> bounds;
+  for (std::size_t i = 0; i < shown_states(ocp); ++i) {
+    bounds.push_back({system.state_names[i], system.state_lower[i], system.state_upper[i]});
+  }
+  return bounds;
+}
+
+/// The state that is physical time.
+std::optional<std::size_t> clock_of(const Ocp& ocp) {
+  if (!ocp.clock) return std::nullopt;
+  return at(ocp.clock->state);
 }
 
 double violation_of(const std::vector<OcpConstraint>& constraints, const std::vector<double>& outputs) {
@@ -97,7 +114,7 @@ class IntervalChecks {
         path_(path),
         verification_(verification),
         scales_(ocp.system, path),
-        violations_(ocp, shown_states(ocp)) {
+        violations_(ocp.path, state_bounds(ocp), clock_of(ocp)) {
     if (!ocp.system.contacts.empty()) {
       gaps_.emplace(ocp.system, path.parameters);
       verification.penetration.emplace();

@@ -6,9 +6,12 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/linalg/matrix.hpp"
-#include "saltus/model/ocp.hpp"
 #include "saltus/result/optimization.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct Ocp;
+}
 
 namespace saltus::pipeline {
 

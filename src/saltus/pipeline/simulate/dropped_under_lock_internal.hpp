@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "saltus/base/symbolic_lock.hpp"
-#include "saltus/model/system.hpp"
 
 namespace saltus::pipeline {
 
@@ -16,12 +15,6 @@ template <class Value>
             const SymbolicLock lock;
             delete held;
           }};
-}
-
-/// Returns a copy that takes the SymbolicLock where it is made, too.
-[[nodiscard]] inline std::shared_ptr<const model::System> own_copy(const model::System& system) {
-  const SymbolicLock lock;
-  return dropped_under_lock(model::System(system));
 }
 
 }  // namespace saltus::pipeline

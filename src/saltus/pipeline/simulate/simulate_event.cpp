@@ -9,7 +9,6 @@
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/options/element_choices_internal.hpp"
 #include "saltus/pipeline/simulate/branches_internal.hpp"
-#include "saltus/pipeline/simulate/dropped_under_lock_internal.hpp"
 #include "saltus/pipeline/simulate/methods_internal.hpp"
 #include "saltus/pipeline/simulate/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate/passed_on_internal.hpp"
@@ -36,10 +35,8 @@ switching::SelectionPolicy selection_policy(Selection selection) {
 
 /// Whether rows and events may leave the run while it goes on: nothing needs all of them.
 bool passes_on(const Simulation& asked) {
-  const auto& system = asked.system;
   const auto& options = asked.options;
-  return asked.observers.on_part && options.event.trajectories == 1 && !options.continuous && system.contacts.empty() &&
-         system.drawing.empty();
+  return asked.observers.on_part && options.event.trajectories == 1 && !options.continuous && !asked.has_bodies;
 }
 
 /// Follows one trajectory after the other.

@@ -9,6 +9,8 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/model/decisions.hpp"
+#include "saltus/model/frozen_system.hpp"
+#include "saltus/model/layout_of.hpp"
 #include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
@@ -118,7 +120,7 @@ Expected<result::Result> simulate_frozen(const Simulation& asked) {
   if (!run) return run;
   restate_status(run->final.x[at(made.freezing->clock)], until, *run);
   const double standing = standing_part * (until - from) / static_cast<double>(options.fesd.steps);
-  run->switching_functions = to_physical_time(made, standing, *run);
+  run->switching_functions = to_physical_time(model::layout_of(made), *made.freezing, standing, *run);
   std::set<double> event_times;
   const bool has_event_rows = options.event_rows || options.continuous;
   for (std::size_t i = 0; has_event_rows && i < run->events.size(); ++i) event_times.insert(run->events.t(i));

@@ -5,6 +5,7 @@
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/event_integrator/integrate.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/options/element_choices_internal.hpp"
 #include "saltus/pipeline/simulate/dropped_under_lock_internal.hpp"

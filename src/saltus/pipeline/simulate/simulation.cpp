@@ -8,8 +8,11 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/symbolic_lock.hpp"
+#include "saltus/model/system.hpp"
 #include "saltus/pipeline/options/option_effects.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
+#include "saltus/pipeline/simulate/dropped_under_lock_internal.hpp"
 #include "saltus/pipeline/simulate/kept_columns_internal.hpp"
 #include "saltus/pipeline/simulate/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate/simulation_internal.hpp"
@@ -105,6 +108,11 @@ Expected<result::Result> frame(const model::System& system, const SimulateOption
 
 }  // namespace
 
+std::shared_ptr<const model::System> own_copy(const model::System& system) {
+  const SymbolicLock lock;
+  return dropped_under_lock(model::System(system));
+}
+
 result::Result begin_result(const model::System& system, std::string_view method) {
   result::Result result;
   result.model.name = system.name;
@@ -140,7 +148,8 @@ Expected<Simulation> checked_simulation(const model::System& system, const Simul
                     std::move(*begun),
                     row_times(options.output, options.from, *options.until),
                     std::move(*forced),
-                    std::move(*scaling)};
+                    std::move(*scaling),
+                    !system.contacts.empty() || !system.drawing.empty()};
 }
 
 void finish_result(const model::System& system, result::Result& result) {

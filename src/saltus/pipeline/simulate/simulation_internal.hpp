@@ -1,15 +1,19 @@
 // What a simulation is asked for, checked; and where its result is put together.
 #pragma once
 
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "saltus/base/error.hpp"
-#include "saltus/model/system.hpp"
 #include "saltus/pipeline/options/simulate_options.hpp"
 #include "saltus/pipeline/simulate.hpp"
 #include "saltus/result/result.hpp"
+
+namespace saltus::model {
+struct System;
+}
 
 namespace saltus::pipeline {
 
@@ -22,11 +26,15 @@ struct Simulation {
   std::vector<double> times;                     ///< row_times() in physical time
   std::vector<std::pair<int, int>> forced_mode;  ///< index into System::switching -> mode at the start
   std::vector<double> scaling{};                 ///< a factor per switching function, or none
+  bool has_bodies = false;                       ///< that touch or are drawn: of all rows together
 };
 
 /// Finds the names of the options in the system; fails for the first option that does not fit.
 [[nodiscard]] Expected<Simulation> checked_simulation(const model::System& system, const SimulateOptions& options,
                                                       const Observers& observers);
+
+/// Returns a copy that a result may keep. Takes the SymbolicLock where it is made, and where it is dropped.
+[[nodiscard]] std::shared_ptr<const model::System> own_copy(const model::System& system);
 
 /// Returns a result that names the system and its columns, as a simulation and an optimum have them.
 [[nodiscard]] result::Result begin_result(const model::System& system, std::string_view method);

@@ -73,7 +73,7 @@ OptimizedPath physical_path(const model::Ocp& ocp, PhysicalBodies& bodies, const
   }
   for (auto& start : physical.elements) {
     start.t = start.x[at(ocp.system.freezing->clock)];
-    start.x = shown_states(ocp.system, start.x);
+    start.x = shown_states(*ocp.system.freezing, start.x);
   }
   for (auto* range : {&physical.state_max, &physical.state_min}) {
     range->resize(shown);

@@ -26,7 +26,7 @@ class PhysicalBodies {
 
  private:
   PhysicalBodies(model::System system, evaluation::ModelKernel kernel)
-      : system_(std::move(system)), kernel_(std::move(kernel)), touching_(system_, kernel_) {}
+      : system_(std::move(system)), kernel_(std::move(kernel)), touching_(kernel_) {}
 
   model::System system_;
   evaluation::ModelKernel kernel_;

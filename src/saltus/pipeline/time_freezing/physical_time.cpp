@@ -7,7 +7,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
 #include "saltus/base/rounding_unit.hpp"
-#include "saltus/model/system.hpp"
+#include "saltus/model/layout.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/time_freezing/physical_time_internal.hpp"
 
@@ -27,8 +27,8 @@ constexpr double same_velocity = 1e-7;
 
 class PhysicalTime {
  public:
-  PhysicalTime(const model::System& system, double standing, result::Result& run)
-      : system_(system), freezing_(*system.freezing), run_(run), clock_(at(freezing_.clock)), standing_(standing) {
+  PhysicalTime(const model::Layout& layout, const model::TimeFreezing& freezing, double standing, result::Result& run)
+      : layout_(layout), freezing_(freezing), run_(run), clock_(at(freezing_.clock)), standing_(standing) {
     std::set<int> added;
     std::set<std::string> frozen;
     for (const auto& hysteresis : freezing_.hysteresis) frozen.insert(hysteresis.name);
@@ -36,12 +36,12 @@ class PhysicalTime {
       for (const auto& one : {contact.gap, contact.normal, contact.tangent}) added.insert(one.function);
       frozen.insert(contact.name);
     }
-    for (const auto& group : system.mode_groups) {
+    for (const auto& group : layout.groups) {
       shows_regions_ = shows_regions_ && group.name.find('.') == std::string::npos;
     }
-    for (std::size_t c = 0; c < system.columns.size(); ++c) {
-      const auto& column = system.columns[c];
-      const auto& function = system.switching[at(column.function)];
+    for (std::size_t c = 0; c < layout.columns.size(); ++c) {
+      const auto& column = layout.columns[c];
+      const auto& function = layout.surfaces[at(column.function)];
       // Names of what freezing adds begin with the name of what is frozen and a point: "ground.gap"; "18.5-x" does not.
       const auto point = function.name.find('.');
       const bool is_hidden =
@@ -84,7 +84,7 @@ class PhysicalTime {
     }
     take_final();
     std::vector<std::string> names;
-    for (const std::size_t c : kept_) names.push_back(system_.columns[c].name);
+    for (const std::size_t c : kept_) names.push_back(layout_.columns[c].name);
     return names;
   }
 
@@ -155,7 +155,7 @@ class PhysicalTime {
                const std::vector<std::vector<double>>& impulse = {}) {
     auto& rows = run_.trajectory;
     rows.t.push_back(t);
-    rows.x.push_back(shown_states(system_, raw.x[r]));
+    rows.x.push_back(shown_states(freezing_, raw.x[r]));
     rows.u.push_back(raw.u[r]);
     rows.alpha.push_back(kept(std::vector<double>(raw.alpha[r])));
     rows.mode.push_back(kept(Mode(raw.mode[r])));
@@ -187,8 +187,8 @@ class PhysicalTime {
 
   /// `otherwise` is that of a selection without a column.
   [[nodiscard]] int mode_of(const FrozenSelection& selection, const Mode& mode, int otherwise) const {
-    for (std::size_t c = 0; c < system_.columns.size(); ++c) {
-      const auto& column = system_.columns[c];
+    for (std::size_t c = 0; c < layout_.columns.size(); ++c) {
+      const auto& column = layout_.columns[c];
       if (column.function == selection.function) {
         return selection.orientation * column.orientation * mode[c];
       }
@@ -219,8 +219,8 @@ class PhysicalTime {
     for (auto* alpha : {&event.alpha_before, &event.alpha_after}) {
       if (*alpha) *alpha = kept(**alpha);
     }
-    event.x = shown_states(system_, event.x);
-    event.x_after = shown_states(system_, event.x_after);
+    event.x = shown_states(freezing_, event.x);
+    event.x_after = shown_states(freezing_, event.x_after);
   }
 
   /// All events of numerical time at one physical time.
@@ -326,7 +326,7 @@ class PhysicalTime {
   void take_surfaces(const std::vector<Event>& here, Event& event) const {
     const auto& last = here.back();
     std::vector<std::string> names;
-    for (const std::size_t c : kept_) names.push_back(system_.columns[c].name);
+    for (const std::size_t c : kept_) names.push_back(layout_.columns[c].name);
     for (const auto& one : here) {
       if (one.kind == EventKind::user) continue;
       for (const auto& surface : one.surfaces) {
@@ -346,7 +346,7 @@ class PhysicalTime {
   void take_kind(Event& event) const {
     Mode before, after;
     for (const std::size_t c : kept_) {
-      if (!event.mode_before || !event.mode_after || !contains(event.surfaces, system_.columns[c].name)) continue;
+      if (!event.mode_before || !event.mode_after || !contains(event.surfaces, layout_.columns[c].name)) continue;
       before.push_back((*event.mode_before)[c]);
       after.push_back((*event.mode_after)[c]);
     }
@@ -383,7 +383,7 @@ class PhysicalTime {
            contact_modes(other.mode) == contact_modes(*event.mode_after);
   }
 
-  const model::System& system_;
+  const model::Layout& layout_;
   const model::TimeFreezing& freezing_;
   result::Result& run_;
   std::size_t clock_ = 0;
@@ -394,16 +394,16 @@ class PhysicalTime {
 
 }  // namespace
 
-std::vector<double> shown_states(const model::System& system, const std::vector<double>& x) {
-  const auto& freezing = *system.freezing;
+std::vector<double> shown_states(const model::TimeFreezing& freezing, const std::vector<double>& x) {
   std::vector<double> shown(x.begin(), x.begin() + freezing.first_hidden);
   for (const auto& entry : freezing.hysteresis)
     shown[at(entry.state)] = std::round(shown[at(entry.state)]) + 0.0;  // no -0
   return shown;
 }
 
-std::vector<std::string> to_physical_time(const model::System& system, double standing, result::Result& run) {
-  return PhysicalTime(system, standing, run).run();
+std::vector<std::string> to_physical_time(const model::Layout& layout, const model::TimeFreezing& freezing,
+                                          double standing, result::Result& run) {
+  return PhysicalTime(layout, freezing, standing, run).run();
 }
 
 }  // namespace saltus::pipeline

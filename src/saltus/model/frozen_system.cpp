@@ -1,0 +1,21 @@
+#include "saltus/model/frozen_system.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "saltus/base/at.hpp"
+
+namespace saltus::model {
+
+System with_values_of(System frozen, const System& system) {
+  frozen.parameter_values.assign(system.parameter_values.begin(),
+                                 system.parameter_values.begin() + index(frozen.parameter_names.size()));
+  // What both show comes first.
+  const std::size_t most = std::min(frozen.state_names.size(), system.state_names.size());
+  for (std::size_t i = 0; i < most && frozen.state_names[i] == system.state_names[i]; ++i) {
+    frozen.initial_state[i] = system.initial_state[i];
+  }
+  return frozen;
+}
+
+}  // namespace saltus::model
