@@ -19,24 +19,6 @@ Matrix rows_of(const RegionBasis& basis, const Matrix& rows) {
   return spanning;
 }
 
-/// Makes of a right side R the solution of N Y = R, N symmetric and positive definite, in the memory of both.
-void solve_positive(Matrix& normal, Matrix& right) {
-  const Index m = normal.rows();
-  for (Index k = 0; k < m; ++k) {
-    for (Index i = k + 1; i < m; ++i) {
-      const double factor = normal(i, k) / normal(k, k);
-      for (Index l = k; l < m; ++l) normal(i, l) -= factor * normal(k, l);
-      for (Index l = 0; l < right.cols(); ++l) right(i, l) -= factor * right(k, l);
-    }
-  }
-  for (Index l = 0; l < right.cols(); ++l) {
-    for (Index i = m - 1; i >= 0; --i) {
-      for (Index k = i + 1; k < m; ++k) right(i, l) -= normal(i, k) * right(k, l);
-      right(i, l) /= normal(i, i);
-    }
-  }
-}
-
 }  // namespace
 
 RegionBasis basis_of(const Matrix& rows) {
@@ -67,7 +49,7 @@ RegionCoordinates coordinates_in(const RegionBasis& basis, const Matrix& rows) {
     for (Index l = 0; l < m; ++l) normal(k, l) = row.dot(rows.row(basis.base[at(l)]));
     for (Index i = 0; i < rows.rows(); ++i) right(k, i) = row.dot(rows.row(i));
   }
-  solve_positive(normal, right);
+  linalg::Cholesky(normal).solve_in_place(right);  // rows of a basis are independent
   coordinates.bottom_rows(rows.rows()) = right.transpose();
   for (Index k = 0; k < m; ++k) {  // exactly what they are
     coordinates.row(basis.base[at(k)] + 1).set_zero();
