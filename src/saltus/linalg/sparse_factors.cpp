@@ -65,9 +65,7 @@ struct SparseLuOf<Scalar>::Parts {
 };
 
 template <class Scalar>
-void SparseLuOf<Scalar>::analyse(Index size, std::span<const int> start, std::span<const int> rows) {
-  SALTUS_ASSERT(std::ssize(start) == size + 1);
-  static_cast<void>(size);
+void SparseLuOf<Scalar>::analyse(std::span<const int> start, std::span<const int> rows) {
   parts_->start.assign(start.begin(), start.end());
   parts_->rows.assign(rows.begin(), rows.end());
   parts_->analyse();

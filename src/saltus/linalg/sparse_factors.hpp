@@ -17,7 +17,7 @@ template <class Scalar>
 class SparseLuOf {
  public:
   /// The places of entries: those of column j are start[j] to start[j + 1] of rows.
-  void analyse(Index size, std::span<const int> start, std::span<const int> rows);
+  void analyse(std::span<const int> start, std::span<const int> rows);
   /// Of entries at the places that were analysed. False where the matrix is singular.
   [[nodiscard]] bool factorise(std::span<const Scalar> values);
   [[nodiscard]] bool is_factorised() const;
@@ -45,7 +45,7 @@ class SparseLu : public SparseLuOf<double> {
   explicit SparseLu(const SparseColumns& a) { static_cast<void>(compute(a)); }
   /// False where it is singular.
   bool compute(const SparseColumns& a);
-  void analyse(const SparseColumns& a) { SparseLuOf::analyse(a.cols(), a.start(), a.inner()); }
+  void analyse(const SparseColumns& a) { SparseLuOf::analyse(a.start(), a.inner()); }
   [[nodiscard]] bool factorise(const SparseColumns& a) { return SparseLuOf::factorise(a.values()); }
   [[nodiscard]] Matrix solve(ConstView right) const;
 };

@@ -155,7 +155,7 @@ TEST(SparseLuOf, SolvesComplexSystems) {
   const Complex turn(0.6, 0.8);
   for (Complex& value : values) value *= turn;
   SparseLuOf<Complex> factors;
-  factors.analyse(n, a.start(), a.inner());
+  factors.analyse(a.start(), a.inner());
   ASSERT_TRUE(factors.factorise(values));
   const Vector b = random_matrix(random, n, 1), x = Lu(a.dense()).solve(b);
   const std::vector<Complex> right(b.begin(), b.end());

@@ -48,7 +48,7 @@ class ShiftedFactors {
       searched_ = std::make_unique<Searched>();
       searched_->values.resize(pattern_->row.size());
       const PatternPlaces places(*pattern_);
-      searched_->factors.analyse(index(pattern_->columns()), places.start, places.row);
+      searched_->factors.analyse(places.start, places.row);
     }
     for (std::size_t column = 0; column < pattern_->columns(); ++column) {
       for (std::size_t k = pattern_->start[column]; k < pattern_->start[column + 1]; ++k) {
