@@ -3,18 +3,13 @@
 
 #include <ctime>
 
+#include "built_system.hpp"
 #include "model_text.hpp"
 
 namespace saltus::model {
 namespace {
 
 using casadi::SX;
-
-System finished(Builder& builder) {
-  auto system = builder.build();
-  EXPECT_TRUE(system.has_value()) << (system ? "" : to_text(system.error()));
-  return system ? *system : System{};
-}
 
 TEST(BuilderTest, StickSlip) {
   Builder model("stick-slip");

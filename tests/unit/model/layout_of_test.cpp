@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "built_system.hpp"
 #include "model_text.hpp"
 #include "saltus/model/builder.hpp"
 
@@ -12,12 +13,6 @@ namespace saltus::model {
 namespace {
 
 using casadi::SX;
-
-System laid_out(Builder& builder) {
-  auto system = builder.build();
-  EXPECT_TRUE(system.has_value()) << (system ? "" : to_text(system.error()));
-  return system ? *system : System{};
-}
 
 Layout::Jump jump_named(const Layout& layout, const std::string& name) {
   const auto found =
@@ -36,7 +31,7 @@ TEST(LayoutOf, SurfacesColumnsAndEvents) {
   model.jump(greater(x, SX(3)), {{"on", 1 - on}}, {.name = "toggle"});
   model.event(x, {.name = "zero", .direction = Direction::up});
   model.event(greater_equal(x, SX(1)) && less(x, SX(4)), {.action = AtEvent::stop});
-  const Layout layout = layout_of(laid_out(model));
+  const Layout layout = layout_of(finished(model));
   EXPECT_EQ(layout.name, "relay");
   EXPECT_EQ(layout.state_names, (Names{"x", "on"}));
   EXPECT_EQ(layout.parameter_names, Names{"k"});
@@ -75,7 +70,7 @@ TEST(LayoutOf, JumpsAndTables) {
   model.jump(x, Direction::down, {{"x", -x}, {"n", n + 1}}, {.name = "bounce", .persistent = false});
   model.jump_at({0.5, 2.0}, {{"x", x + 1}}, {.name = "kick", .values = JumpValues::at_execution});
   model.jump_every(0.25, {{"n", SX(0)}}, {.name = "tick"});
-  const System system = laid_out(model);
+  const System system = finished(model);
   const Layout layout = layout_of(system);
   EXPECT_EQ(layout.cell_names.size(), system.cells.size());
   EXPECT_GE(layout.cell_names.size(), 2U);
@@ -98,7 +93,7 @@ TEST(LayoutOf, GroupsByIndicator) {
   model.dynamics("x", SX(0));
   model.region(x, {{"x", SX(1)}}, "left");
   model.region(-x, {{"x", SX(-1)}}, "right");
-  const Layout layout = layout_of(laid_out(model));
+  const Layout layout = layout_of(finished(model));
   ASSERT_EQ(layout.groups.size(), 1U);
   EXPECT_EQ(layout.groups[0].regions, 2);
   EXPECT_EQ(layout.groups[0].mode_names, (Names{"left", "right"}));
@@ -113,7 +108,7 @@ TEST(LayoutOf, ContactsHaveStatesThatAreNotShown) {
   model.state("vx", {1.0});
   model.mechanics({.positions = {"y", "x"}, .velocities = {"vy", "vx"}, .potential = 9.81 * y});
   model.contact("ground", y, {.tangent = {{"x", 1}}, .friction = SX(0.3)});
-  const System system = laid_out(model);
+  const System system = finished(model);
   const Layout layout = layout_of(system);
   ASSERT_EQ(layout.contacts.size(), 1U);
   EXPECT_EQ(layout.contacts[0].name, "ground");
