@@ -37,7 +37,7 @@ class OptimizeBadInput(tool.ToolTest):
     def test_options(self):
         self.refused("--intervals 0: error: expected a whole number >= 1, found 0", "--intervals", "0")
         self.refused("--time-limit -1: error:", "--time-limit", "-1")
-        self.refused("solver \"structured\" is not available", "--solver", "structured")
+        self.refused("--solver snopt: error: expected \"structured\" or \"ipopt\"", "--solver", "snopt")
         self.refused("did you mean 'optimize.elements'?", "--set", "optimize.elemens=2")
         self.refused("expected a whole number >= 1", "--set", "optimize.elements=0")
         self.refused("elements has 2 entries, control_intervals is 10", "--set", "optimize.elements=[1,2]")

@@ -32,7 +32,8 @@ TEST(OcpOptima, StewartAnitescuWithoutSwitchDetectionStopsAtFalseOptima) {
   constexpr double optimum = 1.523772775374957;
   Stated problem = stated(stewart_anitescu("elements = 25\nswitch_detection = false\nverification_tolerance = 1\n"));
   for (const bool is_smoothed : {false, true}) {
-    problem.options.mpcc.schedule.sigma_initial = is_smoothed ? 1.0 : 1e-3;
+    problem.options.mpcc.strategy = solver::Strategy::ipopt;
+    problem.options.mpcc.sigma_initial = is_smoothed ? 1.0 : 1e-3;
     double smallest = 10.0;
     double largest = 0.0;
     for (const double start : {-1.9, -1.6, -1.3, -1.0}) {

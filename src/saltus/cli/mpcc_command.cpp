@@ -40,19 +40,6 @@ Error at_option(Error error, const std::string& option) {
   return error;
 }
 
-/// `solver` is no option of the method, but written beside them.
-Expected<void> set_one(solver::SolveOptions& options, const std::string& key, const std::string& text) {
-  if (key != "solver") return pipeline::set_mpcc_option(options, key, io::option_value(text));
-  if (text == "ipopt") return {};
-  const bool is_later = text == "structured";
-  return tl::unexpected(Error{is_later ? ErrorCode::not_available : ErrorCode::invalid_option,
-                              is_later ? "solver structured is for problems of saltus optimize"
-                                       : fmt::format("expected the solver \"ipopt\", found \"{}\"", text),
-                              "leave it out, or write ipopt",
-                              {},
-                              {}});
-}
-
 Expected<void> set_setting(solver::SolveOptions& options, const std::string& setting) {
   constexpr std::string_view root = "mpcc.";
   const auto equal = setting.find('=');
@@ -69,7 +56,7 @@ Expected<void> set_setting(solver::SolveOptions& options, const std::string& set
                    {},
                    {}});
   }
-  auto done = set_one(options, key.substr(root.size()), setting.substr(equal + 1));
+  auto done = pipeline::set_mpcc_option(options, key.substr(root.size()), io::option_value(setting.substr(equal + 1)));
   if (!done) return failed(done.error());
   return {};
 }
@@ -82,7 +69,7 @@ Expected<solver::SolveOptions> options_of(const MpccArguments& arguments) {
   const auto shortcut = [&](const char* flag, const char* key,
                             const std::optional<std::string>& text) -> Expected<void> {
     if (!text) return {};
-    auto done = set_one(options, key, *text);
+    auto done = pipeline::set_mpcc_option(options, key, io::option_value(*text));
     if (!done) return tl::unexpected(at_option(done.error(), fmt::format("{} {}", flag, *text)));
     return {};
   };
@@ -214,7 +201,8 @@ Command add_mpcc(CLI::App& app) {
   // Shared: the parser fills it after this function has returned, the command reads it.
   auto arguments = std::make_shared<MpccArguments>();
   command->add_option("FILE", arguments->file, "AMPL .nl text, or JSON of NOSBENCH or mpecopt")->required();
-  command->add_option("--solver", arguments->solver, "solver of the smooth problems (ipopt)")->type_name("NAME");
+  command->add_option("--solver", arguments->solver, "how the relaxed problems are solved (structured, ipopt)")
+      ->type_name("NAME");
   command->add_option("--method", arguments->method, "relaxation (scholtes): mpcc.method below")->type_name("NAME");
   command->add_option("--start", arguments->start, "begin at the x of a stored result")->type_name("RESULT.json");
   command->add_option("--time-limit", arguments->time_limit, "seconds")->type_name("S");

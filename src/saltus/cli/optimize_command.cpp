@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::array optimize_shortcuts{
     Shortcut{"--intervals", "optimize.control_intervals", "N", "number of control intervals"},
-    Shortcut{"--solver", "optimize.mpcc.solver", "S", "solver of the smooth problems (ipopt)"},
+    Shortcut{"--solver", "optimize.mpcc.solver", "S", "how the relaxed problems are solved (structured, ipopt)"},
     Shortcut{"--time-limit", "optimize.time_limit", "S", "seconds"},
 };
 

@@ -74,7 +74,9 @@ class Descent {
   bool leaves() {
     if (run_.solution.certificate.b_stationary) return move();
     if (flip()) return true;
-    return !run_.is_over() && decide();
+    if (run_.is_over()) return false;
+    // Where the linear program leads to no better point another one may be beside it.
+    return decide() || (!run_.is_over() && run_.solution.certificate.b_stationary == false && move());
   }
 
   [[nodiscard]] bool is_certified() const {

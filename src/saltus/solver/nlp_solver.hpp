@@ -48,6 +48,19 @@ struct NlpReport {
   std::string message;              ///< the solver's own words; empty if completed
 };
 
+/// Says how to go on behind a barrier problem that is solved.
+struct NextBarrier {
+  double mu = 0.1;  ///< > 0
+  /// The values of the problem's functions have been changed; its bounds and patterns have not.
+  bool is_changed = false;
+};
+/// Is asked wherever the barrier problem of mu is solved to 10 mu, or no step moves its point any more.
+/// @param point       the iterate, with its multipliers
+/// @param mu          its barrier parameter
+/// @param iterations  since the loop began
+/// Returns nothing where the loop ends.
+using AskNextBarrier = std::function<std::optional<NextBarrier>(const NlpPoint& point, double mu, int iterations)>;
+
 /// Solves smooth nonlinear programs: mpcc::Problems without pairs.
 class NlpSolver {
  public:
@@ -59,6 +72,13 @@ class NlpSolver {
   /// Solves from `point` and leaves the last iterate there, whatever the outcome. Multipliers of the start are used if
   /// they are there.
   [[nodiscard]] virtual NlpReport solve(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options) = 0;
+  /// Solves barrier problems, one from the point of the other in a single loop, for as long as `next` gives another.
+  /// Meanwhile `next` may change parameters of the problem, and solve other problems. The report says `completed` if
+  /// `next` has ended the loop. Tolerances of `options` are not used, and its multipliers of the start neither.
+  /// @param first    the first barrier parameter
+  /// @param longest  iterations of one barrier problem that are too many (step_size_too_small)
+  [[nodiscard]] virtual NlpReport follow(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options, double first,
+                                         int longest, const AskNextBarrier& next) = 0;
   [[nodiscard]] virtual const char* name() const = 0;
 };
 

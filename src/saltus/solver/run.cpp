@@ -21,7 +21,10 @@ Run::Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpc
       nlp(nlp_solver),
       lpcc(lpcc_solver),
       options(wanted),
-      groups(crossover::groups_of(problem_to_solve)) {}
+      schedule(wanted.schedule),
+      groups(crossover::groups_of(problem_to_solve)) {
+  schedule.sigma_initial = wanted.sigma_initial.value_or(schedule.sigma_initial);
+}
 
 bool Run::is_over() {
   if (stopped) return true;

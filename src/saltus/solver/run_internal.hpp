@@ -30,6 +30,11 @@ class Run {
   /// Returns the limits of the next problem. A relaxed one that needs more iterations is better off with another sigma.
   [[nodiscard]] NlpOptions nlp_options(int iteration_limit = 500) const;
   void record(result::HomotopyStep step, const NlpReport* report, double started);
+  /// Seconds of a problem that is recorded in parts.
+  void count_evaluation(double seconds) {
+    solution.evaluation_seconds += seconds;
+    solution.solver_seconds -= seconds;
+  }
   /// Solves a branch problem, counts and records it. It may be given up where its objective is above `cutoff`.
   [[nodiscard]] crossover::Branch solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
                                                int iteration_limit, std::string message = {},
@@ -40,6 +45,7 @@ class Run {
   NlpSolver& nlp;
   LpccSolver& lpcc;
   const SolveOptions& options;
+  homotopy::Schedule schedule;
   std::vector<std::vector<int>> groups;
   Solution solution;
   RelaxedState relaxed;                      ///< the last relaxed problem that left a point
@@ -53,23 +59,6 @@ class Run {
  private:
   Stopwatch stopwatch_;
 };
-
-/// Makes one attempt at the path: its start, its first sigma, its steering.
-struct Attempt {
-  linalg::Vector w;
-  MpccMultipliers multipliers;  ///< may be empty
-  homotopy::Steering steering = homotopy::Steering::direct;
-  double sigma_initial = 1.0;
-};
-
-enum class PathEnd {
-  crossed_over,  ///< run.branch is accepted
-  finished,      ///< the last relaxed problem is solved
-  failed,        ///< three relaxed problems in a row have failed
-  stopped,       ///< run.stopped
-};
-/// Follows the relaxed problems, tries to cross over behind each.
-[[nodiscard]] PathEnd follow_relaxed(Run& run, const Attempt& attempt);
 
 /// Goes from run.branch to better branches, until none is found: flips of biactive pairs with negative multipliers,
 /// then the linear program over them. Leaves certificate and multipliers in run.solution.

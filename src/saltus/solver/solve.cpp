@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include <fmt/format.h>
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/solver/crossover/sides.hpp"
-#include "saltus/solver/run_internal.hpp"
+#include "saltus/solver/relaxed_path_internal.hpp"
 
 namespace saltus::solver {
 namespace {
@@ -17,6 +18,8 @@ using result::Termination;
 
 /// Of the branch problem of a start, which may be far from its solution. In one go: the solver keeps its barrier.
 constexpr int start_iterations = 3000;
+/// Of the first problem of a path that is compared with another.
+constexpr int least_iterations = 50;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
@@ -26,7 +29,8 @@ tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
 }
 
 Expected<void> check_options(const SolveOptions& options) {
-  const auto& [initial, factor, last] = options.schedule;
+  const auto& [of_schedule, factor, last] = options.schedule;
+  const double initial = options.sigma_initial.value_or(of_schedule);
   const auto code = ErrorCode::invalid_option;
   if (!(initial > 0.0 && std::isfinite(initial))) {
     return refuse(code, fmt::format("sigma_initial = {} is not > 0", initial));
@@ -65,21 +69,78 @@ Expected<void> check_start(mpcc::Problem& problem, ConstVectorView w) {
   return {};
 }
 
-/// The path, and where three relaxed problems in a row fail, the path from a smaller sigma, then an elastic one.
+/// Whether only values of functions depend on sigma: bounds stay while a loop runs. That of an elastic problem is a
+/// price.
+bool has_loop(const Run& run) {
+  const auto relaxation = run.options.relaxation;
+  return run.options.strategy == Strategy::structured && run.problem.pairs() > 0 &&
+         run.options.steering == Steering::direct &&
+         homotopy::lower_bound(relaxation, 1.0) == homotopy::lower_bound(relaxation, 2.0);
+}
+
+PathEnd shown(RelaxedPath& path, PathEnd end) {
+  path.show();
+  return end;
+}
+
+/// The loops that can be compared: from a sigma that is so large that pairs hardly matter, and from one that is so
+/// small that they matter at once. The lower objective at the same sigma goes on; the other one where that fails.
+PathEnd follow_loops(Run& run, const Attempt& first) {
+  const double initial = run.schedule.sigma_initial;
+  const double factor = run.schedule.sigma_factor;
+  const double small = run.schedule.next(initial);
+  std::vector<double> sigmas{initial};
+  if (!run.options.sigma_initial) sigmas = {initial / (factor * factor), small};
+  struct Candidate {
+    std::unique_ptr<RelaxedPath> path;
+    double objective;
+  };
+  std::vector<Candidate> candidates;
+  Attempt attempt = first;
+  for (const double sigma : sigmas) {
+    attempt.sigma_initial = sigma;
+    const int before = run.solution.iterations;
+    auto path = std::make_unique<RelaxedPath>(run, attempt);
+    const PathEnd end = path->loop(sigmas.size() > 1 ? small : 0.0);
+    if (end != PathEnd::paused && end != PathEnd::failed) return shown(*path, end);
+    const double objective = path->objective();
+    if (end == PathEnd::paused) candidates.push_back({std::move(path), objective});
+    // Another one may not take much longer.
+    attempt.iteration_limit = std::max(least_iterations, 2 * (run.solution.iterations - before));
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.objective < b.objective; });
+  for (auto& [path, objective] : candidates) {
+    const PathEnd end = path->loop();
+    if (end != PathEnd::failed) return shown(*path, end);
+  }
+  return PathEnd::failed;
+}
+
+/// The path; where it fails, one problem after the other, from a smaller sigma, and elastic.
 PathEnd follow_with_restarts(Run& run, const Start& start) {
-  const auto& schedule = run.options.schedule;
   Attempt attempt{.w = start.w,
                   .multipliers = start.multipliers,
                   .steering = run.options.steering,
-                  .sigma_initial = schedule.sigma_initial};
-  PathEnd end = follow_relaxed(run, attempt);
-  if (end != PathEnd::failed) return end;
-  attempt.sigma_initial = std::max(0.1 * schedule.sigma_initial, schedule.sigma_final);
-  end = follow_relaxed(run, attempt);
-  if (end != PathEnd::failed || run.options.steering == Steering::l1) return end;
-  attempt.sigma_initial = schedule.sigma_initial;
+                  .sigma_initial = run.schedule.sigma_initial};
+  PathEnd end = PathEnd::failed;
+  const auto follow = [&] {
+    RelaxedPath path(run, attempt);
+    end = path.follow();
+    path.show();
+    return end != PathEnd::failed;
+  };
+  if (has_loop(run)) {
+    end = follow_loops(run, attempt);
+    if (end != PathEnd::failed) return end;
+  }
+  if (follow()) return end;
+  attempt.sigma_initial = run.schedule.next(run.schedule.sigma_initial);
+  if (follow() || run.options.steering == Steering::l1) return end;
+  attempt.sigma_initial = run.schedule.sigma_initial;
   attempt.steering = Steering::l1;
-  return follow_relaxed(run, attempt);
+  follow();
+  return end;
 }
 
 double infeasibility_of(mpcc::Problem& problem, const linalg::Vector& w) {

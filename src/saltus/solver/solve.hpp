@@ -22,11 +22,21 @@ enum class FirstProblem {
   branch,   ///< that of the sides of the start, which are right where it is a solution of a similar problem
 };
 
+/// Names how the relaxed problems are solved.
+enum class Strategy {
+  structured,  ///< all in one loop of the interior-point method: sigma falls inside of it
+  ipopt,       ///< one after the other
+};
+
 /// Holds [optimize.mpcc] (docs/options.md).
 struct SolveOptions {
+  Strategy strategy = Strategy::structured;
   homotopy::Relaxation relaxation = homotopy::Relaxation::scholtes;
   homotopy::Steering steering = homotopy::Steering::direct;
   homotopy::Schedule schedule{};
+  /// Of the first relaxed problem, instead of the schedule's. Without it, two are compared where the relaxed problems
+  /// are solved in one loop: the schedule's over its factor squared (100), and times its factor (0.1).
+  std::optional<double> sigma_initial{};
   homotopy::WarmStart warm_start = homotopy::WarmStart::primal;
   FirstProblem first = FirstProblem::relaxed;
   bool crossover = true;

@@ -99,7 +99,7 @@ TEST(TomlOptimize, OptionsAreRead) {
   EXPECT_EQ(options.mpcc.time_limit, 60.0);
   EXPECT_EQ(options.mpcc.relaxation, solver::homotopy::Relaxation::kadrani);
   EXPECT_EQ(options.mpcc.steering, solver::homotopy::Steering::linf);
-  EXPECT_EQ(options.mpcc.schedule.sigma_initial, 0.1);
+  EXPECT_EQ(options.mpcc.sigma_initial, 0.1);
   EXPECT_EQ(options.mpcc.schedule.sigma_factor, 0.2);
   EXPECT_EQ(options.mpcc.schedule.sigma_final, 1e-9);
   EXPECT_EQ(options.mpcc.warm_start, solver::homotopy::WarmStart::primal_dual);

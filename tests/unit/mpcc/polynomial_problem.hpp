@@ -58,7 +58,7 @@ struct PolynomialStatement {
   Bounds g_bounds;
 };
 
-class PolynomialProblem final : public Problem {
+class PolynomialProblem : public Problem {
  public:
   explicit PolynomialProblem(PolynomialStatement statement) : statement_(std::move(statement)) {
     auto& [n, f, g, G, H, w_bounds, g_bounds] = statement_;

@@ -69,6 +69,7 @@ void IpoptProgram::set(mpcc::Problem& problem, solver::NlpPoint& point, const so
   feasible_ = std::min(options.tolerance, feasible);
   cutoff_ = options.objective_cutoff.value_or(last_objective_);
   is_cut_off_ = is_near_ = false;
+  pace_ = {};
   find_rows();
 }
 
@@ -86,15 +87,27 @@ void IpoptProgram::watch(double objective, double primal_infeasibility, double d
   is_near_ = primal_infeasibility <= feasible_ && mu <= small_barrier;
   equal_ = is_near_ && is_equal ? equal_ + 1 : 0;
   if (!is_near_ || !(dual_infeasibility < best_error_)) return;
+  if (read_iterate(data, quantities, best_)) best_error_ = dual_infeasibility;
+}
+
+bool IpoptProgram::read_iterate(const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities,
+                                solver::NlpPoint& point) {
   const auto n = static_cast<Ipopt::Index>(point_->w.size());
   const auto m = static_cast<Ipopt::Index>(rows_.size());
-  best_.w.resize(n);
-  best_.z_lower.resize(n);
-  best_.z_upper.resize(n);
-  best_.y.resize(m);
-  const bool is_there = get_curr_iterate(data, quantities, /*scaled=*/false, n, best_.w.data(), best_.z_lower.data(),
-                                         best_.z_upper.data(), m, nullptr, best_.y.data());
-  if (is_there) best_error_ = dual_infeasibility;
+  point.w.resize(n);
+  point.z_lower.resize(n);
+  point.z_upper.resize(n);
+  point.y.resize(m);
+  return get_curr_iterate(data, quantities, /*scaled=*/false, n, point.w.data(), point.z_lower.data(),
+                          point.z_upper.data(), m, nullptr, point.y.data());
+}
+
+void IpoptProgram::take_iterate(const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities) {
+  pace_.untaken = 0;
+  if (!read_iterate(data, quantities, best_)) return;
+  y_.set_zero();
+  put(best_.y, rows_, y_);
+  *point_ = {.w = best_.w, .y = y_, .z_lower = best_.z_lower, .z_upper = best_.z_upper};
 }
 
 void IpoptProgram::find_rows() {
@@ -205,6 +218,8 @@ bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Ipopt::I
                                          double step_norm, double /*regularisation*/, double /*dual_step*/,
                                          double primal_step, Ipopt::Index /*trials*/, const Ipopt::IpoptData* data,
                                          Ipopt::IpoptCalculatedQuantities* quantities) {
+  ++pace_.untaken;
+  if (pace_.longest > 0) return !is_too_long() && !(is_interrupted_ && is_interrupted_());
   standing_ = primal_step * step_norm <= standstill ? standing_ + 1 : 0;
   watch(objective, primal_infeasibility, dual_infeasibility, mu, data, quantities);
   return !stands_still() && !is_exhausted() && !is_cut_off() && !(is_interrupted_ && is_interrupted_());

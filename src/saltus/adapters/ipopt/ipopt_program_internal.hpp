@@ -21,6 +21,13 @@ class IpoptProgram final : public Ipopt::TNLP {
   /// Returns whether it was stopped because it was about to end above NlpOptions::objective_cutoff.
   [[nodiscard]] bool is_cut_off() const { return is_cut_off_; }
   [[nodiscard]] double objective() const { return objective_; }
+  [[nodiscard]] const solver::NlpPoint& point() const { return *point_; }
+  /// Stops only behind that many iterations, those of restoration phases among them, without take_iterate(): a loop
+  /// over barrier problems has its own rules.
+  void let_it_run(int longest) { pace_.longest = longest; }
+  [[nodiscard]] bool is_too_long() const { return pace_.longest > 0 && pace_.untaken > pace_.longest; }
+  /// Makes the current iterate the point.
+  void take_iterate(const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities);
   [[nodiscard]] double evaluation_seconds() const { return evaluation_seconds_; }
 
   bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries, Ipopt::Index& hessian_entries,
@@ -47,6 +54,9 @@ class IpoptProgram final : public Ipopt::TNLP {
  private:
   /// Rows without bounds are no constraints: Ipopt does not see them.
   void find_rows();
+  /// Gives the current iterate; false if Ipopt has none.
+  bool read_iterate(const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities,
+                    solver::NlpPoint& point);
   /// Counts iterations that change nothing, keeps the best of them.
   void watch(double objective, double primal_infeasibility, double dual_infeasibility, double mu,
              const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities);
@@ -66,6 +76,10 @@ class IpoptProgram final : public Ipopt::TNLP {
   double acceptable_ = 0.0, feasible_ = 0.0;
   double cutoff_ = 0.0;
   bool is_cut_off_ = false;
+  struct Pace {
+    int longest = 0;  ///< iterations between two iterates that are taken; 0: none is
+    int untaken = 0;  ///< since the last one
+  } pace_;
   bool is_near_ = false;   ///< the last iterate is feasible, with a small barrier
   solver::NlpPoint best_;  ///< of such iterates the one with the least dual infeasibility; also where a limit ends it
   double best_error_ = 0.0;

@@ -2,10 +2,12 @@
 
 #include <IpIpoptApplication.hpp>
 #include <IpSolveStatistics.hpp>
+#include <IpTNLPAdapter.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <dlfcn.h>
 
+#include "saltus/adapters/ipopt/barrier_update_internal.hpp"
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/base/symbolic_lock.hpp"
@@ -80,31 +82,68 @@ bool keeps_structures(Ipopt::ApplicationReturnStatus status) {
   }
 }
 
+/// An application with what all problems have in common.
+Ipopt::SmartPtr<Ipopt::IpoptApplication> new_application() {
+  Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
+  use_one_thread();
+  auto options = application->Options();
+  const bool are_set = options->SetIntegerValue("print_level", 0) && options->SetStringValue("sb", "yes") &&
+                       options->SetStringValue("linear_solver", "mumps") &&
+                       // Permutations by values make factors dense where the equations depend on each other.
+                       options->SetIntegerValue("mumps_permuting_scaling", 0) &&
+                       // Relaxed bounds would let lambda and alpha become negative, and with them products of pairs.
+                       options->SetNumericValue("bound_relax_factor", 0.0) &&
+                       options->SetStringValue("mu_oracle", "quality-function") &&
+                       options->SetStringValue("fixed_variable_treatment", "make_parameter");
+  SALTUS_ASSERT(are_set);
+  // An empty name: no option file of the current folder changes results.
+  const auto status = application->Initialize(std::string());
+  SALTUS_ASSERT(status == Ipopt::Solve_Succeeded);
+  return application;
+}
+
+bool has_multipliers(const mpcc::Problem& nlp, const solver::NlpPoint& point) {
+  return point.y.size() == nlp.constraints() && point.z_lower.size() == nlp.variables() &&
+         point.z_upper.size() == nlp.variables();
+}
+
+/// How far a start with multipliers, or without them, is moved inside of its bounds.
+bool set_start(Ipopt::OptionsList& options, bool with_multipliers, double push) {
+  bool are_set = options.SetStringValue("warm_start_init_point", with_multipliers ? "yes" : "no");
+  for (const char* name : {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
+                           "warm_start_slack_bound_frac", "warm_start_mult_bound_push"}) {
+    are_set = are_set && options.SetNumericValue(name, push);
+  }
+  return are_set;
+}
+
+bool set_time_limit(Ipopt::OptionsList& options, const solver::NlpOptions& wanted) {
+  constexpr double unlimited = 1e20;  // Ipopt's own default
+  constexpr double least = 1e-9;      // Ipopt wants more than 0
+  return options.SetNumericValue("max_wall_time", std::max(wanted.time_limit.value_or(unlimited), least));
+}
+
+/// That its loop ends only where it is told to: no error is small enough.
+void set_options_of_loop(Ipopt::IpoptApplication& application, const solver::NlpOptions& wanted,
+                         bool with_multipliers) {
+  constexpr double push = 1e-6;
+  constexpr double unreachable = 1e-20;
+  auto options = application.Options();
+  const bool are_set = options->SetNumericValue("tol", unreachable) && options->SetIntegerValue("acceptable_iter", 0) &&
+                       options->SetIntegerValue("max_iter", wanted.iteration_limit) &&
+                       set_time_limit(*options, wanted) && options->SetStringValue("mu_strategy", "monotone") &&
+                       set_start(*options, with_multipliers, push);
+  SALTUS_ASSERT(are_set);
+}
+
 }  // namespace
 
 struct IpoptSolver::Implementation {
-  Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
+  Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new_application();
   Ipopt::SmartPtr<IpoptProgram> program = new IpoptProgram;
   bool has_structures = false;  ///< it has solved a problem; the sizes of the next are its own
 
-  Implementation() {
-    use_one_thread();
-    auto options = application->Options();
-    const bool are_set = options->SetIntegerValue("print_level", 0) && options->SetStringValue("sb", "yes") &&
-                         options->SetStringValue("linear_solver", "mumps") &&
-                         // Permutations by values make factors dense where the equations depend on each other.
-                         options->SetIntegerValue("mumps_permuting_scaling", 0) &&
-                         // Relaxed bounds would let lambda and alpha become negative, and with them products of pairs.
-                         options->SetNumericValue("bound_relax_factor", 0.0) &&
-                         options->SetStringValue("mu_oracle", "quality-function") &&
-                         options->SetStringValue("fixed_variable_treatment", "make_parameter");
-    SALTUS_ASSERT(are_set);
-    // An empty name: no option file of the current folder changes results.
-    const auto status = application->Initialize(std::string());
-    SALTUS_ASSERT(status == Ipopt::Solve_Succeeded);
-  }
-
-  void set_options(const solver::NlpOptions& wanted, bool has_multipliers) {
+  void set_options(const solver::NlpOptions& wanted, bool with_multipliers) {
     auto options = application->Options();
     const double feasible = std::max(wanted.tolerance, 1e-10);
     bool are_set = options->SetNumericValue("tol", wanted.tolerance) &&
@@ -115,16 +154,10 @@ struct IpoptSolver::Implementation {
                    // that is not feasible solves nothing.
                    options->SetNumericValue("constr_viol_tol", feasible) &&
                    options->SetNumericValue("acceptable_constr_viol_tol", feasible) &&
-                   options->SetIntegerValue("max_iter", wanted.iteration_limit) &&
-                   // 1e20 is Ipopt's own default: no limit.
-                   options->SetNumericValue("max_wall_time", std::max(wanted.time_limit.value_or(1e20), 1e-9)) &&
-                   options->SetStringValue("warm_start_init_point", has_multipliers ? "yes" : "no");
-    for (const char* name : {"warm_start_bound_push", "warm_start_bound_frac", "warm_start_slack_bound_push",
-                             "warm_start_slack_bound_frac", "warm_start_mult_bound_push"}) {
-      are_set = are_set && options->SetNumericValue(name, wanted.warm_push);
-    }
+                   options->SetIntegerValue("max_iter", wanted.iteration_limit) && set_time_limit(*options, wanted) &&
+                   set_start(*options, with_multipliers, wanted.warm_push);
     // Only the monotone strategy begins with a given parameter; the adaptive one chooses its own.
-    const bool begins_with_mu = has_multipliers && wanted.warm_barrier_mu;
+    const bool begins_with_mu = with_multipliers && wanted.warm_barrier_mu;
     are_set = are_set && options->SetStringValue("mu_strategy", begins_with_mu ? "monotone" : "adaptive") &&
               options->SetNumericValue("mu_init", begins_with_mu ? *wanted.warm_barrier_mu : 0.1);
     SALTUS_ASSERT(are_set);
@@ -137,9 +170,7 @@ IpoptSolver::~IpoptSolver() = default;
 solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point, const solver::NlpOptions& options) {
   SALTUS_ASSERT(point.w.size() == nlp.variables());
   auto& [application, program, has_structures] = *implementation_;
-  const bool has_multipliers = point.y.size() == nlp.constraints() && point.z_lower.size() == nlp.variables() &&
-                               point.z_upper.size() == nlp.variables();
-  implementation_->set_options(options, has_multipliers);
+  implementation_->set_options(options, has_multipliers(nlp, point));
   program->set(nlp, point, options);
   const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
   const auto status = [&] {
@@ -157,6 +188,40 @@ solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point
     outcome = outcome_of(Ipopt::Search_Direction_Becomes_Too_Small);
   else if (is_stopped && program->is_cut_off())
     outcome = {Termination::not_converged, "its objective is too large"};
+  solver::NlpReport report;
+  report.termination = outcome.termination;
+  report.diverging = status == Ipopt::Diverging_Iterates;
+  report.objective = program->objective();
+  report.evaluation_seconds = program->evaluation_seconds();
+  report.message = outcome.message;
+  if (const auto statistics = application->Statistics(); Ipopt::IsValid(statistics)) {
+    report.iterations = statistics->IterationCount();
+  }
+  return report;
+}
+
+solver::NlpReport IpoptSolver::follow(mpcc::Problem& nlp, solver::NlpPoint& point, const solver::NlpOptions& options,
+                                      double first, int longest, const solver::AskNextBarrier& next) {
+  SALTUS_ASSERT(point.w.size() == nlp.variables());
+  // Of its own: meanwhile other problems are solved.
+  const auto application = new_application();
+  set_options_of_loop(*application, options, has_multipliers(nlp, point));
+  const Ipopt::SmartPtr<IpoptProgram> program = new IpoptProgram;
+  program->set(nlp, point, options);
+  program->let_it_run(longest);
+  BarrierLoop loop{.first_mu = first, .next = next, .program = *program};
+  const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
+  const Ipopt::SmartPtr<Ipopt::NLP> adapter = new Ipopt::TNLPAdapter(seen, ConstPtr(application->Jnlst()));
+  Ipopt::SmartPtr<Ipopt::AlgorithmBuilder> builder = new LoopBuilder(loop);
+  const auto status = [&] {
+    const SymbolicPause pause;
+    return application->OptimizeNLP(adapter, builder);
+  }();
+  Outcome outcome = outcome_of(status);
+  if (loop.is_ended)
+    outcome = {Termination::completed, ""};
+  else if (program->is_too_long())
+    outcome = {Termination::step_size_too_small, "a barrier problem takes too long"};
   solver::NlpReport report;
   report.termination = outcome.termination;
   report.diverging = status == Ipopt::Diverging_Iterates;

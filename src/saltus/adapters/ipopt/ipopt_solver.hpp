@@ -17,6 +17,8 @@ class IpoptSolver final : public solver::NlpSolver {
 
   [[nodiscard]] solver::NlpReport solve(mpcc::Problem& nlp, solver::NlpPoint& point,
                                         const solver::NlpOptions& options) override;
+  [[nodiscard]] solver::NlpReport follow(mpcc::Problem& nlp, solver::NlpPoint& point, const solver::NlpOptions& options,
+                                         double first, int longest, const solver::AskNextBarrier& next) override;
   [[nodiscard]] const char* name() const override { return "ipopt"; }
 
  private:

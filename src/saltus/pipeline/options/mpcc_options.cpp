@@ -15,11 +15,13 @@ namespace {
 
 using solver::FirstProblem;
 using solver::SolveOptions;
+using solver::Strategy;
 using solver::homotopy::Relaxation;
 using solver::homotopy::Steering;
 using solver::homotopy::WarmStart;
 
-constexpr auto sigma_initial_of = [](auto& o) -> auto& { return o.schedule.sigma_initial; };
+constexpr auto strategy_of = [](auto& o) -> auto& { return o.strategy; };
+constexpr auto sigma_initial_of = [](auto& o) -> auto& { return o.sigma_initial; };
 constexpr auto sigma_factor_of = [](auto& o) -> auto& { return o.schedule.sigma_factor; };
 constexpr auto sigma_final_of = [](auto& o) -> auto& { return o.schedule.sigma_final; };
 constexpr auto relaxation_of = [](auto& o) -> auto& { return o.relaxation; };
@@ -32,6 +34,7 @@ constexpr auto warm_start_of = [](auto& o) -> auto& { return o.warm_start; };
 
 constexpr double most_iterations = std::numeric_limits<int>::max();
 
+constexpr Choices<Strategy, 2> strategies{{"structured", "ipopt"}, {Strategy::structured, Strategy::ipopt}};
 constexpr Choices<Steering, 3> steerings{{"direct", "l1", "linf"}, {Steering::direct, Steering::l1, Steering::linf}};
 constexpr Choices<FirstProblem, 2> first_problems{{"relaxed", "branch"}, {FirstProblem::relaxed, FirstProblem::branch}};
 constexpr Choices<WarmStart, 2> warm_starts{{"primal", "primal_dual"}, {WarmStart::primal, WarmStart::primal_dual}};
@@ -45,11 +48,16 @@ const auto relaxations = [] {
 }();
 
 const std::array fields_of_mpcc{
+    choice_field<strategy_of, strategies, SolveOptions>(
+        "solver",
+        "All relaxed problems in one loop of the interior-point method (structured), or one after the other (ipopt)."),
     choice_field<relaxation_of, relaxations, SolveOptions>("method", "How complementarities are relaxed by sigma."),
     choice_field<steering_of, steerings, SolveOptions>(
         "steering", "What makes sigma small: its bound alone, or a price on the sum or the largest of the products."),
-    number_field<sigma_initial_of, SolveOptions>("sigma_initial", positive_number,
-                                                 "Sigma of the first relaxed problem."),
+    number_or_none_field<sigma_initial_of, auto_word, SolveOptions>(
+        "sigma_initial", positive_number,
+        "Sigma of the first relaxed problem; auto: the better of 100 and 0.1, where they have come to 0.1 (solver = "
+        "ipopt: 1)."),
     number_field<sigma_factor_of, SolveOptions>("sigma_factor", Numbers{.above = 0.0, .below = 1.0},
                                                 "From one relaxed problem to the next."),
     number_field<sigma_final_of, SolveOptions>("sigma_final", positive_number, "Sigma of the last relaxed problem."),
@@ -83,7 +91,8 @@ Expected<void> set_mpcc_option(SolveOptions& options, std::string_view key, cons
 }
 
 Expected<void> check_mpcc_options(const SolveOptions& options) {
-  const auto& [initial, factor, final] = options.schedule;
+  const double initial = options.sigma_initial.value_or(options.schedule.sigma_initial);
+  const double final = options.schedule.sigma_final;
   if (final <= initial) return {};
   return tl::unexpected(Error{ErrorCode::invalid_option,
                               fmt::format("sigma_final ({}) is above sigma_initial ({})", final, initial),

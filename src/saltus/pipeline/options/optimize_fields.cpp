@@ -21,7 +21,6 @@ constexpr auto detection_of = [](auto& o) -> auto& { return o.switch_detection; 
 constexpr auto closed_loop_of = [](auto& o) -> auto& { return o.closed_loop; };
 constexpr auto feedback_of = [](auto& o) -> auto& { return o.feedback; };
 constexpr auto time_limit_of = [](auto& o) -> auto& { return o.mpcc.time_limit; };
-constexpr auto solver_of = [](auto& o) -> auto& { return o.solver; };
 constexpr auto verification_of = [](auto& o) -> auto& { return o.verification_tolerance; };
 
 constexpr Choices<Native, 3> native_words{{"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
@@ -45,22 +44,6 @@ void record_elements(const OptimizeOptions& options, std::string_view key, Optio
 
 void record_intervals(const OptimizeOptions& options, std::string_view key, OptionRecord& record) {
   if (options.control_intervals > 0) record.emplace_back(key, std::int64_t{options.control_intervals});
-}
-
-constexpr std::array<std::string_view, 1> solvers{"ipopt"};
-
-void set_solver(OptimizeOptions& options, std::string_view, const OptionValue& value) {
-  options.solver = std::get<std::string>(value);
-}
-
-void name_later_solver(Error& error, const OptionValue& value) {
-  const auto* word = std::get_if<std::string>(&value);
-  if (word == nullptr || *word != "structured") return;
-  error = {ErrorCode::not_available,
-           "solver \"structured\" is not available in this version; a later one brings it",
-           "choose solver = \"ipopt\"",
-           {},
-           {}};
 }
 
 using OwnField = FieldOf<OptimizeOptions>;
@@ -96,12 +79,6 @@ constexpr std::array method_fields{
         "Of the defects of intervals that are simulated again, relative to the range of each state."),
     number_or_none_field<time_limit_of, none_word, OptimizeOptions>("time_limit", positive_number,
                                                                     "Seconds, of all problems together."),
-    OwnField{"mpcc.solver",
-             {.words = solvers},
-             "Of the smooth problems.",
-             set_solver,
-             record_member<solver_of, OptimizeOptions>,
-             name_later_solver},
 };
 
 OptimizeField own_option(const OwnField& field) {

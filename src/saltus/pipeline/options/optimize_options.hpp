@@ -32,8 +32,7 @@ struct OptimizeOptions {
   Feedback feedback = Feedback::optimal;               ///< of the closed loop
   std::optional<std::string> start_result{};           ///< file: initial_guess = { result = FILE } or --start
   std::shared_ptr<const result::Result> start_from{};  ///< that file as read, by whoever calls pipeline::optimize
-  std::string solver = "ipopt";
-  solver::SolveOptions mpcc{};  ///< its time limit is that of [optimize] time_limit
+  solver::SolveOptions mpcc{};                         ///< its time limit is that of [optimize] time_limit
 };
 
 }  // namespace saltus::pipeline

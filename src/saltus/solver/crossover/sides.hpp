@@ -17,4 +17,10 @@ namespace saltus::solver::crossover {
                                                           const std::vector<std::vector<int>>& groups,
                                                           const linalg::Vector& c);
 
+/// Returns how many groups could go to either side: min(sum G, sum H) > 0.3 max. Without any, the branch of the smaller
+/// sides is the one that the relaxed problems lead to.
+/// @param c  values of (g, G, H)
+[[nodiscard]] int undecided_groups(const mpcc::Problem& problem, const std::vector<std::vector<int>>& groups,
+                                   const linalg::Vector& c);
+
 }  // namespace saltus::solver::crossover

@@ -71,10 +71,8 @@ Expected<PathResult> follow_path(mpcc::Problem& problem, ConstVectorView start, 
   RelaxedProblem relaxed(problem, options.relaxation);
   PathResult path;
   path.point.w = start;
-  for (double sigma = options.schedule.sigma_initial;; sigma *= options.schedule.sigma_factor) {
-    // The last factor is cut short; 1.0001 keeps rounding from adding one more problem at nearly the same sigma.
-    const bool is_last = sigma <= 1.0001 * options.schedule.sigma_final;
-    if (is_last) sigma = options.schedule.sigma_final;
+  for (double sigma = options.schedule.sigma_initial;; sigma = options.schedule.next(sigma)) {
+    const bool is_last = sigma <= options.schedule.sigma_final;
     relaxed.set_sigma(sigma);
     NlpOptions nlp = options.nlp;
     if (options.time_limit) {

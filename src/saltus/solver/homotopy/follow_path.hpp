@@ -19,6 +19,13 @@ struct Schedule {
   double sigma_initial = 1.0;  ///< > 0
   double sigma_factor = 0.1;   ///< in (0, 1)
   double sigma_final = 1e-10;  ///< > 0, <= sigma_initial
+
+  /// Returns the sigma behind this one. The last factor is cut short; 1.0001 keeps rounding from adding one more
+  /// problem at nearly the same sigma.
+  [[nodiscard]] double next(double sigma) const {
+    constexpr double rounding = 1.0001;
+    return sigma_factor * sigma <= rounding * sigma_final ? sigma_final : sigma_factor * sigma;
+  }
 };
 
 /// Says what the next relaxed problem starts with: after a large step of sigma old multipliers can mislead.

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -168,6 +169,87 @@ TEST(Ipopt, StopsBetweenIterations) {
   EXPECT_LE(report.iterations, 3);
   EXPECT_GE(report.evaluation_seconds, 0.0);
   EXPECT_TRUE(point.w.all_finite());
+}
+
+/// min (w0 - 2)^2 + (w1 - 1)^2 with w0 w1 <= sigma, w >= 0: for sigma -> 0 the point (2, 0).
+class ProductBelow final : public PolynomialProblem {
+ public:
+  ProductBelow() : PolynomialProblem(statement()) {}
+  static PolynomialStatement statement() {
+    PolynomialStatement made;
+    made.variables = 2;
+    made.f = {{{5.0, {}}, {-4.0, {1}}, {1.0, {2}}, {-2.0, {0, 1}}, {1.0, {0, 2}}}};
+    made.w_bounds = {linalg::Vector::zero(2), linalg::Vector::constant(2, 10.0)};
+    made.g = {{{{1.0, {1, 1}}}}};
+    made.g_bounds = {linalg::Vector::constant(1, -infinity), linalg::Vector::zero(1)};
+    return made;
+  }
+  void functions(mpcc::ConstVectorView w, mpcc::VectorView c) override {
+    PolynomialProblem::functions(w, c);
+    c[0] -= sigma;
+  }
+  double sigma = 1.0;
+};
+
+TEST(IpoptLoop, FollowsAParameterInOneGo) {
+  ProductBelow problem;
+  adapters::IpoptSolver solver;
+  NlpPoint point{.w = linalg::Vector{1.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
+  std::vector<NlpPoint> solved;
+  const auto next = [&](const NlpPoint& at, double mu, int /*iterations*/) -> std::optional<NextBarrier> {
+    if (mu > 1e-2 * problem.sigma) return NextBarrier{.mu = 0.1 * mu, .is_changed = false};
+    solved.push_back(at);
+    EXPECT_NEAR(at.w[0] * at.w[1], problem.sigma, 0.2 * problem.sigma);
+    if (problem.sigma < 1e-7) return std::nullopt;
+    problem.sigma *= 0.1;
+    return NextBarrier{.mu = 1e-2 * problem.sigma, .is_changed = true};
+  };
+  const NlpReport report = solver.follow(problem, point, {}, 0.1, 50, next);
+  EXPECT_EQ(report.termination, Termination::completed) << report.message;
+  ASSERT_EQ(solved.size(), 9u);
+  EXPECT_LT(report.iterations, 60);
+  EXPECT_NEAR(point.w[0], 2.0, 1e-6);
+  EXPECT_NEAR(point.w[1], 0.0, 1e-6);
+  EXPECT_NEAR(point.y[0] * point.w[0], 2.0, 0.1);  // of the product: d/dw1, as far as 10 mu goes
+}
+
+TEST(IpoptLoop, OtherProblemsMayBeSolvedMeanwhile) {
+  ProductBelow problem;
+  adapters::IpoptSolver solver;
+  NlpPoint alone{.w = linalg::Vector{1.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
+  NlpPoint beside = alone;
+  const auto follow = [&](NlpPoint& point, bool has_others) {
+    problem.sigma = 1.0;
+    return solver.follow(problem, point, {}, 0.1, 50,
+                         [&](const NlpPoint&, double mu, int) -> std::optional<NextBarrier> {
+                           if (has_others) {
+                             auto other = hock_schittkowski_15();
+                             NlpPoint of_other{.w = linalg::Vector{-2.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
+                             EXPECT_EQ(solver.solve(other, of_other, {}).termination, Termination::completed);
+                           }
+                           if (mu < 1e-8) return std::nullopt;
+                           problem.sigma *= 0.2;
+                           return NextBarrier{.mu = 0.2 * mu, .is_changed = true};
+                         });
+  };
+  EXPECT_EQ(follow(alone, false).iterations, follow(beside, true).iterations);
+  EXPECT_EQ(alone.w[0], beside.w[0]);
+  EXPECT_EQ(alone.w[1], beside.w[1]);
+}
+
+TEST(IpoptLoop, EndsWhereABarrierProblemTakesTooLong) {
+  ProductBelow problem;
+  adapters::IpoptSolver solver;
+  NlpPoint point{.w = linalg::Vector{1.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
+  const auto same = [](const NlpPoint&, double mu, int) { return std::optional(NextBarrier{.mu = 0.1 * mu}); };
+  const NlpReport report = solver.follow(problem, point, {}, 0.1, 2, same);
+  EXPECT_EQ(report.termination, Termination::step_size_too_small);
+  EXPECT_NE(report.message.find("too long"), std::string::npos);
+  EXPECT_TRUE(point.w.all_finite());
+
+  NlpOptions interrupted;
+  interrupted.is_interrupted = [] { return true; };
+  EXPECT_EQ(solver.follow(problem, point, interrupted, 0.1, 50, same).termination, Termination::stopped_by_user);
 }
 
 class EveryRelaxation : public testing::TestWithParam<Relaxation> {

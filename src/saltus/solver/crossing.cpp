@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "saltus/solver/crossing_internal.hpp"
+#include "saltus/solver/crossover/sides.hpp"
+
+namespace saltus::solver {
+namespace {
+
+/// Crossing over earlier costs more than the next relaxed problem. Problems that are solved by themselves are not so
+/// near (mpcc.md's C.1: right from here on the easy ones).
+constexpr double crossover_sigma = 1e-2;
+constexpr double crossover_sigma_of_problems = 1e-3;
+/// Where groups are still undecided here, they stay so.
+constexpr double undecided_sigma = 1e-5;
+/// A branch that is feasible only far from where the path has led to is a solution at infinity.
+constexpr double far_away = 1e5;
+/// Optimality error of a branch problem that counts as solved; the certificate has the last word.
+constexpr double stationary = 1e-5;
+/// A branch problem that was infeasible is tried again from a point that is nearer by this.
+constexpr double retry_factor = 0.011;
+/// Iterations of a branch problem that the next sigma may make easier, and of one that it may not.
+constexpr int trial_limit = 60;
+constexpr int whole_limit = 500;
+/// Relaxed points are better than any feasible one.
+constexpr double objective_slack = 1e-3;
+constexpr double rounding = 1.0001;
+
+}  // namespace
+
+double Crossing::slack(double objective) { return objective_slack * std::max(1.0, std::abs(objective)); }
+
+bool Crossing::is_worth_trying(const RelaxedPoint& point, const linalg::Vector& c) const {
+  if (run_.problem.pairs() == 0) return true;
+  if (!point.is_of_loop) return point.sigma <= rounding * crossover_sigma_of_problems;
+  if (point.sigma > rounding * crossover_sigma) return false;
+  return point.is_last || point.sigma <= rounding * undecided_sigma ||
+         crossover::undecided_groups(run_.problem, run_.groups, c) == 0;
+}
+
+bool Crossing::cross(const RelaxedPoint& point) {
+  linalg::Vector c(run_.problem.rows());
+  run_.problem.functions(point.w, c);
+  if (!is_worth_trying(point, c)) return false;
+  const auto sides = crossover::smaller_sides(run_.problem, run_.groups, c);
+  // The same sides have the same solution: what was refused for its objective needs no second solution, what was
+  // infeasible deserves one from much nearer only.
+  const bool is_refused = run_.refused && run_.refused->sides == sides;
+  same_refused_ = is_refused ? same_refused_ + 1 : 0;
+  if (is_refused) return accept_refused(point.w);
+  if (sides == infeasible_sides_ && !point.is_last && point.sigma > retry_factor * infeasible_sigma_) return false;
+  return solve(point, sides);
+}
+
+bool Crossing::solve(const RelaxedPoint& point, const std::vector<mpcc::ActiveSide>& sides) {
+  crossover::Branch branch = run_.solve_branch(sides, point.w, point.is_last ? whole_limit : trial_limit);
+  const bool is_near = branch.w.max_abs() <= far_away * std::max(1.0, point.w.max_abs());
+  const bool is_feasible = branch.is_feasible(run_.options.tolerance) && std::isfinite(branch.objective) && is_near &&
+                           branch.optimality_error <= stationary;
+  auto& step = run_.solution.homotopy.back();
+  if (!is_feasible) {
+    infeasible_sides_ = sides;
+    infeasible_sigma_ = point.sigma;
+    const std::string rows = certificate::worst_rows(run_.problem, branch.w, run_.options.tolerance);
+    step.message = fmt::format("refused: {}", !is_near ? "it lies at infinity" : rows.empty() ? "not solved" : rows);
+    return false;
+  }
+  if (is_good(branch, point.w)) {
+    run_.branch = std::move(branch);
+    return true;
+  }
+  step.message = fmt::format("refused: the relaxed objective is {:.6g}", run_.problem.objective(point.w));
+  if (!run_.refused || branch.objective < run_.refused->objective) run_.refused = std::move(branch);
+  return false;
+}
+
+bool Crossing::is_good(const crossover::Branch& branch, const linalg::Vector& w) {
+  const double relaxed = run_.problem.objective(w);
+  return branch.objective <= relaxed + slack(relaxed);
+}
+
+bool Crossing::accept_refused(const linalg::Vector& w) {
+  if (!is_good(*run_.refused, w)) return false;
+  run_.branch = std::move(run_.refused);
+  run_.refused.reset();
+  return true;
+}
+
+}  // namespace saltus::solver

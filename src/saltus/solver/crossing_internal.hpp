@@ -1,0 +1,42 @@
+// From a relaxed point to the branch that it leads to.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "saltus/solver/run_internal.hpp"
+
+namespace saltus::solver {
+
+/// Says how good the relaxed point is that a branch is tried from.
+struct RelaxedPoint {
+  const linalg::Vector& w;
+  double sigma = 1.0;
+  bool is_of_loop = false;  ///< solved in one loop, and nearer to its solution than a problem that is solved by itself
+  bool is_last = false;     ///< no better one will come
+};
+
+/// Tries the branch problem of the sides that are smaller at a relaxed point, where it is worth its solution.
+class Crossing {
+ public:
+  explicit Crossing(Run& run) : run_(run) {}
+
+  /// True if the branch is good enough: run.branch is it then. Else it is run.refused, if it is feasible.
+  bool cross(const RelaxedPoint& point);
+  /// Returns how many points in a row had the sides of run.refused.
+  [[nodiscard]] int same_refused() const { return same_refused_; }
+  [[nodiscard]] static double slack(double objective);  ///< how much worse than the relaxed point a branch may be
+
+ private:
+  [[nodiscard]] bool is_worth_trying(const RelaxedPoint& point, const linalg::Vector& c) const;
+  [[nodiscard]] bool is_good(const crossover::Branch& branch, const linalg::Vector& w);
+  bool accept_refused(const linalg::Vector& w);
+  bool solve(const RelaxedPoint& point, const std::vector<mpcc::ActiveSide>& sides);
+
+  Run& run_;
+  int same_refused_ = 0;
+  std::optional<std::vector<mpcc::ActiveSide>> infeasible_sides_;
+  double infeasible_sigma_ = 0.0;
+};
+
+}  // namespace saltus::solver

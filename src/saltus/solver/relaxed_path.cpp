@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "saltus/solver/relaxed_path_internal.hpp"
+
+namespace saltus::solver {
+namespace {
+
+using result::Termination;
+
+constexpr int failures_that_end = 3;
+/// Relaxed problems are solved to 1e-4 sigma: from here on to the last digit.
+constexpr double sharp_sigma = 1e-6;
+constexpr double nearly_feasible = 1e-6;
+/// Relaxed problems in a row that lead to a branch which was refused, until the next ones will, too.
+constexpr int settled_problems = 2;
+/// Iterations of one barrier problem of the loop after which another way is better.
+constexpr int longest_barrier = 100;
+
+}  // namespace
+
+RelaxedPath::RelaxedPath(Run& run, Attempt attempt)
+    : run_(run), attempt_(std::move(attempt)), crossing_(run), w_(attempt_.w) {
+  state_.problem = std::make_unique<homotopy::RelaxedProblem>(run.problem, run.options.relaxation, attempt_.steering);
+  state_.point.w = w_;
+  infeasibility_ = infeasibility_of(w_);
+}
+
+PathEnd RelaxedPath::follow() {
+  const auto& schedule = run_.schedule;
+  int failures = 0;
+  double sigma = level_ ? schedule.next(level_->sigma) : attempt_.sigma_initial;
+  // Behind the last one, too, where only digits are missing.
+  const auto next = [&] { return sigma > schedule.sigma_final ? schedule.next(sigma) : schedule.sigma_factor * sigma; };
+  for (;; sigma = next()) {
+    const bool is_last = sigma <= schedule.sigma_final;
+    if (run_.is_over()) return PathEnd::stopped;
+    failures = solve(sigma) ? 0 : failures + 1;
+    if (run_.is_over()) return PathEnd::stopped;
+    if (const auto end = end_at(is_last, failures)) return *end;
+  }
+}
+
+PathEnd RelaxedPath::loop(double until) {
+  if (!level_) {
+    const bool is_solved = solve(attempt_.sigma_initial, attempt_.iteration_limit);
+    if (run_.is_over()) return PathEnd::stopped;
+    if (!is_solved) return PathEnd::failed;
+    if (attempt_.sigma_initial <= until) return PathEnd::paused;
+  }
+  if (!homotopy::next_level(run_.schedule, *level_)) return follow();
+  is_in_loop_ = true;
+  const PathEnd end = run_loop(until);
+  is_in_loop_ = false;
+  if (end != PathEnd::failed || run_.is_over()) return run_.is_over() ? PathEnd::stopped : end;
+  // What is left undecided at the last relaxed problem that was solved may not matter.
+  const bool may_cross = run_.options.crossover && until == 0.0;
+  if (may_cross && crossing_.cross({w_, level_->sigma, /*is_of_loop=*/true, /*is_last=*/true})) {
+    return PathEnd::crossed_over;
+  }
+  return until == 0.0 ? follow() : PathEnd::failed;
+}
+
+PathEnd RelaxedPath::run_loop(double until) {
+  homotopy::Level level = *homotopy::next_level(run_.schedule, *level_);
+  NlpPoint point = state_.point;
+  move_to(level.sigma);
+  std::optional<PathEnd> end;
+  int counted = 0;
+  const auto next = [&](const NlpPoint& at, double /*mu*/, int iterations) -> std::optional<NextBarrier> {
+    const auto following = homotopy::next_level(run_.schedule, level);
+    const bool is_same = following && following->sigma == level.sigma;
+    if (is_same) {
+      level = *following;
+      return NextBarrier{.mu = level.mu, .is_changed = false};
+    }
+    move_back();
+    NlpReport report;
+    report.termination = Termination::completed;
+    report.iterations = iterations - std::exchange(counted, iterations);
+    take(at, report);
+    level_ = level;
+    end = run_.is_over() ? PathEnd::stopped : end_at(!following, 0);
+    if (!end && level.sigma <= until) end = PathEnd::paused;
+    if (end || !following) return std::nullopt;
+    level = *following;
+    move_to(level.sigma);
+    return NextBarrier{.mu = level.mu, .is_changed = true};
+  };
+  const NlpOptions options = run_.nlp_options(run_.options.iteration_limit);
+  NlpReport report = run_.nlp.follow(*state_.problem, point, options, level.mu, longest_barrier, next);
+  run_.count_evaluation(std::exchange(report.evaluation_seconds, 0.0));
+  // The loop's last problem is solved to its barrier only.
+  if (end == PathEnd::finished) solve(level.sigma);
+  if (end) return *end;
+  move_back();
+  report.iterations -= counted;
+  take(point, report);
+  return PathEnd::failed;
+}
+
+/// Whether the path ends with the problem that was solved last; that many have failed in a row, 0: it was solved.
+std::optional<PathEnd> RelaxedPath::end_at(bool is_last, int failures) {
+  const bool is_solved = failures == 0;
+  const double sigma = state_.sigma;
+  // A solver that fails near a solution fails for its last digits only.
+  const bool is_usable = is_solved || has_point_;
+  if (is_usable && run_.options.crossover && crossing_.cross({w_, sigma, is_in_loop_, is_last})) {
+    return PathEnd::crossed_over;
+  }
+  if (is_solved && has_settled()) return PathEnd::finished;
+  // Problems of larger sigma are not solved as sharply.
+  const bool is_sharp = is_solved && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
+  if (is_sharp && !run_.options.crossover) return PathEnd::finished;
+  if (failures >= failures_that_end) return PathEnd::failed;
+  if (is_last && !(is_solved && is_nearly_done())) return is_solved ? PathEnd::finished : PathEnd::failed;
+  return std::nullopt;
+}
+
+double RelaxedPath::infeasibility_of(const linalg::Vector& w) {
+  return std::max(certificate::scaled_infeasibility(run_.problem, w), certificate::complementarity(run_.problem, w));
+}
+
+/// The sides stay those of a branch that was refused, and what is left of the path cannot lift the relaxed objective
+/// to it: its own elements have lengths that no branch has.
+bool RelaxedPath::has_settled() const {
+  if (crossing_.same_refused() < settled_problems) return false;
+  const double rise = std::abs(objective_ - last_objective_);
+  return objective_ + 2.0 * rise + Crossing::slack(objective_) < run_.refused->objective;
+}
+
+/// Where no branch was accepted, and the relaxed point itself is a solution but for a digit or two.
+bool RelaxedPath::is_nearly_done() const {
+  const double tolerance = run_.options.tolerance;
+  return run_.options.crossover && !is_in_loop_ && infeasibility_ > tolerance && infeasibility_ <= 100.0 * tolerance &&
+         state_.sigma > 1e-3 * run_.schedule.sigma_final;
+}
+
+/// With the multipliers of the problem before, where they are wanted and there.
+NlpPoint RelaxedPath::start(NlpOptions& options) {
+  auto& relaxed = *state_.problem;
+  NlpPoint point{.w = relaxed.with_elastic_variables(w_), .y = {}, .z_lower = {}, .z_upper = {}};
+  if (run_.options.warm_start != homotopy::WarmStart::primal_dual) return point;
+  if (has_multipliers_) {
+    point.y = state_.point.y;
+    point.z_lower = state_.point.z_lower;
+    point.z_upper = state_.point.z_upper;
+  } else if (attempt_.multipliers.rows.size() == run_.problem.constraints() &&
+             attempt_.multipliers.lower.size() == w_.size() && attempt_.multipliers.upper.size() == w_.size()) {
+    point.y = linalg::Vector::zero(relaxed.constraints());
+    point.y.head(run_.problem.constraints()) = attempt_.multipliers.rows;
+    point.z_lower = point.z_upper = linalg::Vector::ones(relaxed.variables());
+    point.z_lower.head(w_.size()) = attempt_.multipliers.lower;
+    point.z_upper.head(w_.size()) = attempt_.multipliers.upper;
+  } else {
+    return point;
+  }
+  // Products of pairs are of the order of sigma, and so are those of bounds and their multipliers.
+  options.warm_barrier_mu = std::clamp(std::pow(state_.sigma, 1.2), 1e-9, 0.1);
+  options.warm_push = std::clamp(*options.warm_barrier_mu, 1e-9, 1e-5);
+  return point;
+}
+
+/// Makes the functions those of the relaxed problem of this sigma, with the method's terms for a start at w.
+void RelaxedPath::move_to(double sigma) {
+  state_.sigma = run_.relaxed.sigma = sigma;
+  started_ = run_.seconds();
+  run_.problem.relaxed_by(std::min(1.0, sigma / run_.schedule.sigma_initial));
+  state_.problem->set_sigma(sigma);
+  run_.problem.with_method_terms(w_);
+}
+
+/// Makes them those of the problem itself.
+void RelaxedPath::move_back() {
+  run_.problem.without_method_terms();
+  run_.problem.relaxed_by(0.0);
+  state_.problem->set_sigma(state_.sigma);
+}
+
+/// Solves the problem of one sigma; false if it failed.
+bool RelaxedPath::solve(double sigma, int iteration_limit) {
+  move_to(sigma);
+  NlpOptions options = run_.nlp_options(iteration_limit);
+  options.tolerance = std::clamp(1e-4 * sigma, options.tolerance, 1e-6);
+  NlpPoint point = start(options);
+  const NlpReport report = run_.nlp.solve(*state_.problem, point, options);
+  move_back();
+  const bool is_solved = take(point, report);
+  if (is_solved) level_ = {.sigma = sigma, .mu = 0.0};
+  return is_solved;
+}
+
+/// Keeps the point of a relaxed problem if it is no worse than the one before; false if it is none.
+bool RelaxedPath::take(const NlpPoint& point, const NlpReport& report) {
+  const linalg::Vector w = point.w.head(w_.size());
+  const double violation = certificate::scaled_infeasibility(run_.problem, w);
+  const double infeasibility = point.w.all_finite() && !report.diverging ? infeasibility_of(w) : NAN;
+  const bool stands_still =
+      report.termination == Termination::step_size_too_small && violation <= run_.options.tolerance;
+  const bool is_solved = report.termination == Termination::completed || stands_still;
+  has_point_ = false;
+  if (is_solved || infeasibility <= infeasibility_) {
+    has_point_ = violation <= nearly_feasible;
+    w_ = w;
+    infeasibility_ = infeasibility;
+    has_multipliers_ = is_solved;
+    state_.point = point;
+    state_.report = report;
+  }
+  last_objective_ = objective_;
+  objective_ = run_.problem.objective(w_);
+  run_.is_diverging = report.diverging;
+  run_.is_infeasible = run_.is_infeasible || report.termination == Termination::infeasible;
+  run_.failure = is_solved ? "" : report.message;
+  result::HomotopyStep step;
+  step.sigma = state_.sigma;
+  step.objective = run_.problem.objective(w);
+  step.primal_infeasibility = violation;
+  step.complementarity_residual = certificate::complementarity(run_.problem, w);
+  run_.record(step, &report, started_);
+  return is_solved;
+}
+
+}  // namespace saltus::solver

@@ -1,0 +1,69 @@
+// One path of relaxed problems.
+#pragma once
+
+#include <optional>
+
+#include "saltus/solver/crossing_internal.hpp"
+#include "saltus/solver/homotopy/lead.hpp"
+
+namespace saltus::solver {
+
+/// Makes one attempt at the path: its start, its first sigma, its steering.
+struct Attempt {
+  linalg::Vector w;
+  MpccMultipliers multipliers;  ///< may be empty
+  homotopy::Steering steering = homotopy::Steering::direct;
+  double sigma_initial = 1.0;
+  int iteration_limit = 500;  ///< of its first problem
+};
+
+enum class PathEnd {
+  crossed_over,  ///< run.branch is accepted
+  finished,      ///< the last relaxed problem is solved
+  failed,        ///< relaxed problems could not be solved
+  stopped,       ///< run.stopped
+  paused,        ///< at the sigma that was asked for
+};
+
+/// Follows the relaxed problems for falling sigma, and tries to cross over behind each. What it comes to is
+/// run.relaxed only where it is shown.
+class RelaxedPath {
+ public:
+  RelaxedPath(Run& run, Attempt attempt);
+
+  /// Solves one problem after the other, each with barriers of the solver's choice.
+  PathEnd follow();
+  /// Solves the first problem so, those behind it in one loop of the solver, down to sigma = `until`. May be called
+  /// again, to go on. A problem that the loop cannot solve is solved, like those behind it, by itself.
+  PathEnd loop(double until = 0.0);
+  void show() { run_.relaxed = std::move(state_); }
+
+  [[nodiscard]] double objective() const { return objective_; }  ///< of the last point, the user's
+
+ private:
+  [[nodiscard]] std::optional<PathEnd> end_at(bool is_last, int failures);
+  [[nodiscard]] double infeasibility_of(const linalg::Vector& w);
+  [[nodiscard]] bool has_settled() const;
+  [[nodiscard]] bool is_nearly_done() const;
+  [[nodiscard]] NlpPoint start(NlpOptions& options);
+  void move_to(double sigma);
+  void move_back();
+  bool solve(double sigma, int iteration_limit = 500);
+  bool take(const NlpPoint& point, const NlpReport& report);
+  PathEnd run_loop(double until);
+
+  Run& run_;
+  Attempt attempt_;
+  Crossing crossing_;
+  RelaxedState state_;
+  linalg::Vector w_;
+  double infeasibility_ = 0.0;
+  bool has_multipliers_ = false;
+  bool has_point_ = false;  ///< of the last relaxed problem, near enough to feasible ones for a branch
+  double objective_ = 0.0, last_objective_ = 0.0;  ///< of the last two relaxed points
+  std::optional<homotopy::Level> level_;           ///< solved last
+  double started_ = 0.0;                           ///< seconds of the run at the last move
+  bool is_in_loop_ = false;
+};
+
+}  // namespace saltus::solver
