@@ -53,6 +53,44 @@ class OptimizeBadInput(tool.ToolTest):
         self.assertIn("optimal control", text)
 
 
+FOLLOW = """
+[model]
+name = "follow a table"
+[states]
+x = 0
+v = 0
+[controls]
+u = { lower = -5, upper = 5 }
+[tables.r]
+x = [0, 1, 2]
+y = [0, 1, 0]
+[dynamics]
+x = "v"
+v = "u - 0.5*sign(v)"
+[optimize]
+horizon = 2
+control_intervals = 4
+running_cost = "(x - r(t))^2"
+"""
+
+
+class OptimizeTables(tool.ToolTest):
+    def test_a_table_of_the_time_in_a_cost(self):
+        self.write("follow.toml", FOLLOW)
+        text, _ = self.run_tool("check", "follow.toml", code=0)
+        self.assertNotIn("never used", text)
+        self.run_tool("optimize", "follow.toml", "--quiet", "--out", "r.json", code=0)
+        objective = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["objective"]
+        self.assertLess(abs(objective - 0.0071556), 1e-7)  # of (x - min(t, 2 - t))^2
+
+    def test_a_break_inside_an_interval(self):
+        self.write("follow.toml", FOLLOW)
+        for command in ("check", "optimize"):
+            _, err = self.run_tool(command, "follow.toml", "--set", "optimize.control_intervals=3", code=2)
+            self.assertIn("follow.toml:18:22: error: 'r(t)' breaks at t = 1, inside control interval 1", err)
+            self.assertIn("control_intervals = 4 has an end there", err)
+
+
 IDLE = """
 [model]
 name = "idle"

@@ -64,7 +64,8 @@ struct OcpStart {
 };
 
 struct OcpInterval {
-  std::vector<int> shared;  ///< places, SharedSizes
+  std::vector<int> shared;         ///< places, SharedSizes
+  std::vector<int> shared_at_end;  ///< the same with what is held as it is at the time itself of its end
   int first_element = 0, elements = 0;
   mpcc::IndexRange own;      ///< variables shared by its elements
   std::vector<int> lengths;  ///< variables hhat; empty for one element or fixed lengths
@@ -111,8 +112,14 @@ struct OcpStructure {
                                                                     const reformulation::Dcs& dcs,
                                                                     const std::vector<int>& elements);
 
-/// Returns values of Dcs::held in every interval, rows; an error where one changes inside an interval.
-[[nodiscard]] Expected<linalg::Matrix> held_in_intervals(const model::Ocp& ocp, const reformulation::Dcs& dcs,
-                                                         const casadi::Function& arguments, int intervals);
+/// Holds values of Dcs::held, a row per interval.
+struct HeldInIntervals {
+  linalg::Matrix inside;
+  linalg::Matrix at_end;  ///< at the time itself at which the interval ends
+};
+/// Returns them, or an error where one on which the problem depends changes inside an interval, or with a control or a
+/// free parameter.
+[[nodiscard]] Expected<HeldInIntervals> held_in_intervals(const model::Ocp& ocp, const reformulation::Dcs& dcs,
+                                                          const casadi::Function& arguments, int intervals);
 
 }  // namespace saltus::discretization

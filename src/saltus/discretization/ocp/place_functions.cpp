@@ -115,19 +115,26 @@ class FunctionPlacer {
   }
 
   /// Time, state and selections of a node, then what its interval shares.
-  [[nodiscard]] std::vector<int> node_places(int e) const {
+  [[nodiscard]] std::vector<int> node_places(int e, const std::vector<int>& shared) const {
     auto places = made_.end_places(e);
-    const auto& shared = made_.interval[at(made_.element[at(e)].interval)].shared;
     places.insert(places.end(), shared.begin(), shared.end());
     if (!kernel_.depends_on_time) places.front() = variables_.zero();
     return places;
+  }
+  /// Of what holds in the interval up to its end.
+  [[nodiscard]] std::vector<int> node_places(int e) const {
+    return node_places(e, made_.interval[at(made_.element[at(e)].interval)].shared);
+  }
+  /// Of what is asked at the time of the end: its functions of time have their values there.
+  [[nodiscard]] std::vector<int> places_at_end(int e) const {
+    return node_places(e, made_.interval[at(made_.element[at(e)].interval)].shared_at_end);
   }
 
   void add_node_functions() {
     const bool each_element = ocp_.path_at != ConstraintPoints::intervals;
     if (!is_empty(kernel_.node_squares)) {
       Placed& placed = add(kernel_.node_squares, "least_squares", Term::least_squares);
-      for (int k = 0; k < made_.intervals; ++k) copy(placed, node_places(last_element(k)), k, last_element(k));
+      for (int k = 0; k < made_.intervals; ++k) copy(placed, places_at_end(last_element(k)), k, last_element(k));
     }
     if (!is_empty(kernel_.first_rows)) {
       auto places = first_places();
@@ -171,12 +178,12 @@ class FunctionPlacer {
     const int last = static_cast<int>(made_.element.size()) - 1;
     const int k = made_.intervals - 1;
     if (!is_empty(kernel_.terminal))
-      copy(add(kernel_.terminal, "terminal_cost", Term::terminal), node_places(last), k, last);
+      copy(add(kernel_.terminal, "terminal_cost", Term::terminal), places_at_end(last), k, last);
     if (!is_empty(kernel_.end_squares)) {
-      copy(add(kernel_.end_squares, "least_squares", Term::least_squares), node_places(last), k, last);
+      copy(add(kernel_.end_squares, "least_squares", Term::least_squares), places_at_end(last), k, last);
     }
     if (is_empty(kernel_.terminal_rows)) return;
-    auto places = node_places(last);
+    auto places = places_at_end(last);
     const auto soft = variables_.slacks(ocp_.terminal, largest_terminal_);
     places.insert(places.end(), soft.begin(), soft.end());
     copy(add(kernel_.terminal_rows, "terminal", Term::none, &kernel_.terminal_bounds), std::move(places), k, last);

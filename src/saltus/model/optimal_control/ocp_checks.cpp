@@ -25,6 +25,24 @@ std::string control_in(const SX& expression, const System& system) {
   return {};
 }
 
+/// States but a clock, which is the time, controls, and the selections and constants of cells that change with them.
+SX moving_symbols(const Ocp& ocp) {
+  const System& system = ocp.system;
+  SX moving = system.u;
+  for (int i = 0; i < static_cast<int>(system.state_names.size()); ++i) {
+    if (!ocp.clock || ocp.clock->state != i) moving = SX::vertcat({moving, system.x(i)});
+  }
+  // Arguments hold symbols of earlier cells, functions those of cells and of earlier functions.
+  for (const auto& cell : system.cells) {
+    if (SX::depends_on(cell.argument, moving)) moving = SX::vertcat({moving, cell.symbols});
+  }
+  for (std::size_t j = 0; j < system.switching.size(); ++j) {
+    if (!SX::depends_on(system.switching[j].psi, moving)) continue;
+    moving = SX::vertcat({moving, system.alpha(static_cast<casadi_int>(j))});
+  }
+  return moving;
+}
+
 std::optional<Error> check_functions(const Ocp& ocp, const SourceLocation& table) {
   const System& system = ocp.system;
   for (std::size_t j = 0; j < system.switching.size(); ++j) {
@@ -130,17 +148,7 @@ Error unknown_guess(const GuessDescription& stated, const Ocp& ocp) {
 
 std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& stated, const Ocp& ocp) {
   const auto& system = ocp.system;
-  const SX expression = system.outputs(guess.output);
-  if (SX::depends_on(expression, system.alpha)) {
-    return mistake(fmt::format("the guess of '{}' has kinks or jumps", stated.name),
-                   "give a smooth expression of t, or the name of a stored result", stated.location);
-  }
-  SX moving = system.u;
-  for (int i = 0; i < static_cast<int>(system.state_names.size()); ++i) {
-    // A clock is the time.
-    if (!ocp.clock || ocp.clock->state != i) moving = SX::vertcat({moving, system.x(i)});
-  }
-  if (!SX::depends_on(expression, moving)) return std::nullopt;
+  if (!SX::depends_on(system.outputs(guess.output), moving_symbols(ocp))) return std::nullopt;
   return mistake(fmt::format("the guess of '{}' depends on states or controls", stated.name),
                  "a guess is an expression of t and parameters", stated.location);
 }
