@@ -91,6 +91,50 @@ class OptimizeTables(tool.ToolTest):
             self.assertIn("control_intervals = 4 has an end there", err)
 
 
+PERIODIC = """
+[model]
+name = "periodic block"
+[states]
+q = { initial = 0, lower = -1, upper = 1, free = true }
+v = { initial = 0.5, lower = -3, upper = 3, free = true }
+[controls]
+u = { lower = -4, upper = 4 }
+[dynamics]
+q = "v"
+v = "u - q - 0.5*sign(v)"
+[optimize]
+horizon = 6
+control_intervals = 12
+running_cost = "0.1*u^2 + (q - sin(t*pi/3))^2"
+terminal_constraints = ["q == initial(q)", "v == initial(v)"]
+"""
+
+
+class OptimizeInitialValues(tool.ToolTest):
+    def test_a_periodic_problem_and_its_result(self):
+        self.write("periodic.toml", PERIODIC)
+        self.run_tool("check", "periodic.toml", code=0)
+        self.run_tool("optimize", "periodic.toml", "--quiet", "--out", "r.json", code=0)
+        r = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        for first, last in zip(r["trajectory"]["x"][0], r["final"]["x"], strict=True):
+            self.assertLess(abs(last - first), 1e-7)
+        self.assertEqual(r["parameters"], {})
+        self.assertEqual(r["model"]["parameters"], {})
+        text, _ = self.run_tool("optimize", "periodic.toml", "--start", "r.json", code=0)
+        self.assertIn("completed", text)
+        self.run_tool("simulate", "r.json", "--until", "1", "--quiet", code=0)
+
+    def test_elsewhere(self):
+        self.write("cost.toml", PERIODIC.replace("(q - sin(t*pi/3))", "(q - initial(q))"))
+        for command in ("check", "optimize"):
+            _, err = self.run_tool(command, "cost.toml", code=2)
+            self.assertIn("cost.toml:15:32: error: 'initial(q)' may stand in terminal_constraints and terminal_cost of", err)
+            self.assertIn("write the number or the parameter that is the initial value in [states]", err)
+        self.write("input.toml", PERIODIC.replace("initial(v)", "initial(u)"))
+        _, err = self.run_tool("optimize", "input.toml", code=2)
+        self.assertIn("input.toml:16:58: error: expected the name of a state in initial(...), found 'u'", err)
+
+
 IDLE = """
 [model]
 name = "idle"

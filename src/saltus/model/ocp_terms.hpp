@@ -29,6 +29,11 @@ struct OcpLeastSquares {
   CostPoints at = CostPoints::intervals;
 };
 
+/// States p_parameter = x_state(from).
+struct OcpInitialValue {
+  int state = 0, parameter = 0;
+};
+
 /// Holds what initial_guess says of one quantity.
 struct OcpGuess {
   enum class Kind { state, control, parameter };
@@ -41,6 +46,7 @@ struct OcpHorizon {
   bool free = false;
   double value = 1.0;  ///< > 0; the guess of a free one
   double lower = 0.0, upper = 0.0;
+  double time_weight = 0.0;  ///< w, of w T in the objective; 0: none
 };
 
 /// Holds the time frozen by hand, or for contacts and hysteresis: x_state is physical time, dx_state / dtau its speed.

@@ -18,7 +18,7 @@ using mpcc::VectorView;
 OcpProblem::Implementation::Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp,
                                            const reformulation::Dcs& dcs)
     : structure(std::move(made)),
-      time_weight(ocp.time_weight),
+      time_weight(ocp.horizon.time_weight),
       state_names(ocp.system.state_names),
       selection_names(names_of_selections(ocp.system, dcs)) {
   for (const auto& constraint : ocp.path) path_names.push_back(constraint.name);

@@ -227,7 +227,20 @@ class FunctionPlacer {
     }
   }
 
+  /// x_state at the start is its parameter.
+  void add_initial_values() {
+    const auto& free = kernel_.free_parameters;
+    for (const auto& [state, parameter] : ocp_.initial_values) {
+      const auto place = std::lower_bound(free.begin(), free.end(), parameter) - free.begin();
+      if (!ocp_.free_states[at(state)]) continue;
+      made_.linear.push_back({{{made_.start.state[at(state)], 1.0}, {made_.parameters[at(place)], -1.0}},
+                              0.0,
+                              fmt::format("initial({})", ocp_.system.state_names[at(state)])});
+    }
+  }
+
   void add_linear_rows() {
+    add_initial_values();
     for (int k = 0; k < made_.intervals; ++k) {
       const auto& interval = made_.interval[at(k)];
       if (!interval.lengths.empty()) {

@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/optimal_control/initial_values_internal.hpp"
 #include "saltus/model/optimal_control/ocp_checks_internal.hpp"
 #include "saltus/model/optimal_control/ocp_quantities_internal.hpp"
 #include "saltus/model/optimal_control/with_slacks_internal.hpp"
@@ -39,12 +40,14 @@ struct PlannedConstraint {
 class OcpBuild {
  public:
   OcpBuild(const Description& description, const std::vector<Override>& overrides)
-      : stated_(*description.optimize),
-        slacks_(description),
-        overrides_(overrides),
+      : initials_(description, overrides),
+        stated_(*initials_.description().optimize),
+        slacks_(initials_.description()),
+        overrides_(initials_.overrides()),
         quantities_(slacks_.description()) {}
 
   [[nodiscard]] Expected<Ocp> run() {
+    if (initials_.error()) return tl::unexpected(*initials_.error());
     if (auto error = plan()) return tl::unexpected(*error);
     auto system = quantities_.build(overrides_);
     if (!system) return tl::unexpected(system.error());
@@ -218,7 +221,7 @@ class OcpBuild {
     if (weight_ >= 0) {
       const auto weight = quantities_.value(weight_);
       if (!weight) return weight.error();
-      ocp_.time_weight = *weight;
+      ocp_.horizon.time_weight = *weight;
     }
     return check_horizon(horizon, stated_.horizon.location);
   }
@@ -331,6 +334,8 @@ class OcpBuild {
     for (const auto& state : description().states) ocp_.free_states.push_back(state.free);
     const auto& system = ocp_.system;
     ocp_.free_states.resize(system.state_names.size(), false);
+    if (auto error = check_initial_states(ocp_, description())) return error;
+    take_initial_values();
     ocp_.free_parameters.assign(system.parameter_names.size(), false);
     ocp_.parameter_lower = ocp_.parameter_upper = system.parameter_values;
     for (std::size_t i = 0; i < parameter_bounds_.size(); ++i) {
@@ -348,7 +353,17 @@ class OcpBuild {
                                    *upper, stated.location))
         return error;
     }
-    return check_initial_states(ocp_, description());
+    return std::nullopt;
+  }
+
+  void take_initial_values() {
+    const auto place = [](const std::vector<std::string>& names, const std::string& name) {
+      return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+    };
+    for (const auto& state : initials_.states()) {
+      ocp_.initial_values.push_back({place(ocp_.system.state_names, state),
+                                     place(ocp_.system.parameter_names, InitialValues::parameter_of(state))});
+    }
   }
 
   [[nodiscard]] bool is_chosen(const std::string& name) const {
@@ -379,7 +394,8 @@ class OcpBuild {
       if (is_chosen(name)) return chosen_in_plant(name, value->location);
     }
     auto overrides = overrides_;
-    overrides.insert(overrides.end(), stated_.plant.begin(), stated_.plant.end());
+    const auto plant = initials_.with_parameters(stated_.plant);
+    overrides.insert(overrides.end(), plant.begin(), plant.end());
     auto error = build(overrides, ocp_.plant);
     if (error) error->context = {"in [optimize.plant]"};
     return error;
@@ -417,6 +433,7 @@ class OcpBuild {
     return std::nullopt;
   }
 
+  InitialValues initials_;
   const OcpDescription& stated_;
   ControlSlacks slacks_;
   const std::vector<Override>& overrides_;

@@ -61,6 +61,9 @@ class OcpBuilder {
                            const Softness& soft = {});
   /// Adds 0 <= a _|_ b >= 0 along the path.
   void complementarity(const casadi::SX& a, const casadi::SX& b);
+  /// Returns the value of a state at the start of the horizon, for terminal costs and constraints:
+  /// terminal_constraint("q == initial(q)", 0, q - problem.initial("q"), 0) states a periodic problem.
+  [[nodiscard]] casadi::SX initial(const std::string& state);
   /// Lets the initial value be chosen between the bounds of the state.
   void free_state(const std::string& name);
   void free_parameter(const std::string& name, double lower, double upper);

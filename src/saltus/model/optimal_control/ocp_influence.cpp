@@ -97,10 +97,10 @@ class Influence {
 
 std::vector<std::string> idle_costs(const Ocp& ocp) {
   std::vector<std::string> found;
-  if (!ocp.running_cost && !ocp.terminal_cost && ocp.time_weight == 0.0 && ocp.least_squares.empty()) {
+  if (!ocp.running_cost && !ocp.terminal_cost && ocp.horizon.time_weight == 0.0 && ocp.least_squares.empty()) {
     found.emplace_back("nothing is minimised: every feasible point is as good as any other");
   }
-  if (ocp.time_weight != 0.0 && !ocp.horizon.free) {
+  if (ocp.horizon.time_weight != 0.0 && !ocp.horizon.free) {
     found.emplace_back("minimize_time adds a constant: the horizon is fixed");
   }
   try {
