@@ -135,6 +135,17 @@ class OptimizeInitialValues(tool.ToolTest):
         self.assertIn("input.toml:16:58: error: expected the name of a state in initial(...), found 'u'", err)
 
 
+class OptimizeComplementarities(tool.ToolTest):
+    def test_a_control_in_a_pair_is_said_to_be_constant(self):
+        model = FOLLOW.replace("(x - r(t))^2", "(x - 0.1*t)^2") + 'path_complementarities = [["x", "u + 5"]]\n'
+        self.write("pair.toml", model)
+        expected = "pair.toml:19: the pair ['x', 'u+5'] of path_complementarities has the control 'u', which is constant in each"
+        text, _ = self.run_tool("check", "pair.toml", code=0)
+        self.assertIn(expected, " ".join(text.split()))
+        _, err = self.run_tool("optimize", "pair.toml", "--time-limit", "10", "--quiet", code=0)
+        self.assertIn(expected, err)
+
+
 IDLE = """
 [model]
 name = "idle"

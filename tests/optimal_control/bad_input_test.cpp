@@ -182,6 +182,19 @@ TEST(OcpBadInput, BoundsAndGuesses) {
                  {"the guess of 'q' depends on states or controls"});
 }
 
+TEST(OcpWarnings, AControlInAPairIsConstantInAnInterval) {
+  const auto warnings_of = [](const std::string& pair) {
+    const auto problem = stated(model_of({.cost = "k*u^2", .problem = "path_complementarities = [" + pair + "]"}));
+    return fmt::format("{}", fmt::join(problem.ocp.warnings, "\n"));
+  };
+  const auto of_control = warnings_of("['q + 1', 'u + 2']");
+  for (const std::string part : {"test.toml:20: the pair ['q+1', 'u+2'] of path_complementarities has the control 'u'",
+                                 "constant in each control interval", "make 'u' a state with a rate"}) {
+    EXPECT_NE(of_control.find(part), std::string::npos) << of_control;
+  }
+  EXPECT_EQ(warnings_of("['q + 1', 'v + 2']"), "");
+}
+
 TEST(OcpNames, WhatTheProblemAloneUsesIsUsed) {
   const auto file = io::parse_model(
       model_of(

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/expression/parser.hpp"
 #include "saltus/model/mechanics/mechanics_internal.hpp"
 #include "saltus/model/optimal_control/ocp_checks_internal.hpp"
+#include "saltus/model/statement/statement_internal.hpp"
 
 namespace saltus::model {
 namespace {
@@ -66,6 +68,28 @@ std::optional<Error> check_functions(const Ocp& ocp, const SourceLocation& table
     }
   }
   return std::nullopt;
+}
+
+/// Says of pairs with a control that it is constant in an interval: another problem than the one with controls that
+/// follow the time.
+void warn_of_controls_in_pairs(Ocp& ocp, const Description& description) {
+  const auto& stated = description.optimize->path_complementarities;
+  for (std::size_t i = 0; i < ocp.complementarities.size(); ++i) {
+    const auto& [first, second] = ocp.complementarities[i];
+    const System& system = ocp.system;
+    const std::string control = control_in(SX::vertcat({system.outputs(first), system.outputs(second)}), system);
+    if (control.empty()) continue;
+    const bool is_written = i < stated.size();
+    const std::string pair = is_written ? fmt::format("['{}', '{}']", expression::to_text(*stated[i].first),
+                                                      expression::to_text(*stated[i].second))
+                                        : std::to_string(i + 1);
+    ocp.warnings.push_back(located(
+        is_written ? stated[i].location : SourceLocation{},
+        fmt::format("the pair {} of path_complementarities has the control '{}', which is constant in each control "
+                    "interval: a side that is positive with it is so in the whole interval. Take more "
+                    "control_intervals, or make '{}' a state with a rate, if sides change within one",
+                    pair, control, control)));
+  }
 }
 
 }  // namespace
@@ -201,6 +225,7 @@ std::optional<Error> check(Ocp& ocp, const Description& description) {
       ocp.warnings.push_back(fmt::format("[[events]] with stop = true do not stop an optimisation"));
     }
   }
+  warn_of_controls_in_pairs(ocp, description);
   return check_functions(ocp, location);
 }
 

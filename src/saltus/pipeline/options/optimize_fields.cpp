@@ -171,7 +171,7 @@ constexpr std::array keys_of_problem{
     ProblemKey{"path_constraints_at", "intervals, elements, stages", "Where they are required; intervals without."},
     ProblemKey{"terminal_constraints", "a list of comparisons", "Hold at the end; initial(q) is q at the start."},
     ProblemKey{"path_complementarities", "a list of pairs",
-               "[[\"a\", \"b\"]]: a >= 0, b >= 0, one of them 0, at every stage."},
+               "[[\"a\", \"b\"]]: a >= 0, b >= 0, one of them 0, at every stage; controls in them are constant in an interval."},
     ProblemKey{"initial_guess", "a table", "Where to begin: { q = \"t\" }, or { result = \"r.json\" }."},
     ProblemKey{
         "plant", "a table",
