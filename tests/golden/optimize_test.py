@@ -146,6 +146,42 @@ class OptimizeComplementarities(tool.ToolTest):
         self.assertIn(expected, err)
 
 
+FIT = """
+[model]
+name = "fit"
+[parameters]
+k = { initial = 2, lower = 1, upper = 5, free = true }
+[states]
+x = -0.55
+[dynamics]
+x = "if(x > 0, k, 1)"
+[optimize]
+horizon = 1.1
+control_intervals = 2
+[[optimize.least_squares]]
+of = ["x"]
+reference = { file = "data.csv" }
+at = "times"
+"""
+
+
+class OptimizeMeasurements(tool.ToolTest):
+    def test_a_parameter_from_times_of_their_own(self):
+        self.write("fit.toml", FIT)
+        rows = "t,x\n0.2,-0.35\n0.5,-0.05\n0.6,0.15\n0.9,1.05\n"  # switches at t = 0.55
+        self.write("data.csv", rows)
+        self.run_tool("optimize", "fit.toml", "--quiet", "--out", "r.json", code=0)
+        r = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertLess(abs(r["parameters"]["k"] - 3), 1e-7)
+        for more, expected in (("1.3,1\n", "data.csv:6:1: error: row 5: the time 1.3 is outside of the horizon, from 0 to 1.1"),
+                               ("0.8,1\n", "data.csv:6:1: error: row 5: the time 0.8 is behind 0.9, of the row before"),
+                               ("nan,1\n", "data.csv:6:1: error: expected a finite number, found 'nan'")):
+            self.write("data.csv", rows + more)
+            for command in ("check", "optimize"):
+                _, err = self.run_tool(command, "fit.toml", code=2)
+                self.assertIn(expected, err)
+
+
 IDLE = """
 [model]
 name = "idle"

@@ -24,9 +24,12 @@ struct OcpConstraint {
 struct OcpLeastSquares {
   std::vector<int> of;
   std::vector<int> reference;  ///< outputs of t and p; empty: 0, or samples
-  linalg::Matrix samples;      ///< one row per interval; 0 x 0 without
+  linalg::Matrix samples;      ///< one row per interval, or per time; 0 x 0 without
+  std::vector<double> times;   ///< of measurements, ascending: at CostPoints::times, where it is summed up
   linalg::Matrix weight;       ///< symmetric
   CostPoints at = CostPoints::intervals;
+  /// Returns how many numbers of it every interval has.
+  [[nodiscard]] linalg::Index samples_per_interval() const { return times.empty() ? samples.cols() : 0; }
 };
 
 /// States p_parameter = x_state(from).

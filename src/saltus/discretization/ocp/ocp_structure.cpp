@@ -126,7 +126,7 @@ class StructureBuilder {
                                                                fmt::format("speed of time[{}]", k))
                                          : variables_.constant(1.0));
     for (const auto& term : ocp_.least_squares) {
-      for (linalg::Index i = 0; i < term.samples.cols(); ++i)
+      for (linalg::Index i = 0; i < term.samples_per_interval(); ++i)
         interval.shared.push_back(variables_.constant(term.samples(k, i)));
     }
     interval.shared_at_end = interval.shared;

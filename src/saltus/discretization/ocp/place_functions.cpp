@@ -53,6 +53,7 @@ class FunctionPlacer {
     add_stage_rows();
     add_node_functions();
     add_terminal_functions();
+    if (has_measurements(ocp_)) place_measurements(ocp_, variables_, made_);
     add_boundaries();
     add_departures();
   }

@@ -64,6 +64,9 @@ class OcpBuild {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }
     if (auto error = take_physical()) return tl::unexpected(*error);
+    for (std::size_t i = 0; i < squares_.size(); ++i) {
+      if (auto error = check_times(ocp_.least_squares[i], *squares_[i].stated, ocp_)) return tl::unexpected(*error);
+    }
     ocp_.warnings = ocp_.system.warnings;
     ocp_.places = switching_places(description());
     if (auto error = check(ocp_, slacks_.description())) return tl::unexpected(*error);
@@ -276,6 +279,7 @@ class OcpBuild {
     for (const auto& plan : squares_) {
       OcpLeastSquares term;
       term.at = plan.stated->at;
+      term.times = plan.stated->times;
       for (const int quantity : plan.of) term.of.push_back(quantities_.output(quantity));
       for (const int quantity : plan.reference) term.reference.push_back(quantities_.output(quantity));
       const auto n = static_cast<linalg::Index>(term.of.size());

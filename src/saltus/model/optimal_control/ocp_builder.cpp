@@ -67,6 +67,20 @@ struct OcpBuilder::Parts {
     fail(check_constraint(constraint, {}));
     list.push_back(std::move(constraint));
   }
+  void add_squares(OcpLeastSquares term, const linalg::Matrix& weight) {
+    const auto n = static_cast<linalg::Index>(term.of.size());
+    term.weight = weight.size() == 0 ? linalg::Matrix::identity(n, n) : weight;
+    if (term.weight.rows() != n || term.weight.cols() != n) {
+      Error mistake;
+      mistake.code = ErrorCode::invalid_model;
+      mistake.message =
+          fmt::format("the weight of least_squares is {} x {} for {} expressions", weight.rows(), weight.cols(), n);
+      mistake.remedy = "give a square matrix, or none";
+      return fail(std::move(mistake));
+    }
+    fail(check_least_squares(term, {}));
+    ocp.least_squares.push_back(std::move(term));
+  }
   void unknown(const std::string& what, const std::string& name, const std::vector<std::string>& known) {
     Error mistake;
     mistake.code = ErrorCode::unknown_name;
@@ -177,6 +191,7 @@ struct OcpBuilder::Parts {
     if (error) return tl::unexpected(*error);
     take_initial_values();
     take_guesses();
+    for (const auto& term : ocp.least_squares) fail(check_times(term, {}, ocp));
     const Description nowhere = without_places();
     fail(check_initial_states(ocp, nowhere));
     fail(check(ocp, nowhere));
@@ -204,22 +219,30 @@ void OcpBuilder::terminal_cost(const SX& cost) { parts_->ocp.terminal_cost = par
 
 void OcpBuilder::least_squares(const std::vector<SX>& of, const std::vector<SX>& reference,
                                const linalg::Matrix& weight, CostPoints at) {
-  const auto n = static_cast<linalg::Index>(of.size());
   OcpLeastSquares term;
   term.at = at;
   for (const auto& e : of) term.of.push_back(parts_->add(e));
   for (const auto& e : reference) term.reference.push_back(parts_->add(e));
-  term.weight = weight.size() == 0 ? linalg::Matrix::identity(n, n) : weight;
-  if (term.weight.rows() != n || term.weight.cols() != n) {
+  parts_->add_squares(std::move(term), weight);
+}
+
+void OcpBuilder::measurements(const std::vector<SX>& of, const std::vector<double>& times,
+                              const linalg::Matrix& samples, const linalg::Matrix& weight) {
+  OcpLeastSquares term;
+  term.at = CostPoints::times;
+  term.times = times;
+  term.samples = samples;
+  for (const auto& e : of) term.of.push_back(parts_->add(e));
+  const auto rows = static_cast<linalg::Index>(times.size()), columns = static_cast<linalg::Index>(of.size());
+  if (rows == 0 || samples.rows() != rows || samples.cols() != columns) {
     Error mistake;
     mistake.code = ErrorCode::invalid_model;
     mistake.message =
-        fmt::format("the weight of least_squares is {} x {} for {} expressions", weight.rows(), weight.cols(), n);
-    mistake.remedy = "give a square matrix, or none";
+        fmt::format("{} x {} samples for {} times and {} expressions", samples.rows(), samples.cols(), rows, columns);
+    mistake.remedy = "give one row per time, one column per expression";
     return parts_->fail(std::move(mistake));
   }
-  parts_->fail(check_least_squares(term, {}));
-  parts_->ocp.least_squares.push_back(std::move(term));
+  parts_->add_squares(std::move(term), weight);
 }
 
 void OcpBuilder::path_constraint(const std::string& name, double lower, const SX& e, double upper,

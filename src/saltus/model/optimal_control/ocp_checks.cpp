@@ -14,6 +14,9 @@ namespace {
 
 using casadi::SX;
 
+/// Times of measurements may be so much outside of the horizon, in its lengths: a rounding.
+constexpr double beside_horizon = 1e-9;
+
 Error mistake(std::string message, std::string remedy, const SourceLocation& location,
               ErrorCode code = ErrorCode::invalid_model) {
   return {code, std::move(message), std::move(remedy), location, {"in [optimize]"}};
@@ -133,6 +136,36 @@ Error wrong_sample_width(const LeastSquaresDescription& stated, std::size_t row)
   return mistake(fmt::format("row {} of the reference '{}' has {} numbers, there are {} expressions", row + 1,
                              stated.file, stated.samples[row].size(), stated.of.size()),
                  "one column per expression of `of`, in their order", stated.location);
+}
+
+std::optional<Error> check_times(const OcpLeastSquares& term, const LeastSquaresDescription& stated, const Ocp& ocp) {
+  if (term.times.empty()) return std::nullopt;
+  if (ocp.horizon.free) {
+    return mistake("least_squares at times, and the horizon is free",
+                   "fix the horizon: it is not known in which interval a time lies", stated.location,
+                   ErrorCode::not_available);
+  }
+  if (ocp.clock) {
+    return mistake("least_squares at times, and time stands still at contacts, by hysteresis or by hand",
+                   "give references at the ends of intervals: at = \"intervals\"", stated.location,
+                   ErrorCode::not_available);
+  }
+  const double last = ocp.from + ocp.horizon.value;
+  const double rounding = beside_horizon * ocp.horizon.value;
+  for (std::size_t row = 0; row < term.times.size(); ++row) {
+    const double time = term.times[row];
+    const auto place = row < stated.rows.size() ? stated.rows[row] : stated.location;
+    if (row > 0 && time < term.times[row - 1]) {
+      return mistake(
+          fmt::format("row {}: the time {} is behind {}, of the row before", row + 1, time, term.times[row - 1]),
+          "sort the rows by their times", place);
+    }
+    if (time >= ocp.from - rounding && time <= last + rounding) continue;
+    return mistake(
+        fmt::format("row {}: the time {} is outside of the horizon, from {} to {}", row + 1, time, ocp.from, last),
+        "leave the row out, or change `from` and `horizon`", place);
+  }
+  return std::nullopt;
 }
 
 std::optional<Error> check_least_squares(const OcpLeastSquares& term, const LeastSquaresDescription& stated) {

@@ -164,7 +164,7 @@ std::unique_ptr<discretization::OcpProblem> stored_problem(const model::Ocp& ocp
   std::vector<int> elements;
   for (const auto& lengths : stored.h) elements.push_back(static_cast<int>(lengths.size()));
   const bool has_samples = std::any_of(ocp.least_squares.begin(), ocp.least_squares.end(),
-                                       [&](const auto& term) { return term.samples.size() > 0; });
+                                       [&](const auto& term) { return term.samples_per_interval() > 0; });
   if (elements.empty() || has_samples) return nullptr;
   auto problem = discretization::OcpProblem::make(kernel, ocp, dcs, elements);
   const bool fits = problem && std::ssize(stored.primal) == (*problem)->variables();
