@@ -54,6 +54,9 @@ max = _function("max", 2, "The largest one of two or more.")
 min = _function("min", 2, "The smallest one of two or more.")
 floor = _function("floor", 1, "The largest integer not above e, an expression of time and parameters.", "t")
 mod = _function("mod", 2, "e - m floor(e/m), of an expression of time and parameters; of others for outputs only.", "t")
+initial = _function(
+    "initial", 1, "A state at the start of the horizon, in terminal constraints and costs of ``optimize``.", "x"
+)
 
 
 @entry_by_entry

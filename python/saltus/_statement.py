@@ -18,7 +18,7 @@ Rates = typing.Mapping[typing.Any, Operand]
 Entries = dict[str, typing.Any]
 #: Names that the language has already.
 RESERVED = frozenset(
-    "t pi and or not if step sign abs max min floor mod sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 "
+    "t pi and or not if step sign abs max min floor mod initial sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 "
     "sqrt hypot pow".split()
 )
 

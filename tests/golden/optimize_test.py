@@ -53,6 +53,135 @@ class OptimizeBadInput(tool.ToolTest):
         self.assertIn("optimal control", text)
 
 
+FOLLOW = """
+[model]
+name = "follow a table"
+[states]
+x = 0
+v = 0
+[controls]
+u = { lower = -5, upper = 5 }
+[tables.r]
+x = [0, 1, 2]
+y = [0, 1, 0]
+[dynamics]
+x = "v"
+v = "u - 0.5*sign(v)"
+[optimize]
+horizon = 2
+control_intervals = 4
+running_cost = "(x - r(t))^2"
+"""
+
+
+class OptimizeTables(tool.ToolTest):
+    def test_a_table_of_the_time_in_a_cost(self):
+        self.write("follow.toml", FOLLOW)
+        text, _ = self.run_tool("check", "follow.toml", code=0)
+        self.assertNotIn("never used", text)
+        self.run_tool("optimize", "follow.toml", "--quiet", "--out", "r.json", code=0)
+        objective = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["objective"]
+        self.assertLess(abs(objective - 0.0071556), 1e-7)  # of (x - min(t, 2 - t))^2
+
+    def test_a_break_inside_an_interval(self):
+        self.write("follow.toml", FOLLOW)
+        for command in ("check", "optimize"):
+            _, err = self.run_tool(command, "follow.toml", "--set", "optimize.control_intervals=3", code=2)
+            self.assertIn("follow.toml:18:22: error: 'r(t)' breaks at t = 1, inside control interval 1", err)
+            self.assertIn("control_intervals = 4 has an end there", err)
+
+
+PERIODIC = """
+[model]
+name = "periodic block"
+[states]
+q = { initial = 0, lower = -1, upper = 1, free = true }
+v = { initial = 0.5, lower = -3, upper = 3, free = true }
+[controls]
+u = { lower = -4, upper = 4 }
+[dynamics]
+q = "v"
+v = "u - q - 0.5*sign(v)"
+[optimize]
+horizon = 6
+control_intervals = 12
+running_cost = "0.1*u^2 + (q - sin(t*pi/3))^2"
+terminal_constraints = ["q == initial(q)", "v == initial(v)"]
+"""
+
+
+class OptimizeInitialValues(tool.ToolTest):
+    def test_a_periodic_problem_and_its_result(self):
+        self.write("periodic.toml", PERIODIC)
+        self.run_tool("check", "periodic.toml", code=0)
+        self.run_tool("optimize", "periodic.toml", "--quiet", "--out", "r.json", code=0)
+        r = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        for first, last in zip(r["trajectory"]["x"][0], r["final"]["x"], strict=True):
+            self.assertLess(abs(last - first), 1e-7)
+        self.assertEqual(r["parameters"], {})
+        self.assertEqual(r["model"]["parameters"], {})
+        text, _ = self.run_tool("optimize", "periodic.toml", "--start", "r.json", code=0)
+        self.assertIn("completed", text)
+        self.run_tool("simulate", "r.json", "--until", "1", "--quiet", code=0)
+
+    def test_elsewhere(self):
+        self.write("cost.toml", PERIODIC.replace("(q - sin(t*pi/3))", "(q - initial(q))"))
+        for command in ("check", "optimize"):
+            _, err = self.run_tool(command, "cost.toml", code=2)
+            self.assertIn("cost.toml:15:32: error: 'initial(q)' may stand in terminal_constraints and terminal_cost of", err)
+            self.assertIn("write the number or the parameter that is the initial value in [states]", err)
+        self.write("input.toml", PERIODIC.replace("initial(v)", "initial(u)"))
+        _, err = self.run_tool("optimize", "input.toml", code=2)
+        self.assertIn("input.toml:16:58: error: expected the name of a state in initial(...), found 'u'", err)
+
+
+class OptimizeComplementarities(tool.ToolTest):
+    def test_a_control_in_a_pair_is_said_to_be_constant(self):
+        model = FOLLOW.replace("(x - r(t))^2", "(x - 0.1*t)^2") + 'path_complementarities = [["x", "u + 5"]]\n'
+        self.write("pair.toml", model)
+        expected = "pair.toml:19: the pair ['x', 'u+5'] of path_complementarities has the control 'u', which is constant in each"
+        text, _ = self.run_tool("check", "pair.toml", code=0)
+        self.assertIn(expected, " ".join(text.split()))
+        _, err = self.run_tool("optimize", "pair.toml", "--time-limit", "10", "--quiet", code=0)
+        self.assertIn(expected, err)
+
+
+FIT = """
+[model]
+name = "fit"
+[parameters]
+k = { initial = 2, lower = 1, upper = 5, free = true }
+[states]
+x = -0.55
+[dynamics]
+x = "if(x > 0, k, 1)"
+[optimize]
+horizon = 1.1
+control_intervals = 2
+[[optimize.least_squares]]
+of = ["x"]
+reference = { file = "data.csv" }
+at = "times"
+"""
+
+
+class OptimizeMeasurements(tool.ToolTest):
+    def test_a_parameter_from_times_of_their_own(self):
+        self.write("fit.toml", FIT)
+        rows = "t,x\n0.2,-0.35\n0.5,-0.05\n0.6,0.15\n0.9,1.05\n"  # switches at t = 0.55
+        self.write("data.csv", rows)
+        self.run_tool("optimize", "fit.toml", "--quiet", "--out", "r.json", code=0)
+        r = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertLess(abs(r["parameters"]["k"] - 3), 1e-7)
+        for more, expected in (("1.3,1\n", "data.csv:6:1: error: row 5: the time 1.3 is outside of the horizon, from 0 to 1.1"),
+                               ("0.8,1\n", "data.csv:6:1: error: row 5: the time 0.8 is behind 0.9, of the row before"),
+                               ("nan,1\n", "data.csv:6:1: error: expected a finite number, found 'nan'")):
+            self.write("data.csv", rows + more)
+            for command in ("check", "optimize"):
+                _, err = self.run_tool(command, "fit.toml", code=2)
+                self.assertIn(expected, err)
+
+
 IDLE = """
 [model]
 name = "idle"

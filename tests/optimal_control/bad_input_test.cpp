@@ -24,13 +24,14 @@ struct Change {
   std::string intervals = "2";
   std::string cost = "u^2";
   std::string problem{};
+  std::string k = "1";
 };
 
 std::string model_of(const Change& change) {
   return fmt::format(R"toml([model]
 name = "bad"
 [parameters]
-k = 1
+k = {11}
 [states]
 q = {0}
 v = {1}
@@ -49,7 +50,7 @@ running_cost = "{9}"
 {10}
 )toml",
                      change.q, change.v, change.more_states, change.u, change.acceleration, change.more_dynamics,
-                     change.tables, change.horizon, change.intervals, change.cost, change.problem);
+                     change.tables, change.horizon, change.intervals, change.cost, change.problem, change.k);
 }
 
 /// The first error on the way from text to problem.
@@ -132,6 +133,24 @@ TEST(OcpBadInput, BreaksOfTime) {
                  {"breaks in time, and the horizon is free", "fix the horizon"});
 }
 
+TEST(OcpBadInput, BreaksOfTimeInCostsAndConstraints) {
+  const std::string table = "[tables.r]\nx = [0, 0.75]\ny = [0, 1]\n";
+  expect_refused({.tables = table, .cost = "u^2 + r(t)"},
+                 {"bad.toml:22:23", "'r(t)' breaks at t = 0.75, inside control interval 0", "control_intervals = 8"});
+  expect_refused({.tables = table, .problem = "path_constraints = ['q <= 2', 'v <= r(t)']"},
+                 {"bad.toml:23:37", "'r(t)' breaks at t = 0.75"});
+  expect_refused({.tables = table, .problem = "[[optimize.least_squares]]\nof = ['q']\nreference = ['r(t)']"},
+                 {"bad.toml:25:15", "'r(t)' breaks at t = 0.75"});
+}
+
+TEST(OcpBadInput, BreaksWhereSomethingChosenSays) {
+  expect_refused(
+      {.acceleration = "u + if(t > k, 1, 0)", .tables = "", .k = "{ initial = 1, lower = 0, upper = 2, free = true }"},
+      {"bad.toml:13:15", "'t-k' breaks where the free parameter 'k' says", "a state with the rate 1"});
+  expect_refused({.acceleration = "r(u)", .tables = "[tables.r]\nx = [0, 1]\ny = [0, 1]\n"},
+                 {"bad.toml:13:6", "'r(u)' breaks where the control 'u' says", "make 'u' a state with a rate"});
+}
+
 TEST(OcpBadInput, LeastSquares) {
   const std::string head = "[[optimize.least_squares]]\nof = ['q', 'v']\n";
   expect_refused({.problem = head + "reference = [0]"}, {"`of` has 2 expressions, `reference` 1"});
@@ -157,7 +176,23 @@ TEST(OcpBadInput, BoundsAndGuesses) {
   expect_refused({.problem = "initial_guess = { w = 't' }"},
                  {"expected the name of a state, a control or a free parameter, found 'w'"});
   expect_refused({.problem = "initial_guess = { q = 'v*t' }"}, {"the guess of 'q' depends on states or controls"});
-  expect_refused({.problem = "initial_guess = { q = 'min(v, 1)' }"}, {"the guess of 'q' has kinks or jumps"});
+  expect_refused({.problem = "initial_guess = { q = 'min(v, 1)' }"},
+                 {"the guess of 'q' depends on states or controls"});
+  expect_refused({.tables = "[tables.r]\nx = [0, 1]\ny = [0, 1]\n", .problem = "initial_guess = { q = 'r(v)' }"},
+                 {"the guess of 'q' depends on states or controls"});
+}
+
+TEST(OcpWarnings, AControlInAPairIsConstantInAnInterval) {
+  const auto warnings_of = [](const std::string& pair) {
+    const auto problem = stated(model_of({.cost = "k*u^2", .problem = "path_complementarities = [" + pair + "]"}));
+    return fmt::format("{}", fmt::join(problem.ocp.warnings, "\n"));
+  };
+  const auto of_control = warnings_of("['q + 1', 'u + 2']");
+  for (const std::string part : {"test.toml:20: the pair ['q+1', 'u+2'] of path_complementarities has the control 'u'",
+                                 "constant in each control interval", "make 'u' a state with a rate"}) {
+    EXPECT_NE(of_control.find(part), std::string::npos) << of_control;
+  }
+  EXPECT_EQ(warnings_of("['q + 1', 'v + 2']"), "");
 }
 
 TEST(OcpNames, WhatTheProblemAloneUsesIsUsed) {

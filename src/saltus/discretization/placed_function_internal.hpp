@@ -10,6 +10,7 @@ namespace saltus::discretization {
 
 /// Gives places of local variables: >= 0 a variable of the problem, else the constant constant_place() was made of.
 [[nodiscard]] constexpr int constant_place(int constant) { return -1 - constant; }
+[[nodiscard]] constexpr int constant_number(int place) { return -1 - place; }
 [[nodiscard]] inline double value_at(int place, mpcc::ConstVectorView w, const linalg::Vector& constants) {
   return place >= 0 ? w[place] : constants[-1 - place];
 }

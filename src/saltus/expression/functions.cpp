@@ -15,9 +15,10 @@ bool may_begin_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <=
 
 const std::vector<FunctionSignature>& functions() {
   static const std::vector<FunctionSignature> table{
-      {"sin", 1},  {"cos", 1},  {"tan", 1}, {"asin", 1}, {"acos", 1},  {"atan", 1}, {"atan2", 2}, {"sinh", 1},
-      {"cosh", 1}, {"tanh", 1}, {"exp", 1}, {"log", 1},  {"log10", 1}, {"sqrt", 1}, {"hypot", 2}, {"pow", 2},
-      {"step", 1}, {"sign", 1}, {"if", 3},  {"abs", 1},  {"max", 2},   {"min", 2},  {"floor", 1}, {"mod", 2},
+      {"sin", 1},   {"cos", 1},   {"tan", 1},  {"asin", 1},    {"acos", 1}, {"atan", 1},  {"atan2", 2},
+      {"sinh", 1},  {"cosh", 1},  {"tanh", 1}, {"exp", 1},     {"log", 1},  {"log10", 1}, {"sqrt", 1},
+      {"hypot", 2}, {"pow", 2},   {"step", 1}, {"sign", 1},    {"if", 3},   {"abs", 1},   {"max", 2},
+      {"min", 2},   {"floor", 1}, {"mod", 2},  {"initial", 1},
   };
   return table;
 }

@@ -429,7 +429,7 @@ class Build {
     warn_of_unused(description_.definitions, "definition");
     for (std::size_t i = 0; i < description_.tables.size(); ++i) {
       const auto& table = description_.tables[i];
-      if (scope_.is_table_used(i)) continue;
+      if (scope_.is_table_used(i) || scope_.is_used(table.name)) continue;
       statement_.warnings.push_back(located(table.location, fmt::format("table '{}' is never used", table.name)));
     }
   }

@@ -29,7 +29,6 @@ struct Ocp {
   double from = 0.0;
   OcpHorizon horizon;
   std::optional<int> running_cost, terminal_cost;  ///< outputs
-  double time_weight = 0.0;                        ///< w; 0: none
   std::vector<OcpConstraint> path, terminal;
   ConstraintPoints path_at = ConstraintPoints::intervals;
   std::vector<std::pair<int, int>> complementarities;  ///< outputs
@@ -37,6 +36,8 @@ struct Ocp {
   std::vector<bool> free_states;                         ///< one per state
   std::vector<bool> free_parameters;                     ///< one per parameter
   std::vector<double> parameter_lower, parameter_upper;  ///< of free ones; else the value
+  /// What initial(q) is in terminal costs and constraints: parameters that no result shows.
+  std::vector<OcpInitialValue> initial_values;
   std::vector<OcpGuess> guess;
   std::optional<OcpClock> clock;
   /// With contacts or hysteresis `system` is frozen, and this is what it stands for, with the same outputs: the states
@@ -46,6 +47,13 @@ struct Ocp {
   std::shared_ptr<const System> plant;
   std::vector<std::string> warnings;
   std::map<std::string, SourceLocation> places;  ///< of switching functions and cells whose expression is known
+
+  [[nodiscard]] bool is_initial_value(std::size_t parameter) const {
+    for (const auto& one : initial_values) {
+      if (static_cast<std::size_t>(one.parameter) == parameter) return true;
+    }
+    return false;
+  }
 };
 
 /// Builds the problem a description states, with the overrides applied.

@@ -19,7 +19,12 @@ enum class ConstraintNorm {
   linf,  ///< the largest
 };
 enum class ConstraintPoints { intervals, elements, stages };
-enum class CostPoints { intervals, stages, end };
+enum class CostPoints {
+  intervals,
+  stages,
+  end,
+  times,  ///< of measurements
+};
 enum class Relation { less_equal, greater_equal, equal };
 
 /// Holds sides[0] relations[0] sides[1] (relations[1] sides[2]): one comparison, or the two-sided a <= e <= b.
@@ -42,8 +47,11 @@ struct HorizonDescription {
 /// Holds one of [[optimize.least_squares]].
 struct LeastSquaresDescription {
   std::vector<expression::NodePtr> of;
-  std::vector<expression::NodePtr> reference;            ///< one per expression; empty: 0, or samples
-  std::vector<std::vector<double>> samples;              ///< of a file: one row per interval; empty without
+  std::vector<expression::NodePtr> reference;  ///< one per expression; empty: 0, or samples
+  /// Of a file: one row per interval; at CostPoints::times one per time; empty without.
+  std::vector<std::vector<double>> samples;
+  std::vector<double> times;                             ///< ascending, one per row at CostPoints::times; else empty
+  std::vector<SourceLocation> rows;                      ///< of samples
   std::string file;                                      ///< its name, for messages
   std::vector<std::vector<expression::NodePtr>> weight;  ///< one row: the diagonal; else a matrix; empty: ones
   CostPoints at = CostPoints::intervals;

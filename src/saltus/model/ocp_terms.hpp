@@ -24,9 +24,17 @@ struct OcpConstraint {
 struct OcpLeastSquares {
   std::vector<int> of;
   std::vector<int> reference;  ///< outputs of t and p; empty: 0, or samples
-  linalg::Matrix samples;      ///< one row per interval; 0 x 0 without
+  linalg::Matrix samples;      ///< one row per interval, or per time; 0 x 0 without
+  std::vector<double> times;   ///< of measurements, ascending: at CostPoints::times, where it is summed up
   linalg::Matrix weight;       ///< symmetric
   CostPoints at = CostPoints::intervals;
+  /// Returns how many numbers of it every interval has.
+  [[nodiscard]] linalg::Index samples_per_interval() const { return times.empty() ? samples.cols() : 0; }
+};
+
+/// States p_parameter = x_state(from).
+struct OcpInitialValue {
+  int state = 0, parameter = 0;
 };
 
 /// Holds what initial_guess says of one quantity.
@@ -41,6 +49,7 @@ struct OcpHorizon {
   bool free = false;
   double value = 1.0;  ///< > 0; the guess of a free one
   double lower = 0.0, upper = 0.0;
+  double time_weight = 0.0;  ///< w, of w T in the objective; 0: none
 };
 
 /// Holds the time frozen by hand, or for contacts and hysteresis: x_state is physical time, dx_state / dtau its speed.

@@ -211,7 +211,6 @@ TEST(TomlOptimize, MistakesInConstraintsAreFoundWithTheirPlace) {
   };
   for (auto& mistake : mistakes) mistake.text = smallest + "path_constraints = [" + mistake.text + "]\n";
   mistakes.push_back({smallest + "path_constraints = 'q <= 3'\n", 4, "a list of constraints", ""});
-  mistakes.push_back({smallest + "terminal_constraints = ['q == initial(q)']\n", 4, "is not available", ""});
   expect_mistakes(mistakes);
 }
 

@@ -43,6 +43,7 @@ class OcpExpressionBuilder {
     add_stage_rows();
     add_node_terms();
     add_terminal_terms();
+    add_measured_terms();
     add_start();
     add_departure();
     return std::move(made_);
@@ -56,7 +57,7 @@ class OcpExpressionBuilder {
       if (!ocp_.free_parameters[at(i)]) fixed.push_back(i);
     }
     int samples = 0;
-    for (const auto& term : ocp_.least_squares) samples += static_cast<int>(term.samples.cols());
+    for (const auto& term : ocp_.least_squares) samples += static_cast<int>(term.samples_per_interval());
     made_.known = SX::vertcat({dcs_.p, dcs_.held, dcs_.u});
     made_.horizon = SX::sym("T");
     made_.speed = SX::sym("s");
@@ -67,7 +68,9 @@ class OcpExpressionBuilder {
                       static_cast<int>(dcs_.held.numel()), samples};
   }
 
-  [[nodiscard]] bool needs_time() const { return dcs_.outputs.numel() > 0 && SX::depends_on(dcs_.outputs, dcs_.t); }
+  [[nodiscard]] bool needs_time() const {
+    return has_measurements(ocp_) || (dcs_.outputs.numel() > 0 && SX::depends_on(dcs_.outputs, dcs_.t));
+  }
 
   [[nodiscard]] SX without_lifting() const {
     SX f = dcs_.f;
@@ -89,15 +92,18 @@ class OcpExpressionBuilder {
     return field_(std::vector<SX>{point.t, point.x, point.selection, made_.known}).front()(ocp_.clock->state);
   }
 
+  /// Samples of a term that its interval has.
+  [[nodiscard]] SX samples_of(std::size_t number) const {
+    casadi_int first = 0;
+    for (std::size_t i = 0; i < number; ++i) first += ocp_.least_squares[i].samples_per_interval();
+    return made_.samples(casadi::Slice(first, first + ocp_.least_squares[number].samples_per_interval()));
+  }
+
   /// r'W r of a term at a point.
-  [[nodiscard]] SX square(const model::OcpLeastSquares& term, std::size_t number, const ElementPoint& point) const {
+  [[nodiscard]] SX square(const model::OcpLeastSquares& term, const SX& samples, const ElementPoint& point) const {
     SX r = outputs_at(point, term.of);
     if (!term.reference.empty()) r -= outputs_at(point, term.reference);
-    if (term.samples.cols() > 0) {
-      casadi_int first = 0;
-      for (std::size_t i = 0; i < number; ++i) first += ocp_.least_squares[i].samples.cols();
-      r -= made_.samples(casadi::Slice(first, first + term.samples.cols()));
-    }
+    if (samples.numel() > 0) r -= samples;
     const auto n = static_cast<casadi_int>(term.of.size());
     SX sum = 0.0;
     for (casadi_int i = 0; i < n; ++i) {
@@ -112,7 +118,7 @@ class OcpExpressionBuilder {
   [[nodiscard]] SX squares(CostPoints at, const ElementPoint& point) const {
     SX sum = 0.0;
     for (std::size_t i = 0; i < ocp_.least_squares.size(); ++i) {
-      if (ocp_.least_squares[i].at == at) sum += square(ocp_.least_squares[i], i, point);
+      if (ocp_.least_squares[i].at == at) sum += square(ocp_.least_squares[i], samples_of(i), point);
     }
     return sum;
   }
@@ -137,6 +143,46 @@ class OcpExpressionBuilder {
         kernel_.running_bounds.push_back({static_cast<int>(i), ocp_.path[i].lower, ocp_.path[i].upper, -1});
       }
       made_.stage_squares.objective += weight * squares(CostPoints::stages, point);
+    }
+  }
+
+  /// The collocation polynomial at tau h behind the left end; selections by that of the stages.
+  [[nodiscard]] ElementPoint between_stages(const SX& t, const SX& tau) const {
+    const auto& tableau = kernel_.tableau;
+    const int stages = tableau.stages();
+    const bool begins_at_stage = tableau.c[0] == 0.0;
+    const auto lagrange = [&](int m, bool with_left) {
+      SX weight = with_left ? tau / tableau.c[m] : SX(1.0);
+      for (int l = 0; l < stages; ++l) {
+        if (l != m) weight *= (tau - tableau.c[l]) / (tableau.c[m] - tableau.c[l]);
+      }
+      return weight;
+    };
+    ElementPoint point{t, SX::zeros(dcs_.x.numel()), SX::zeros(dcs_.selection.numel())};
+    SX of_left = 1.0;
+    for (int m = 0; m < stages; ++m) {
+      const ElementPoint& stage = made_.element.stages[at(m)];
+      point.x += lagrange(m, !begins_at_stage) * stage.x;
+      point.selection += lagrange(m, false) * stage.selection;
+      if (!begins_at_stage) of_left *= (tableau.c[m] - tau) / tableau.c[m];
+    }
+    if (!begins_at_stage) point.x += of_left * made_.element.left.x;
+    return point;
+  }
+
+  /// Squares at a time of measurements; the element counts where it holds it.
+  void add_measured_terms() {
+    const SX t = SX::sym("t_measured");
+    made_.measured_inputs = SX::vertcat({made_.element.element_inputs, t});
+    if (!has_measurements(ocp_)) return;
+    for (const auto& term : ocp_.least_squares) {
+      if (term.at != CostPoints::times) continue;
+      const SX holds = SX::sym("holds");
+      const SX samples = SX::sym("samples", term.samples.cols());
+      made_.measured_inputs = SX::vertcat({made_.measured_inputs, holds, samples});
+      // 0 in other elements, which may have no length.
+      const SX tau = holds * (t - made_.element.left.t) / (made_.element.h + 1.0 - holds);
+      made_.measured_squares.objective += holds * square(term, samples, between_stages(t, tau));
     }
   }
 

@@ -90,6 +90,12 @@ void take_sizes(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Implementation
   if (ocp.clock) kernel.clock = ocp.clock->state;
 }
 
+/// Between stages a solution is known where they are values of one polynomial.
+Error no_polynomial() {
+  return ocp_refusal(ErrorCode::not_available, "least_squares at times need a scheme that is a collocation method",
+                     "use scheme = \"radau_iia\" or \"gauss_legendre\"");
+}
+
 void compile_functions(const OcpExpressions& made, OcpKernel::Implementation& kernel) {
   const auto& element = made.element;
   const auto function = [&](const char* name, const SX& inputs, const LocalExpressions& expressions) {
@@ -105,6 +111,7 @@ void compile_functions(const OcpExpressions& made, OcpKernel::Implementation& ke
   kernel.slack_rows = function("slack_rows", made.slack_inputs, made.slack_rows);
   kernel.terminal = function("terminal", made.node_inputs, made.terminal);
   kernel.end_squares = function("end_squares", made.node_inputs, made.end_squares);
+  kernel.measured_squares = function("measured_squares", made.measured_inputs, made.measured_squares);
   kernel.terminal_rows = function("terminal_rows", made.terminal_row_inputs, made.terminal_rows);
   kernel.start = function("start", made.start_inputs, made.start);
   kernel.equilibration = function("equilibration", element.boundary_inputs, element.boundary);
@@ -122,6 +129,7 @@ Expected<std::shared_ptr<OcpKernel>> OcpKernel::compile(const model::Ocp& ocp, c
                                                         evaluation::NativeCode native) {
   if (auto checked = check(options); !checked) return tl::unexpected(checked.error());
   if (!dcs.root_exponents.empty()) return tl::unexpected(no_roots());
+  if (has_measurements(ocp) && !tableau.is_collocation()) return tl::unexpected(no_polynomial());
   try {
     auto kernel = std::make_unique<Implementation>();
     kernel->tableau = tableau;
@@ -142,7 +150,8 @@ Expected<std::shared_ptr<OcpKernel>> OcpKernel::compile(const model::Ocp& ocp, c
     for (LocalFunction* function :
          {&kernel->element, &kernel->running, &kernel->stage_squares, &kernel->stage_rows, &kernel->node_squares,
           &kernel->node_rows, &kernel->first_rows, &kernel->slack_rows, &kernel->terminal, &kernel->end_squares,
-          &kernel->terminal_rows, &kernel->start, &kernel->equilibration, &kernel->neighbours, &kernel->departure}) {
+          &kernel->measured_squares, &kernel->terminal_rows, &kernel->start, &kernel->equilibration,
+          &kernel->neighbours, &kernel->departure}) {
       function->join(kernel->native, functions);
     }
     auto started = kernel->native.start(native, std::move(functions));

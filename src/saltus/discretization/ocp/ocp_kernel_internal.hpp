@@ -54,7 +54,7 @@ struct OcpKernel::Implementation {
   mpcc::Bounds boundary_bounds;
 
   LocalFunction element, running, stage_squares, stage_rows, node_squares, node_rows, first_rows, slack_rows, terminal,
-      end_squares, terminal_rows, start, equilibration, neighbours, departure;
+      end_squares, measured_squares, terminal_rows, start, equilibration, neighbours, departure;
   std::vector<ConstraintRow> stage_bounds;  ///< of stage_rows: constraint -1 - i is the bound of state i
   std::vector<ConstraintRow> node_bounds, first_bounds, slack_bounds, terminal_bounds;
   std::vector<ConstraintRow> running_bounds;  ///< of rows of `running`: kinks of states and controls at stages
@@ -76,11 +76,16 @@ struct OcpExpressions {
   casadi::SX parameters;  ///< fixed p, 1/N
   ElementExpressions element;
   LocalExpressions running, stage_squares, stage_rows, node_squares, node_rows, first_rows, slack_rows, terminal,
-      end_squares, terminal_rows, start, departure;
+      end_squares, measured_squares, terminal_rows, start, departure;
   casadi::SX stage_inputs;    ///< of the element, and its slacks
   casadi::SX running_inputs;  ///< of the element, and slacks of kinks: Ocp::stage_slacks of each stage
+  /// Of the element, the time of a measurement, and of every term at times 1 or 0 and its samples.
+  casadi::SX measured_inputs;
   casadi::SX node_inputs, node_row_inputs, terminal_row_inputs, slack_inputs, start_inputs;
 };
+
+/// Returns whether a problem has least squares at times.
+[[nodiscard]] bool has_measurements(const model::Ocp& ocp);
 
 /// Fills the expressions, and in the kernel what goes with them.
 [[nodiscard]] Expected<OcpExpressions> ocp_expressions(const model::Ocp& ocp, const reformulation::Dcs& dcs,

@@ -18,7 +18,7 @@ using mpcc::VectorView;
 OcpProblem::Implementation::Implementation(std::unique_ptr<OcpStructure> made, const model::Ocp& ocp,
                                            const reformulation::Dcs& dcs)
     : structure(std::move(made)),
-      time_weight(ocp.time_weight),
+      time_weight(ocp.horizon.time_weight),
       state_names(ocp.system.state_names),
       selection_names(names_of_selections(ocp.system, dcs)) {
   for (const auto& constraint : ocp.path) path_names.push_back(constraint.name);
@@ -61,6 +61,7 @@ void OcpProblem::Implementation::find_patterns() {
 }
 
 double OcpProblem::Implementation::term(Term wanted, ConstVectorView w) {
+  find_measurements(*structure, w);
   double sum = 0.0;
   for (const auto& placed : structure->functions) {
     if (placed.term == wanted) sum += placed.placed->objective(w, structure->constants, structure->local_parameters);
@@ -111,6 +112,7 @@ int OcpProblem::pair_group(int pair) const { return implementation_->structure->
 double OcpProblem::objective(ConstVectorView w) {
   auto& own = *implementation_;
   auto& made = *own.structure;
+  find_measurements(made, w);
   double sum = own.penalties(w);
   if (own.time_weight != 0.0) sum += own.time_weight * own.value(made.horizon, w);
   for (const auto& placed : made.functions) {
@@ -124,6 +126,7 @@ double OcpProblem::objective(ConstVectorView w) {
 void OcpProblem::objective_gradient(ConstVectorView w, VectorView gradient) {
   auto& own = *implementation_;
   auto& made = *own.structure;
+  find_measurements(made, w);
   gradient.set_zero();
   for (const auto& penalty : made.penalties) {
     gradient[penalty.variable] += penalty.factor * (penalty.squared ? 2.0 * w[penalty.variable] : 1.0);
@@ -169,6 +172,7 @@ void OcpProblem::jacobian(ConstVectorView w, VectorView values) {
 void OcpProblem::hessian(ConstVectorView w, double objective_factor, ConstVectorView y, VectorView values) {
   auto& own = *implementation_;
   auto& made = *own.structure;
+  find_measurements(made, w);
   double* next = values.data();
   for (const auto& placed : made.functions) {
     if (placed.function->hessian_pattern().entries() == 0) continue;

@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 class StructureBuilder {
  public:
   StructureBuilder(std::shared_ptr<OcpKernel> kernel, const model::Ocp& ocp, const std::vector<int>& elements,
-                   linalg::Matrix held)
+                   HeldInIntervals held)
       : made_(std::make_unique<OcpStructure>(std::move(kernel))),
         kernel_(made_->kernel),
         ocp_(ocp),
@@ -93,7 +93,7 @@ class StructureBuilder {
     linalg::Vector lambda = linalg::Vector::zero(static_cast<linalg::Index>(kernel_.pairs.size()));
     if (kernel_.pairs.empty()) return lambda;
     std::vector<double> known = ocp_.system.parameter_values;
-    for (linalg::Index i = 0; i < held_.cols(); ++i) known.push_back(held_(0, i));
+    for (linalg::Index i = 0; i < held_.inside.cols(); ++i) known.push_back(held_.inside(0, i));
     known.resize(known.size() + static_cast<std::size_t>(kernel_.shared.controls), 0.0);
     const std::vector<casadi::DM> in{ocp_.from, ocp_.system.initial_state, known};
     const auto values = casadi::DM::densify(kernel_.indicator(in).front()).nonzeros();
@@ -118,14 +118,21 @@ class StructureBuilder {
                                                     fmt::format("{}[{}]", system.control_names[i], k)));
     }
     interval.shared.insert(interval.shared.end(), made_->parameters.begin(), made_->parameters.end());
-    for (linalg::Index i = 0; i < held_.cols(); ++i) interval.shared.push_back(variables_.constant(held_(k, i)));
+    const std::size_t first_held = interval.shared.size();
+    for (linalg::Index i = 0; i < held_.inside.cols(); ++i)
+      interval.shared.push_back(variables_.constant(held_.inside(k, i)));
     interval.shared.push_back(made_->horizon);
     interval.shared.push_back(ocp_.clock ? variables_.variable(ocp_.clock->speed_lower, ocp_.clock->speed_upper,
                                                                fmt::format("speed of time[{}]", k))
                                          : variables_.constant(1.0));
     for (const auto& term : ocp_.least_squares) {
-      for (linalg::Index i = 0; i < term.samples.cols(); ++i)
+      for (linalg::Index i = 0; i < term.samples_per_interval(); ++i)
         interval.shared.push_back(variables_.constant(term.samples(k, i)));
+    }
+    interval.shared_at_end = interval.shared;
+    for (linalg::Index i = 0; i < held_.at_end.cols(); ++i) {
+      if (held_.at_end(k, i) == held_.inside(k, i)) continue;
+      interval.shared_at_end[first_held + static_cast<std::size_t>(i)] = variables_.constant(held_.at_end(k, i));
     }
     interval.elements = elements_[at(k)];
     interval.first_element = static_cast<int>(made_->element.size());
@@ -189,7 +196,7 @@ class StructureBuilder {
   OcpKernel::Implementation& kernel_;
   const model::Ocp& ocp_;
   const std::vector<int>& elements_;
-  linalg::Matrix held_;
+  HeldInIntervals held_;
   OcpVariables variables_;
   std::vector<int> largest_path_, largest_terminal_;
 };

@@ -63,12 +63,20 @@ struct OcpStart {
   std::vector<int> own;            ///< mu and theta of the start: variables
 };
 
+/// Holds a time of measurements: constants of the elements of its interval are 1 for the one that holds it, else 0.
+struct Measurement {
+  double share = 0.0;      ///< of the interval, in [0, 1]
+  std::vector<int> holds;  ///< numbers of the constants, one per element
+};
+
 struct OcpInterval {
-  std::vector<int> shared;  ///< places, SharedSizes
+  std::vector<int> shared;         ///< places, SharedSizes
+  std::vector<int> shared_at_end;  ///< the same with what is held as it is at the time itself of its end
   int first_element = 0, elements = 0;
   mpcc::IndexRange own;      ///< variables shared by its elements
   std::vector<int> lengths;  ///< variables hhat; empty for one element or fixed lengths
   int t_left = 0;            ///< place of the time at its left end, if time matters
+  std::vector<Measurement> measurements;
 };
 
 /// Holds the whole problem without its functions' values.
@@ -111,8 +119,17 @@ struct OcpStructure {
                                                                     const reformulation::Dcs& dcs,
                                                                     const std::vector<int>& elements);
 
-/// Returns values of Dcs::held in every interval, rows; an error where one changes inside an interval.
-[[nodiscard]] Expected<linalg::Matrix> held_in_intervals(const model::Ocp& ocp, const reformulation::Dcs& dcs,
-                                                         const casadi::Function& arguments, int intervals);
+/// Finds the elements that hold the measurements, by the lengths of w.
+void find_measurements(OcpStructure& made, mpcc::ConstVectorView w);
+
+/// Holds values of Dcs::held, a row per interval.
+struct HeldInIntervals {
+  linalg::Matrix inside;
+  linalg::Matrix at_end;  ///< at the time itself at which the interval ends
+};
+/// Returns them, or an error where one on which the problem depends changes inside an interval, or with a control or a
+/// free parameter.
+[[nodiscard]] Expected<HeldInIntervals> held_in_intervals(const model::Ocp& ocp, const reformulation::Dcs& dcs,
+                                                          const casadi::Function& arguments, int intervals);
 
 }  // namespace saltus::discretization

@@ -85,6 +85,9 @@ class OcpVariables {
 void place_functions(const model::Ocp& ocp, const std::vector<int>& largest_path,
                      const std::vector<int>& largest_terminal, OcpVariables& variables, OcpStructure& made);
 
+/// Places least squares at times: a copy per time and element of its interval.
+void place_measurements(const model::Ocp& ocp, OcpVariables& variables, OcpStructure& made);
+
 /// Numbers rows and pairs once all variables are there: bounds, signs, groups of pairs, the chain.
 void number_rows(OcpStructure& made);
 

@@ -53,6 +53,7 @@ class FunctionPlacer {
     add_stage_rows();
     add_node_functions();
     add_terminal_functions();
+    if (has_measurements(ocp_)) place_measurements(ocp_, variables_, made_);
     add_boundaries();
     add_departures();
   }
@@ -115,19 +116,26 @@ class FunctionPlacer {
   }
 
   /// Time, state and selections of a node, then what its interval shares.
-  [[nodiscard]] std::vector<int> node_places(int e) const {
+  [[nodiscard]] std::vector<int> node_places(int e, const std::vector<int>& shared) const {
     auto places = made_.end_places(e);
-    const auto& shared = made_.interval[at(made_.element[at(e)].interval)].shared;
     places.insert(places.end(), shared.begin(), shared.end());
     if (!kernel_.depends_on_time) places.front() = variables_.zero();
     return places;
+  }
+  /// Of what holds in the interval up to its end.
+  [[nodiscard]] std::vector<int> node_places(int e) const {
+    return node_places(e, made_.interval[at(made_.element[at(e)].interval)].shared);
+  }
+  /// Of what is asked at the time of the end: its functions of time have their values there.
+  [[nodiscard]] std::vector<int> places_at_end(int e) const {
+    return node_places(e, made_.interval[at(made_.element[at(e)].interval)].shared_at_end);
   }
 
   void add_node_functions() {
     const bool each_element = ocp_.path_at != ConstraintPoints::intervals;
     if (!is_empty(kernel_.node_squares)) {
       Placed& placed = add(kernel_.node_squares, "least_squares", Term::least_squares);
-      for (int k = 0; k < made_.intervals; ++k) copy(placed, node_places(last_element(k)), k, last_element(k));
+      for (int k = 0; k < made_.intervals; ++k) copy(placed, places_at_end(last_element(k)), k, last_element(k));
     }
     if (!is_empty(kernel_.first_rows)) {
       auto places = first_places();
@@ -171,12 +179,12 @@ class FunctionPlacer {
     const int last = static_cast<int>(made_.element.size()) - 1;
     const int k = made_.intervals - 1;
     if (!is_empty(kernel_.terminal))
-      copy(add(kernel_.terminal, "terminal_cost", Term::terminal), node_places(last), k, last);
+      copy(add(kernel_.terminal, "terminal_cost", Term::terminal), places_at_end(last), k, last);
     if (!is_empty(kernel_.end_squares)) {
-      copy(add(kernel_.end_squares, "least_squares", Term::least_squares), node_places(last), k, last);
+      copy(add(kernel_.end_squares, "least_squares", Term::least_squares), places_at_end(last), k, last);
     }
     if (is_empty(kernel_.terminal_rows)) return;
-    auto places = node_places(last);
+    auto places = places_at_end(last);
     const auto soft = variables_.slacks(ocp_.terminal, largest_terminal_);
     places.insert(places.end(), soft.begin(), soft.end());
     copy(add(kernel_.terminal_rows, "terminal", Term::none, &kernel_.terminal_bounds), std::move(places), k, last);
@@ -220,7 +228,20 @@ class FunctionPlacer {
     }
   }
 
+  /// x_state at the start is its parameter.
+  void add_initial_values() {
+    const auto& free = kernel_.free_parameters;
+    for (const auto& [state, parameter] : ocp_.initial_values) {
+      const auto place = std::lower_bound(free.begin(), free.end(), parameter) - free.begin();
+      if (!ocp_.free_states[at(state)]) continue;
+      made_.linear.push_back({{{made_.start.state[at(state)], 1.0}, {made_.parameters[at(place)], -1.0}},
+                              0.0,
+                              fmt::format("initial({})", ocp_.system.state_names[at(state)])});
+    }
+  }
+
   void add_linear_rows() {
+    add_initial_values();
     for (int k = 0; k < made_.intervals; ++k) {
       const auto& interval = made_.interval[at(k)];
       if (!interval.lengths.empty()) {

@@ -135,7 +135,7 @@ Json problem_schema(std::string_view key) {
   return list_of(table({{"of", expressions},
                         {"reference", references},
                         {"weight", list_of(weights, "numbers, or a matrix")},
-                        {"at", one_of_words({"intervals", "stages", "end"}, "where they are compared")}},
+                        {"at", one_of_words({"intervals", "stages", "end", "times"}, "where they are compared")}},
                        "squares of distances to a reference", {"of"}),
                  "");
 }

@@ -30,10 +30,10 @@ bool is_header(const std::vector<std::string_view>& fields) {
 
 }  // namespace
 
-Expected<std::vector<std::vector<double>>> parse_rows(std::string_view text, const std::string& file,
-                                                      std::size_t columns) {
+Expected<NumberRows> parse_rows(std::string_view text, const std::string& file, std::size_t columns,
+                                const std::string& what) {
   constexpr std::size_t shown = 40;
-  std::vector<std::vector<double>> rows;
+  NumberRows found;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   bool begins = true;
   for (int line_number = 1; !text.empty(); ++line_number) {
@@ -44,12 +44,12 @@ Expected<std::vector<std::vector<double>>> parse_rows(std::string_view text, con
     begins = false;
     if (skipped) continue;
     if (fields.size() != columns) {
-      return tl::unexpected(
-          row_mistake(file, line_number,
-                      fmt::format("expected {} number{}, found {}", columns, columns == 1 ? "" : "s", fields.size()),
-                      "a row has one number per expression"));
+      return tl::unexpected(row_mistake(
+          file, line_number,
+          fmt::format("expected {} number{}, found {}", columns, columns == 1 ? "" : "s", fields.size()), what));
     }
-    auto& row = rows.emplace_back();
+    auto& row = found.rows.emplace_back();
+    found.places.push_back({file, line_number, 1});
     for (const auto field : fields) {
       const auto number = separated_number(field);
       if (!number || !std::isfinite(*number)) {
@@ -60,9 +60,9 @@ Expected<std::vector<std::vector<double>>> parse_rows(std::string_view text, con
       row.push_back(*number);
     }
   }
-  if (rows.empty())
+  if (found.rows.empty())
     return tl::unexpected(row_mistake(file, 0, "the file has no rows of numbers", "write one per line"));
-  return rows;
+  return found;
 }
 
 }  // namespace saltus::io

@@ -60,8 +60,7 @@ struct Cut {
 /// Splits one text at the relations outside of all parentheses.
 class ConstraintReader {
  public:
-  ConstraintReader(TomlReader& reader, const TomlString& text, ConstraintPlace place)
-      : reader_(reader), string_(text), text_(text.text), place_(place) {}
+  ConstraintReader(TomlReader& reader, const TomlString& text) : reader_(reader), string_(text), text_(text.text) {}
 
   model::ConstraintDescription read() {
     const auto begin = std::min(text_.find_first_not_of(" \t\r\n"), text_.size());
@@ -94,11 +93,6 @@ class ConstraintReader {
     auto end = begin;
     while (end < text_.size() && is_of_word(text_[end])) ++end;
     const auto found = text_.substr(begin, end - begin);
-    const auto next = text_.find_first_not_of(' ', end);
-    if (found == "initial" && place_ == ConstraintPlace::terminal && next != std::string_view::npos &&
-        text_[next] == '(') {
-      reader_.not_available(place_in_string(string_, begin), "initial(…) in terminal_constraints");
-    }
     if (depth > 0) return end;
     for (const auto& wrong : wrong_words) {
       if (wrong.text == found)
@@ -193,28 +187,26 @@ class ConstraintReader {
   TomlReader& reader_;
   const TomlString& string_;
   std::string_view text_;
-  ConstraintPlace place_;
   std::vector<Cut> cuts_;
   bool has_wrong_sign_ = false;
   model::ConstraintDescription constraint_;
 };
 
-model::ConstraintDescription read_text(TomlReader& reader, const TomlValue& value, ConstraintPlace place) {
+model::ConstraintDescription read_text(TomlReader& reader, const TomlValue& value) {
   const auto* text = std::get_if<TomlString>(&value.value);
-  if (text != nullptr) return ConstraintReader(reader, *text, place).read();
+  if (text != nullptr) return ConstraintReader(reader, *text).read();
   reader.wrong_type(expected_constraint, value);
   return {};
 }
 
 /// { constraint = "v == 0", penalty = 1e3, norm = "l1" }.
-model::ConstraintDescription read_soft(TomlReader& reader, const TomlValue& value, const TomlTable& table,
-                                       ConstraintPlace place) {
+model::ConstraintDescription read_soft(TomlReader& reader, const TomlValue& value, const TomlTable& table) {
   model::ConstraintDescription constraint;
   expression::NodePtr penalty;
   auto norm = model::ConstraintNorm::l1;
   for (const auto& entry : table) {
     if (entry.key == "constraint") {
-      constraint = read_text(reader, entry.value, place);
+      constraint = read_text(reader, entry.value);
     } else if (entry.key == "penalty") {
       penalty = reader.expression(entry.value);
       const auto number = penalty ? constant_value(*penalty) : std::nullopt;
@@ -245,8 +237,7 @@ model::ConstraintDescription read_soft(TomlReader& reader, const TomlValue& valu
 
 }  // namespace
 
-std::vector<model::ConstraintDescription> read_constraints(TomlReader& reader, const TomlEntry& entry,
-                                                           ConstraintPlace place) {
+std::vector<model::ConstraintDescription> read_constraints(TomlReader& reader, const TomlEntry& entry) {
   std::vector<model::ConstraintDescription> list;
   const auto* array = std::get_if<TomlArray>(&entry.value.value);
   if (array == nullptr) {
@@ -255,7 +246,7 @@ std::vector<model::ConstraintDescription> read_constraints(TomlReader& reader, c
   }
   for (const auto& value : *array) {
     const auto* table = std::get_if<TomlTable>(&value.value);
-    list.push_back(table != nullptr ? read_soft(reader, value, *table, place) : read_text(reader, value, place));
+    list.push_back(table != nullptr ? read_soft(reader, value, *table) : read_text(reader, value));
   }
   return list;
 }

@@ -16,7 +16,8 @@ namespace {
 
 const std::vector<std::pair<std::string, model::CostPoints>> cost_points{{"intervals", model::CostPoints::intervals},
                                                                          {"stages", model::CostPoints::stages},
-                                                                         {"end", model::CostPoints::end}};
+                                                                         {"end", model::CostPoints::end},
+                                                                         {"times", model::CostPoints::times}};
 
 /// One table on its way into the description.
 class LeastSquaresReader {
@@ -103,16 +104,35 @@ class LeastSquaresReader {
       fail(fmt::format("`of` has {} expression{}, `reference` {}", expected, expected == 1 ? "" : "s", found),
            "write one reference per expression", reference_);
     }
-    if (part_.file.empty()) return;
+    const bool with_times = part_.at == model::CostPoints::times;
+    if (part_.file.empty()) {
+      if (!with_times) return;
+      fail("at = \"times\" needs measurements in a file",
+           "write reference = { file = \"data.csv\" }: rows with a time, then a number per expression", part_.location);
+      return;
+    }
     const auto file = beside(reader_.file(), part_.file);
     auto rows = read_named(reader_.files(), file).and_then([&](const std::string& text) {
-      return parse_rows(text, file.string(), expected);
+      return parse_rows(text, file.string(), expected + (with_times ? 1 : 0),
+                        with_times ? "a row has a time, then one number per expression"
+                                   : "a row has one number per expression; beside a column of times write at = "
+                                     "\"times\"");
     });
     if (!rows) {
       reader_.fail(with_context(rows.error(), fmt::format("line {} of {}", reference_.line, reader_.file())));
       return;
     }
-    part_.samples = std::move(*rows);
+    part_.samples = std::move(rows->rows);
+    part_.rows = std::move(rows->places);
+    if (with_times) take_times();
+  }
+
+  /// The first column.
+  void take_times() {
+    for (auto& row : part_.samples) {
+      part_.times.push_back(row.front());
+      row.erase(row.begin());
+    }
   }
 
   void check_weight() {

@@ -162,9 +162,9 @@ bool read_problem_key(TomlReader& reader, const TomlEntry& entry, ModelFile& mod
   } else if (key == "minimize_time") {
     problem.time_weight = read_time_weight(reader, value);
   } else if (key == "path_constraints") {
-    problem.path_constraints = read_constraints(reader, entry, ConstraintPlace::path);
+    problem.path_constraints = read_constraints(reader, entry);
   } else if (key == "terminal_constraints") {
-    problem.terminal_constraints = read_constraints(reader, entry, ConstraintPlace::terminal);
+    problem.terminal_constraints = read_constraints(reader, entry);
   } else if (key == "path_constraints_at") {
     problem.path_constraints_at = read_enum(reader, value, constraint_points, problem.path_constraints_at);
   } else if (key == "path_complementarities") {

@@ -11,12 +11,8 @@
 
 namespace saltus::io {
 
-/// Says where a list of constraints holds.
-enum class ConstraintPlace { path, terminal };
-
 /// Reads ["q <= 3", "-1 <= v <= 2", { constraint = "v == 0", penalty = 1e3, norm = "l1" }].
-[[nodiscard]] std::vector<model::ConstraintDescription> read_constraints(TomlReader& reader, const TomlEntry& entry,
-                                                                         ConstraintPlace place);
+[[nodiscard]] std::vector<model::ConstraintDescription> read_constraints(TomlReader& reader, const TomlEntry& entry);
 
 /// Reads one of [[optimize.least_squares]].
 [[nodiscard]] model::LeastSquaresDescription read_least_squares(TomlReader& reader, const TomlValue& value);

@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/expression/parser.hpp"
+#include "saltus/model/optimal_control/initial_values_internal.hpp"
 #include "saltus/model/optimal_control/ocp_checks_internal.hpp"
 #include "saltus/model/optimal_control/ocp_quantities_internal.hpp"
 #include "saltus/model/optimal_control/with_slacks_internal.hpp"
@@ -39,12 +40,14 @@ struct PlannedConstraint {
 class OcpBuild {
  public:
   OcpBuild(const Description& description, const std::vector<Override>& overrides)
-      : stated_(*description.optimize),
-        slacks_(description),
-        overrides_(overrides),
+      : initials_(description, overrides),
+        stated_(*initials_.description().optimize),
+        slacks_(initials_.description()),
+        overrides_(initials_.overrides()),
         quantities_(slacks_.description()) {}
 
   [[nodiscard]] Expected<Ocp> run() {
+    if (initials_.error()) return tl::unexpected(*initials_.error());
     if (auto error = plan()) return tl::unexpected(*error);
     auto system = quantities_.build(overrides_);
     if (!system) return tl::unexpected(system.error());
@@ -61,6 +64,9 @@ class OcpBuild {
       if (auto error = (this->*step)()) return tl::unexpected(*error);
     }
     if (auto error = take_physical()) return tl::unexpected(*error);
+    for (std::size_t i = 0; i < squares_.size(); ++i) {
+      if (auto error = check_times(ocp_.least_squares[i], *squares_[i].stated, ocp_)) return tl::unexpected(*error);
+    }
     ocp_.warnings = ocp_.system.warnings;
     ocp_.places = switching_places(description());
     if (auto error = check(ocp_, slacks_.description())) return tl::unexpected(*error);
@@ -218,7 +224,7 @@ class OcpBuild {
     if (weight_ >= 0) {
       const auto weight = quantities_.value(weight_);
       if (!weight) return weight.error();
-      ocp_.time_weight = *weight;
+      ocp_.horizon.time_weight = *weight;
     }
     return check_horizon(horizon, stated_.horizon.location);
   }
@@ -273,6 +279,7 @@ class OcpBuild {
     for (const auto& plan : squares_) {
       OcpLeastSquares term;
       term.at = plan.stated->at;
+      term.times = plan.stated->times;
       for (const int quantity : plan.of) term.of.push_back(quantities_.output(quantity));
       for (const int quantity : plan.reference) term.reference.push_back(quantities_.output(quantity));
       const auto n = static_cast<linalg::Index>(term.of.size());
@@ -331,6 +338,8 @@ class OcpBuild {
     for (const auto& state : description().states) ocp_.free_states.push_back(state.free);
     const auto& system = ocp_.system;
     ocp_.free_states.resize(system.state_names.size(), false);
+    if (auto error = check_initial_states(ocp_, description())) return error;
+    take_initial_values();
     ocp_.free_parameters.assign(system.parameter_names.size(), false);
     ocp_.parameter_lower = ocp_.parameter_upper = system.parameter_values;
     for (std::size_t i = 0; i < parameter_bounds_.size(); ++i) {
@@ -348,7 +357,17 @@ class OcpBuild {
                                    *upper, stated.location))
         return error;
     }
-    return check_initial_states(ocp_, description());
+    return std::nullopt;
+  }
+
+  void take_initial_values() {
+    const auto place = [](const std::vector<std::string>& names, const std::string& name) {
+      return static_cast<int>(std::find(names.begin(), names.end(), name) - names.begin());
+    };
+    for (const auto& state : initials_.states()) {
+      ocp_.initial_values.push_back({place(ocp_.system.state_names, state),
+                                     place(ocp_.system.parameter_names, InitialValues::parameter_of(state))});
+    }
   }
 
   [[nodiscard]] bool is_chosen(const std::string& name) const {
@@ -379,7 +398,8 @@ class OcpBuild {
       if (is_chosen(name)) return chosen_in_plant(name, value->location);
     }
     auto overrides = overrides_;
-    overrides.insert(overrides.end(), stated_.plant.begin(), stated_.plant.end());
+    const auto plant = initials_.with_parameters(stated_.plant);
+    overrides.insert(overrides.end(), plant.begin(), plant.end());
     auto error = build(overrides, ocp_.plant);
     if (error) error->context = {"in [optimize.plant]"};
     return error;
@@ -417,6 +437,7 @@ class OcpBuild {
     return std::nullopt;
   }
 
+  InitialValues initials_;
   const OcpDescription& stated_;
   ControlSlacks slacks_;
   const std::vector<Override>& overrides_;

@@ -1,6 +1,7 @@
 #include "saltus/model/optimal_control/ocp_builder.hpp"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -8,6 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/model/builder_parts_internal.hpp"
+#include "saltus/model/optimal_control/initial_values_internal.hpp"
 #include "saltus/model/optimal_control/ocp_checks_internal.hpp"
 
 namespace saltus::model {
@@ -33,6 +35,7 @@ struct OcpBuilder::Parts {
   Builder system;
   Ocp ocp;
   std::vector<std::string> free_states;
+  std::map<std::string, SX> initial_values;  ///< of states
   std::vector<Named> free_parameters, guesses;
   std::optional<Error> error;
   int outputs = 0;
@@ -52,12 +55,31 @@ struct OcpBuilder::Parts {
   void fail(std::optional<Error> mistake) {
     if (!error) error = std::move(mistake);
   }
+  void set_horizon(OcpHorizon horizon) {
+    horizon.time_weight = ocp.horizon.time_weight;
+    ocp.horizon = horizon;
+    fail(check_horizon(horizon, {}));
+  }
   void constrain(std::vector<OcpConstraint>& list, const std::string& name, double lower, const SX& e, double upper,
                  const Softness& soft) {
     OcpConstraint constraint{
         .name = name, .output = add(e), .lower = lower, .upper = upper, .norm = soft.norm, .penalty = soft.penalty};
     fail(check_constraint(constraint, {}));
     list.push_back(std::move(constraint));
+  }
+  void add_squares(OcpLeastSquares term, const linalg::Matrix& weight) {
+    const auto n = static_cast<linalg::Index>(term.of.size());
+    term.weight = weight.size() == 0 ? linalg::Matrix::identity(n, n) : weight;
+    if (term.weight.rows() != n || term.weight.cols() != n) {
+      Error mistake;
+      mistake.code = ErrorCode::invalid_model;
+      mistake.message =
+          fmt::format("the weight of least_squares is {} x {} for {} expressions", weight.rows(), weight.cols(), n);
+      mistake.remedy = "give a square matrix, or none";
+      return fail(std::move(mistake));
+    }
+    fail(check_least_squares(term, {}));
+    ocp.least_squares.push_back(std::move(term));
   }
   void unknown(const std::string& what, const std::string& name, const std::vector<std::string>& known) {
     Error mistake;
@@ -86,6 +108,22 @@ struct OcpBuilder::Parts {
       ocp.parameter_upper[i] = stated.upper;
       fail(check_range(fmt::format("parameter '{}'", stated.name), built.parameter_values[i], stated.lower,
                        stated.upper, {}));
+    }
+  }
+
+  /// A parameter that is free where the initial value is.
+  void take_initial_values() {
+    const auto& built = ocp.system;
+    ocp.initial_values.clear();
+    for (const auto& [state, symbol] : initial_values) {
+      const OcpInitialValue one{place_of(built.state_names, state),
+                                place_of(built.parameter_names, InitialValues::parameter_of(state))};
+      const std::size_t i = at(one.state), parameter = at(one.parameter);
+      ocp.initial_values.push_back(one);
+      if (!ocp.free_states[i]) continue;
+      ocp.free_parameters[parameter] = true;
+      ocp.parameter_lower[parameter] = built.state_lower[i];
+      ocp.parameter_upper[parameter] = built.state_upper[i];
     }
   }
 
@@ -150,7 +188,10 @@ struct OcpBuilder::Parts {
     if (auto mistake = take_system()) return tl::unexpected(*mistake);
     ocp.guess.clear();
     free_what_is_free();
+    if (error) return tl::unexpected(*error);
+    take_initial_values();
     take_guesses();
+    for (const auto& term : ocp.least_squares) fail(check_times(term, {}, ocp));
     const Description nowhere = without_places();
     fail(check_initial_states(ocp, nowhere));
     fail(check(ocp, nowhere));
@@ -166,38 +207,42 @@ OcpBuilder& OcpBuilder::operator=(OcpBuilder&&) noexcept = default;
 
 void OcpBuilder::start_time(double from) { parts_->ocp.from = from; }
 
-void OcpBuilder::horizon(double length) {
-  parts_->ocp.horizon = {.free = false, .value = length};
-  parts_->fail(check_horizon(parts_->ocp.horizon, {}));
-}
+void OcpBuilder::horizon(double length) { parts_->set_horizon({.free = false, .value = length}); }
 
 void OcpBuilder::free_horizon(double initial, double lower, double upper) {
-  parts_->ocp.horizon = {.free = true, .value = initial, .lower = lower, .upper = upper};
-  parts_->fail(check_horizon(parts_->ocp.horizon, {}));
+  parts_->set_horizon({.free = true, .value = initial, .lower = lower, .upper = upper});
 }
 
-void OcpBuilder::minimize_time(double weight) { parts_->ocp.time_weight = weight; }
+void OcpBuilder::minimize_time(double weight) { parts_->ocp.horizon.time_weight = weight; }
 void OcpBuilder::running_cost(const SX& cost) { parts_->ocp.running_cost = parts_->add(cost); }
 void OcpBuilder::terminal_cost(const SX& cost) { parts_->ocp.terminal_cost = parts_->add(cost); }
 
 void OcpBuilder::least_squares(const std::vector<SX>& of, const std::vector<SX>& reference,
                                const linalg::Matrix& weight, CostPoints at) {
-  const auto n = static_cast<linalg::Index>(of.size());
   OcpLeastSquares term;
   term.at = at;
   for (const auto& e : of) term.of.push_back(parts_->add(e));
   for (const auto& e : reference) term.reference.push_back(parts_->add(e));
-  term.weight = weight.size() == 0 ? linalg::Matrix::identity(n, n) : weight;
-  if (term.weight.rows() != n || term.weight.cols() != n) {
+  parts_->add_squares(std::move(term), weight);
+}
+
+void OcpBuilder::measurements(const std::vector<SX>& of, const std::vector<double>& times,
+                              const linalg::Matrix& samples, const linalg::Matrix& weight) {
+  OcpLeastSquares term;
+  term.at = CostPoints::times;
+  term.times = times;
+  term.samples = samples;
+  for (const auto& e : of) term.of.push_back(parts_->add(e));
+  const auto rows = static_cast<linalg::Index>(times.size()), columns = static_cast<linalg::Index>(of.size());
+  if (rows == 0 || samples.rows() != rows || samples.cols() != columns) {
     Error mistake;
     mistake.code = ErrorCode::invalid_model;
     mistake.message =
-        fmt::format("the weight of least_squares is {} x {} for {} expressions", weight.rows(), weight.cols(), n);
-    mistake.remedy = "give a square matrix, or none";
+        fmt::format("{} x {} samples for {} times and {} expressions", samples.rows(), samples.cols(), rows, columns);
+    mistake.remedy = "give one row per time, one column per expression";
     return parts_->fail(std::move(mistake));
   }
-  parts_->fail(check_least_squares(term, {}));
-  parts_->ocp.least_squares.push_back(std::move(term));
+  parts_->add_squares(std::move(term), weight);
 }
 
 void OcpBuilder::path_constraint(const std::string& name, double lower, const SX& e, double upper,
@@ -215,6 +260,20 @@ void OcpBuilder::terminal_constraint(const std::string& name, double lower, cons
 void OcpBuilder::complementarity(const SX& a, const SX& b) {
   const int first = parts_->add(a);
   parts_->ocp.complementarities.emplace_back(first, parts_->add(b));
+}
+
+SX OcpBuilder::initial(const std::string& state) {
+  auto& values = parts_->initial_values;
+  if (const auto known = values.find(state); known != values.end()) return known->second;
+  const auto& states = parts_->system.parts_->statement.states;
+  const auto stated = std::find_if(states.begin(), states.end(), [&](const auto& one) { return one.name == state; });
+  if (stated == states.end()) {
+    std::vector<std::string> names;
+    for (const auto& one : states) names.push_back(one.name);
+    parts_->unknown("a state", state, names);
+    return SX(0.0);
+  }
+  return values[state] = parts_->system.parameter(InitialValues::parameter_of(state), stated->initial);
 }
 
 void OcpBuilder::free_state(const std::string& name) { parts_->free_states.push_back(name); }

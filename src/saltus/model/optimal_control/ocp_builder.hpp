@@ -53,6 +53,12 @@ class OcpBuilder {
   /// @param weight  symmetric, n x n; 0 x 0 for the identity
   void least_squares(const std::vector<casadi::SX>& of, const std::vector<casadi::SX>& reference = {},
                      const linalg::Matrix& weight = {}, CostPoints at = CostPoints::intervals);
+  /// Adds the sum of r'W r with r = of - samples over measurements, in a horizon that is fixed.
+  /// @param times  ascending, within the horizon
+  /// @param samples  one row per time, one column per expression
+  /// @param weight  as in least_squares
+  void measurements(const std::vector<casadi::SX>& of, const std::vector<double>& times, const linalg::Matrix& samples,
+                    const linalg::Matrix& weight = {});
   /// Adds lower <= e <= upper; one of them may be infinite.
   void path_constraint(const std::string& name, double lower, const casadi::SX& e, double upper,
                        const Softness& soft = {});
@@ -61,6 +67,9 @@ class OcpBuilder {
                            const Softness& soft = {});
   /// Adds 0 <= a _|_ b >= 0 along the path.
   void complementarity(const casadi::SX& a, const casadi::SX& b);
+  /// Returns the value of a state at the start of the horizon, for terminal costs and constraints:
+  /// terminal_constraint("q == initial(q)", 0, q - problem.initial("q"), 0) states a periodic problem.
+  [[nodiscard]] casadi::SX initial(const std::string& state);
   /// Lets the initial value be chosen between the bounds of the state.
   void free_state(const std::string& name);
   void free_parameter(const std::string& name, double lower, double upper);

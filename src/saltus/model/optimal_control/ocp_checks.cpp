@@ -4,13 +4,18 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/expression/parser.hpp"
 #include "saltus/model/mechanics/mechanics_internal.hpp"
 #include "saltus/model/optimal_control/ocp_checks_internal.hpp"
+#include "saltus/model/statement/statement_internal.hpp"
 
 namespace saltus::model {
 namespace {
 
 using casadi::SX;
+
+/// Times of measurements may be so much outside of the horizon, in its lengths: a rounding.
+constexpr double beside_horizon = 1e-9;
 
 Error mistake(std::string message, std::string remedy, const SourceLocation& location,
               ErrorCode code = ErrorCode::invalid_model) {
@@ -23,6 +28,24 @@ std::string control_in(const SX& expression, const System& system) {
     if (SX::depends_on(expression, system.u(static_cast<casadi_int>(i)))) return system.control_names[i];
   }
   return {};
+}
+
+/// States but a clock, which is the time, controls, and the selections and constants of cells that change with them.
+SX moving_symbols(const Ocp& ocp) {
+  const System& system = ocp.system;
+  SX moving = system.u;
+  for (int i = 0; i < static_cast<int>(system.state_names.size()); ++i) {
+    if (!ocp.clock || ocp.clock->state != i) moving = SX::vertcat({moving, system.x(i)});
+  }
+  // Arguments hold symbols of earlier cells, functions those of cells and of earlier functions.
+  for (const auto& cell : system.cells) {
+    if (SX::depends_on(cell.argument, moving)) moving = SX::vertcat({moving, cell.symbols});
+  }
+  for (std::size_t j = 0; j < system.switching.size(); ++j) {
+    if (!SX::depends_on(system.switching[j].psi, moving)) continue;
+    moving = SX::vertcat({moving, system.alpha(static_cast<casadi_int>(j))});
+  }
+  return moving;
 }
 
 std::optional<Error> check_functions(const Ocp& ocp, const SourceLocation& table) {
@@ -48,6 +71,28 @@ std::optional<Error> check_functions(const Ocp& ocp, const SourceLocation& table
     }
   }
   return std::nullopt;
+}
+
+/// Says of pairs with a control that it is constant in an interval: another problem than the one with controls that
+/// follow the time.
+void warn_of_controls_in_pairs(Ocp& ocp, const Description& description) {
+  const auto& stated = description.optimize->path_complementarities;
+  for (std::size_t i = 0; i < ocp.complementarities.size(); ++i) {
+    const auto& [first, second] = ocp.complementarities[i];
+    const System& system = ocp.system;
+    const std::string control = control_in(SX::vertcat({system.outputs(first), system.outputs(second)}), system);
+    if (control.empty()) continue;
+    const bool is_written = i < stated.size();
+    const std::string pair = is_written ? fmt::format("['{}', '{}']", expression::to_text(*stated[i].first),
+                                                      expression::to_text(*stated[i].second))
+                                        : std::to_string(i + 1);
+    ocp.warnings.push_back(located(
+        is_written ? stated[i].location : SourceLocation{},
+        fmt::format("the pair {} of path_complementarities has the control '{}', which is constant in each control "
+                    "interval: a side that is positive with it is so in the whole interval. Take more "
+                    "control_intervals, or make '{}' a state with a rate, if sides change within one",
+                    pair, control, control)));
+  }
 }
 
 }  // namespace
@@ -93,6 +138,36 @@ Error wrong_sample_width(const LeastSquaresDescription& stated, std::size_t row)
                  "one column per expression of `of`, in their order", stated.location);
 }
 
+std::optional<Error> check_times(const OcpLeastSquares& term, const LeastSquaresDescription& stated, const Ocp& ocp) {
+  if (term.times.empty()) return std::nullopt;
+  if (ocp.horizon.free) {
+    return mistake("least_squares at times, and the horizon is free",
+                   "fix the horizon: it is not known in which interval a time lies", stated.location,
+                   ErrorCode::not_available);
+  }
+  if (ocp.clock) {
+    return mistake("least_squares at times, and time stands still at contacts, by hysteresis or by hand",
+                   "give references at the ends of intervals: at = \"intervals\"", stated.location,
+                   ErrorCode::not_available);
+  }
+  const double last = ocp.from + ocp.horizon.value;
+  const double rounding = beside_horizon * ocp.horizon.value;
+  for (std::size_t row = 0; row < term.times.size(); ++row) {
+    const double time = term.times[row];
+    const auto place = row < stated.rows.size() ? stated.rows[row] : stated.location;
+    if (row > 0 && time < term.times[row - 1]) {
+      return mistake(
+          fmt::format("row {}: the time {} is behind {}, of the row before", row + 1, time, term.times[row - 1]),
+          "sort the rows by their times", place);
+    }
+    if (time >= ocp.from - rounding && time <= last + rounding) continue;
+    return mistake(
+        fmt::format("row {}: the time {} is outside of the horizon, from {} to {}", row + 1, time, ocp.from, last),
+        "leave the row out, or change `from` and `horizon`", place);
+  }
+  return std::nullopt;
+}
+
 std::optional<Error> check_least_squares(const OcpLeastSquares& term, const LeastSquaresDescription& stated) {
   const auto n = term.of.size();
   if (!term.reference.empty() && term.reference.size() != n) {
@@ -130,17 +205,7 @@ Error unknown_guess(const GuessDescription& stated, const Ocp& ocp) {
 
 std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& stated, const Ocp& ocp) {
   const auto& system = ocp.system;
-  const SX expression = system.outputs(guess.output);
-  if (SX::depends_on(expression, system.alpha)) {
-    return mistake(fmt::format("the guess of '{}' has kinks or jumps", stated.name),
-                   "give a smooth expression of t, or the name of a stored result", stated.location);
-  }
-  SX moving = system.u;
-  for (int i = 0; i < static_cast<int>(system.state_names.size()); ++i) {
-    // A clock is the time.
-    if (!ocp.clock || ocp.clock->state != i) moving = SX::vertcat({moving, system.x(i)});
-  }
-  if (!SX::depends_on(expression, moving)) return std::nullopt;
+  if (!SX::depends_on(system.outputs(guess.output), moving_symbols(ocp))) return std::nullopt;
   return mistake(fmt::format("the guess of '{}' depends on states or controls", stated.name),
                  "a guess is an expression of t and parameters", stated.location);
 }
@@ -193,6 +258,7 @@ std::optional<Error> check(Ocp& ocp, const Description& description) {
       ocp.warnings.push_back(fmt::format("[[events]] with stop = true do not stop an optimisation"));
     }
   }
+  warn_of_controls_in_pairs(ocp, description);
   return check_functions(ocp, location);
 }
 

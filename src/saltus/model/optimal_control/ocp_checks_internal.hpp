@@ -16,6 +16,9 @@ namespace saltus::model {
                                                const SourceLocation& location);
 [[nodiscard]] std::optional<Error> check_constraint(const OcpConstraint& constraint, const SourceLocation& location);
 [[nodiscard]] Error wrong_sample_width(const LeastSquaresDescription& stated, std::size_t row);
+/// Checks that measurements are numbers that ascend within a horizon that is known, where time never stands still.
+[[nodiscard]] std::optional<Error> check_times(const OcpLeastSquares& term, const LeastSquaresDescription& stated,
+                                               const Ocp& ocp);
 [[nodiscard]] std::optional<Error> check_least_squares(const OcpLeastSquares& term,
                                                        const LeastSquaresDescription& stated);
 [[nodiscard]] Error unknown_guess(const GuessDescription& stated, const Ocp& ocp);

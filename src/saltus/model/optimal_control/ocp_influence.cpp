@@ -32,12 +32,17 @@ class Influence {
     parameters_ = {system.p, ocp.free_parameters};
     parameters_.entries.resize(size(system.p), false);
     selections_ = {system.alpha, std::vector<bool>(size(system.alpha), false)};
+    for (const auto& cell : system.cells) {
+      cells_.symbols = casadi::SX::vertcat({cells_.symbols, cell.symbols});
+      first_constants_.push_back(cells_.entries.size());
+      cells_.entries.resize(size(cells_.symbols), false);
+    }
     spread();
   }
 
   [[nodiscard]] bool reaches(const casadi::SX& value) const {
     const auto touched = [&](const Moved& group) { return touches(value, group); };
-    return touched(states_) || touched(controls_) || touched(parameters_) || touched(selections_);
+    return touched(states_) || touched(controls_) || touched(parameters_) || touched(selections_) || touched(cells_);
   }
 
  private:
@@ -59,6 +64,7 @@ class Influence {
       for (std::size_t i = 0; i < states_.entries.size(); ++i) {
         grows = add(ocp_.system.f(static_cast<casadi_int>(i)), states_, i) || grows;
       }
+      grows = spread_to_cells() || grows;
     }
   }
 
@@ -68,18 +74,33 @@ class Influence {
     return true;
   }
 
+  /// All constants of a cell change with its argument.
+  bool spread_to_cells() {
+    bool grows = false;
+    for (std::size_t c = 0; c < first_constants_.size(); ++c) {
+      const auto& cell = ocp_.system.cells[c];
+      if (!add(cell.argument, cells_, first_constants_[c])) continue;
+      std::fill_n(cells_.entries.begin() + static_cast<std::ptrdiff_t>(first_constants_[c]), cell.symbols.numel(),
+                  true);
+      grows = true;
+    }
+    return grows;
+  }
+
   const Ocp& ocp_;
   Moved states_, controls_, parameters_, selections_;
+  Moved cells_{casadi::SX(0, 1), {}};         ///< constants of all cells
+  std::vector<std::size_t> first_constants_;  ///< of each cell
 };
 
 }  // namespace
 
 std::vector<std::string> idle_costs(const Ocp& ocp) {
   std::vector<std::string> found;
-  if (!ocp.running_cost && !ocp.terminal_cost && ocp.time_weight == 0.0 && ocp.least_squares.empty()) {
+  if (!ocp.running_cost && !ocp.terminal_cost && ocp.horizon.time_weight == 0.0 && ocp.least_squares.empty()) {
     found.emplace_back("nothing is minimised: every feasible point is as good as any other");
   }
-  if (ocp.time_weight != 0.0 && !ocp.horizon.free) {
+  if (ocp.horizon.time_weight != 0.0 && !ocp.horizon.free) {
     found.emplace_back("minimize_time adds a constant: the horizon is fixed");
   }
   try {

@@ -46,7 +46,8 @@ Expected<System> OcpQuantities::build(const std::vector<Override>& overrides) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     if (is_free(description_, system->parameter_names[i])) p[i] = std::numeric_limits<double>::quiet_NaN();
   }
-  const SX moving = SX::vertcat({system->t, system->x, system->u, system->alpha});
+  SX moving = SX::vertcat({system->t, system->x, system->u, system->alpha});
+  for (const auto& cell : system->cells) moving = SX::vertcat({moving, cell.symbols});
   const casadi::Function outputs("saltus_constants", {system->p, moving}, {system->outputs});
   const auto nan = casadi::DM::nan(moving.size1(), moving.size2());
   const std::vector<double> all =

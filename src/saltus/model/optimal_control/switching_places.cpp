@@ -36,8 +36,23 @@ class PlacesOfNames {
   void look(const std::vector<NamedExpression>& list) {
     for (const auto& entry : list) look(entry.expression);
   }
+  void look(const OcpDescription& problem) {
+    look(problem.running_cost);
+    look(problem.terminal_cost);
+    for (const auto* constraints : {&problem.path_constraints, &problem.terminal_constraints}) {
+      for (const auto& constraint : *constraints) look(constraint.sides);
+    }
+    for (const auto& pair : problem.path_complementarities) look(std::vector{pair.first, pair.second});
+    for (const auto& term : problem.least_squares) {
+      look(term.of);
+      look(term.reference);
+    }
+  }
 
  private:
+  void look(const std::vector<NodePtr>& nodes) {
+    for (const auto& node : nodes) look(node);
+  }
   static bool is_comparison(BinaryOperator op) { return op >= BinaryOperator::less && op <= BinaryOperator::not_equal; }
 
   void look(const expression::Call& call, const Node& node) {
@@ -81,8 +96,7 @@ std::map<std::string, SourceLocation> switching_places(const Description& descri
   names.look(description.definitions);
   names.look(description.outputs);
   if (!description.optimize) return places;
-  names.look(description.optimize->running_cost);
-  names.look(description.optimize->terminal_cost);
+  names.look(*description.optimize);
   return places;
 }
 

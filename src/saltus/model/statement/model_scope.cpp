@@ -16,6 +16,19 @@ void collect(const Entries& entries, NameKind kind, std::vector<std::pair<std::s
   for (const auto& entry : entries) found.push_back({entry.name, {kind, index++, entry.location}});
 }
 
+/// Tables are called.
+void note_calls(const saltus::expression::Node& node, std::set<std::string>& used) {
+  if (const auto* unary = std::get_if<saltus::expression::Unary>(&node.value)) note_calls(*unary->operand, used);
+  if (const auto* binary = std::get_if<saltus::expression::Binary>(&node.value)) {
+    note_calls(*binary->left, used);
+    note_calls(*binary->right, used);
+  }
+  const auto* call = std::get_if<saltus::expression::Call>(&node.value);
+  if (call == nullptr) return;
+  used.insert(call->function);
+  for (const auto& argument : call->arguments) note_calls(*argument, used);
+}
+
 }  // namespace
 
 ModelScope::ModelScope(const Description& description, Recognition& recognition, Statement& statement)
@@ -262,6 +275,7 @@ Expected<double> ModelScope::value(const saltus::expression::Node& node, Reach r
 void ModelScope::note_names(const saltus::expression::NodePtr& node) {
   if (!node) return;
   for (auto& name : saltus::expression::names_in(*node)) used_.insert(std::move(name));
+  note_calls(*node, used_);
 }
 
 }  // namespace saltus::model

@@ -95,6 +95,15 @@ Error condition_found(const Node& node) {
           {}};
 }
 
+/// A problem has replaced what it may say (optimal_control/initial_values).
+Error initial_elsewhere(const expression::Call& call, const SourceLocation& location) {
+  return {ErrorCode::invalid_model,
+          fmt::format("'{}' may stand in terminal_constraints and terminal_cost of [optimize] only", call_text(call)),
+          "write the number or the parameter that is the initial value in [states]",
+          location,
+          {}};
+}
+
 int casadi_operation(BinaryOperator op) {
   switch (op) {
     case BinaryOperator::add:
@@ -152,6 +161,7 @@ Expected<SXElem> Translation::binary(const expression::Binary& binary, const Sou
 }
 
 Expected<SXElem> Translation::call(const expression::Call& call, const SourceLocation& location) {
+  if (call.function == "initial") return tl::unexpected(initial_elsewhere(call, location));
   if (call.function == "if")
     return branch(call).map_error([&](Error e) { return with_location(std::move(e), location); });
   const auto first = number(*call.arguments.front());

@@ -13,11 +13,15 @@ namespace {
 using casadi::SX;
 
 /// The only state of an expression that is affine in it, with coefficients of parameters.
-std::optional<std::size_t> single_linear_state(const model::System& system, const SX& expression) {
+std::optional<std::size_t> single_linear_state(const model::Ocp& ocp, const SX& expression) {
+  const auto& system = ocp.system;
   const auto depends = [](const SX& e, const SX& on) { return on.numel() > 0 && SX::depends_on(e, on); };
   if (depends(expression, system.t) || depends(expression, system.u) || depends(expression, system.alpha)) return {};
   for (const auto& cell : system.cells) {
     if (depends(expression, cell.symbols)) return {};
+  }
+  for (const auto& initial : ocp.initial_values) {  // a periodic solution does not stay where it begins
+    if (ocp.free_states[at(initial.state)] && depends(expression, system.p(initial.parameter))) return {};
   }
   std::optional<std::size_t> found;
   for (casadi_int i = 0; i < system.x.numel(); ++i) {
@@ -41,7 +45,7 @@ Expected<std::vector<std::optional<double>>> linear_targets(const model::Ocp& oc
     if (constraint.norm != model::ConstraintNorm::hard || constraint.lower != constraint.upper) continue;
     std::optional<std::size_t> state;
     try {
-      state = single_linear_state(ocp.system, ocp.system.outputs(constraint.output));
+      state = single_linear_state(ocp, ocp.system.outputs(constraint.output));
     } catch (const std::exception& exception) {
       return tl::unexpected(Error{ErrorCode::invalid_model,
                                   fmt::format("CasADi refused '{}': {}", constraint.name, exception.what()),

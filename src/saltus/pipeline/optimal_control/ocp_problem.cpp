@@ -50,7 +50,9 @@ std::optional<Error> check_freedom(const model::Ocp& ocp, const std::vector<int>
                                    const OptimizeOptions& options) {
   const auto count = [](const std::vector<bool>& is_free) { return std::count(is_free.begin(), is_free.end(), true); };
   const auto intervals = std::ssize(elements);
-  const auto freedom = intervals * ocp.user_controls + count(ocp.free_states) + count(ocp.free_parameters) +
+  const auto copies = std::count_if(ocp.initial_values.begin(), ocp.initial_values.end(),
+                                    [&](const auto& one) { return ocp.free_states[at(one.state)]; });
+  const auto freedom = intervals * ocp.user_controls + count(ocp.free_states) + count(ocp.free_parameters) - copies +
                        (ocp.horizon.free ? 1 : 0) +
                        (ocp.clock && ocp.clock->speed_lower < ocp.clock->speed_upper ? intervals : 0);
   std::vector<std::string> named;
@@ -162,7 +164,7 @@ std::unique_ptr<discretization::OcpProblem> stored_problem(const model::Ocp& ocp
   std::vector<int> elements;
   for (const auto& lengths : stored.h) elements.push_back(static_cast<int>(lengths.size()));
   const bool has_samples = std::any_of(ocp.least_squares.begin(), ocp.least_squares.end(),
-                                       [&](const auto& term) { return term.samples.size() > 0; });
+                                       [&](const auto& term) { return term.samples_per_interval() > 0; });
   if (elements.empty() || has_samples) return nullptr;
   auto problem = discretization::OcpProblem::make(kernel, ocp, dcs, elements);
   const bool fits = problem && std::ssize(stored.primal) == (*problem)->variables();
@@ -211,6 +213,8 @@ Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptio
     auto taken = take_result(ocp, *options.start_from, intervals, fractions, guess);
     if (!taken) return tl::unexpected(taken.error());
   }
+  for (const auto& [state, parameter] : ocp.initial_values)
+    guess.parameters[at(parameter)] = guess.initial_state[at(state)];
   (*problem)->set_start(guess);
   if (options.start_from) take_elements(ocp, *dcs, *kernel, *options.start_from, **problem);
   if (const auto name = (*problem)->not_finite((*problem)->start()); !name.empty()) {

@@ -34,7 +34,7 @@ result::Result begin_optimum(const model::Ocp& ocp, const std::vector<double>& p
   }
   const int stabilisation = system.freezing ? system.freezing->stabilisation : -1;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (static_cast<int>(i) == stabilisation) continue;  // not one of the model
+    if (static_cast<int>(i) == stabilisation || ocp.is_initial_value(i)) continue;  // not one of the model
     result.model.parameters.emplace_back(system.parameter_names[i], parameters[i]);
   }
   return result;
@@ -82,7 +82,8 @@ void add_plan(const model::Ocp& ocp, const discretization::OcpSolution& plan, st
   found.control_upper.assign(system.control_upper.begin(), system.control_upper.begin() + n);
   found.horizon = plan.horizon;
   for (std::size_t i = 0; i < plan.parameters.size(); ++i) {
-    if (ocp.free_parameters[i]) found.parameters.emplace_back(system.parameter_names[i], plan.parameters[i]);
+    if (ocp.free_parameters[i] && !ocp.is_initial_value(i))
+      found.parameters.emplace_back(system.parameter_names[i], plan.parameters[i]);
   }
   const std::size_t intervals = plan.controls.size();
   for (std::size_t k = 0; k <= intervals; ++k) {

@@ -248,13 +248,14 @@ result::OpenLoop open_loop_of(const Ocp& ocp, const OptimizedPath& path, const S
 std::vector<std::pair<std::string, double>> differing_values(const Ocp& ocp) {
   std::vector<std::pair<std::string, double>> list;
   if (!ocp.plant) return list;
-  const auto compare = [&](const auto& names, const auto& values, const auto& planned) {
+  const auto compare = [&](const auto& names, const auto& values, const auto& planned, const auto& is_shown) {
     for (std::size_t i = 0; i < names.size(); ++i) {
-      if (values[i] != planned[i]) list.emplace_back(names[i], values[i]);
+      if (values[i] != planned[i] && is_shown(i)) list.emplace_back(names[i], values[i]);
     }
   };
-  compare(ocp.plant->parameter_names, ocp.plant->parameter_values, ocp.system.parameter_values);
-  compare(ocp.plant->state_names, ocp.plant->initial_state, ocp.system.initial_state);
+  compare(ocp.plant->parameter_names, ocp.plant->parameter_values, ocp.system.parameter_values,
+          [&](std::size_t i) { return !ocp.is_initial_value(i); });
+  compare(ocp.plant->state_names, ocp.plant->initial_state, ocp.system.initial_state, [](std::size_t) { return true; });
   return list;
 }
 

@@ -51,7 +51,7 @@ std::optional<OptionProblem> problem_of_references(const OptimizeOptions& option
     const auto rows = part.samples.size();
     const bool fits =
         rows == static_cast<std::size_t>(options.control_intervals) || (rows == 1 && part.at == model::CostPoints::end);
-    if (rows == 0 || fits) continue;
+    if (rows == 0 || fits || !part.times.empty()) continue;
     auto found = misfit("control_intervals",
                         fmt::format("{} has {} row{}, control_intervals is {}", part.file, rows, rows == 1 ? "" : "s",
                                     options.control_intervals),

@@ -146,14 +146,16 @@ constexpr std::array keys_of_problem{
     ProblemKey{"minimize_time", "true, false, or an expression", "Adds the horizon; true is the weight 1."},
     ProblemKey{"path_constraints", "a list of comparisons", "Hold along the solution: \"q <= 3\", \"-1 <= v <= 2\"."},
     ProblemKey{"path_constraints_at", "intervals, elements, stages", "Where they are required; intervals without."},
-    ProblemKey{"terminal_constraints", "a list of comparisons", "Hold at the end."},
+    ProblemKey{"terminal_constraints", "a list of comparisons", "Hold at the end; initial(q) is q at the start."},
     ProblemKey{"path_complementarities", "a list of pairs",
-               "[[\"a\", \"b\"]]: a >= 0, b >= 0, one of them 0, at every stage."},
+               "[[\"a\", \"b\"]]: a >= 0, b >= 0, one of them 0, at every stage; controls in them are constant in an "
+               "interval."},
     ProblemKey{"initial_guess", "a table", "Where to begin: { q = \"t\" }, or { result = \"r.json\" }."},
     ProblemKey{
         "plant", "a table",
         "Parameters and initial values of the system that `closed_loop` simulates, where they differ: { mu = 0.7 }."},
-    ProblemKey{"least_squares", "[[optimize.least_squares]]", "Tables with of, reference, weight and at."},
+    ProblemKey{"least_squares", "[[optimize.least_squares]]",
+               "Tables with of, reference, weight and at; \"times\" are those of measurements in a file."},
 };
 
 /// Words of simulations, and what is meant by them here.
