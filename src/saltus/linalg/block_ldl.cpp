@@ -140,7 +140,10 @@ Front BlockLdl::Parts::open_front(int b) {
   make_room(x, 0, stride);
   Front front = front_of(factor);
   front.candidates = block.rows + delayed;
-  std::fill_n(front.entries, stride * (stride + fronts::tile_columns), 0.0);
+  for (int j = 0; j < front.size; ++j) {
+    const int first = j - j % fronts::tile_rows;
+    std::fill_n(front.column(j) + first, front.stride - first, 0.0);
+  }
   std::copy_n(tree.rows.begin() + block.first_row, block.rows, front.rows);
   std::copy_n(tree.boundary.begin() + block.first_boundary, block.boundary, front.rows + front.candidates);
   add_entries(block, front, delayed);

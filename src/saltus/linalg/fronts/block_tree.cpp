@@ -143,25 +143,34 @@ class TreeMaker {
   /// Numbers the places of entries by block, column and row of its front.
   void place_entries() {
     struct Place {
-      int block, column, row, value;
+      int row, value;
     };
-    std::vector<Place> places;
+    // First by column, in the order of elimination.
+    std::vector<int> start(at(tree_.size) + 1, 0);
     for (std::size_t e = 0; e < rows_.size(); ++e) {
-      int i = rows_[e], j = columns_[e];
-      if (place_[at(i)] < place_[at(j)]) std::swap(i, j);
-      const int block = block_[at(j)];
-      places.push_back({block, place_in(block, j), place_in(block, i), static_cast<int>(e)});
+      ++start[at(std::min(place_[at(rows_[e])], place_[at(columns_[e])])) + 1];
     }
-    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-      return std::tie(a.block, a.column, a.row, a.value) < std::tie(b.block, b.column, b.row, b.value);
-    });
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Place> places(rows_.size());
+    auto next = start;
+    for (std::size_t e = 0; e < rows_.size(); ++e) {
+      const auto [column, row] = std::minmax(place_[at(rows_[e])], place_[at(columns_[e])]);
+      places[at(next[at(column)]++)] = {row, static_cast<int>(e)};
+    }
     tree_.entry_of.resize(rows_.size());
-    for (std::size_t p = 0; p < places.size(); ++p) {
-      const Place& place = places[p];
-      const bool is_known = p > 0 && std::tie(place.block, place.column, place.row) ==
-                                         std::tie(places[p - 1].block, places[p - 1].column, places[p - 1].row);
-      if (!is_known) add_entry(place.block, place.column, place.row);
-      tree_.entry_of[at(place.value)] = tree_.entries() - 1;
+    for (int column = 0; column < tree_.size; ++column) {
+      const auto first = places.begin() + start[at(column)], last = places.begin() + start[at(column) + 1];
+      std::sort(first, last,
+                [](const Place& a, const Place& b) { return std::tie(a.row, a.value) < std::tie(b.row, b.value); });
+      const int block = block_[at(tree_.rows[at(column)])];
+      int before = -1;
+      for (auto place = first; place != last; ++place) {
+        if (place->row != before) {
+          before = place->row;
+          add_entry(block, column - tree_.blocks[at(block)].first_row, place_in(block, tree_.rows[at(before)]));
+        }
+        tree_.entry_of[at(place->value)] = tree_.entries() - 1;
+      }
     }
   }
 

@@ -10,7 +10,7 @@ namespace saltus::linalg::fronts {
 namespace {
 
 /// Rounds of equilibration: each halves the exponents that are left.
-constexpr int rounds_of_scaling = 3;
+constexpr int rounds_of_scaling = 2;
 /// The power of 2 next to 1 / sqrt(size), by the exponents of their bits; 1 where there is none.
 [[nodiscard]] double scale_for(double size) {
   constexpr int fraction_bits = 52, bias = 1023, none = 2047;
@@ -27,11 +27,16 @@ void equilibrate(std::span<const int> row, std::span<const int> column, std::spa
   std::fill(scale.begin(), scale.end(), 1.0);
   for (int round = 0; round < rounds_of_scaling; ++round) {
     std::fill(work.begin(), work.end(), 0.0);
-    for (std::size_t e = 0; e < values.size(); ++e) {
-      const auto i = at(row[e]), j = at(column[e]);
-      const double size = std::abs(values[e]) * scale[i] * scale[j];
-      work[i] = std::max(work[i], size);
-      work[j] = std::max(work[j], size);
+    for (std::size_t e = 0; e < values.size();) {
+      const int j = column[e];
+      double largest = 0.0;
+      for (; e < values.size() && column[e] == j; ++e) {
+        const auto i = at(row[e]);
+        const double size = std::abs(values[e]) * scale[i] * scale[at(j)];
+        work[i] = std::max(work[i], size);
+        largest = std::max(largest, size);
+      }
+      work[at(j)] = std::max(work[at(j)], largest);
     }
     for (std::size_t i = 0; i < scale.size(); ++i) scale[i] *= scale_for(work[i]);
   }
