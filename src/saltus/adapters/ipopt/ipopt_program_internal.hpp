@@ -21,6 +21,11 @@ class IpoptProgram final : public Ipopt::TNLP {
   /// Returns whether it was stopped because it was about to end above NlpOptions::objective_cutoff.
   [[nodiscard]] bool is_cut_off() const { return is_cut_off_; }
   [[nodiscard]] double objective() const { return objective_; }
+  /// Returns the block of each row of Ipopt's augmented system of this size (Problem::elimination_blocks); empty where
+  /// the problem has no order, or Ipopt has made another program of it.
+  [[nodiscard]] std::vector<int> elimination_blocks(int size) const;
+  /// Returns how many rows Ipopt sees.
+  [[nodiscard]] int rows() const { return static_cast<int>(rows_.size()); }
   [[nodiscard]] double evaluation_seconds() const { return evaluation_seconds_; }
 
   bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries, Ipopt::Index& hessian_entries,

@@ -2,10 +2,12 @@
 
 #include <IpIpoptApplication.hpp>
 #include <IpSolveStatistics.hpp>
+#include <IpTNLPAdapter.hpp>
 #include <algorithm>
 #include <cstdlib>
 #include <dlfcn.h>
 
+#include "saltus/adapters/ipopt/algorithm_builder_internal.hpp"
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/base/symbolic_lock.hpp"
@@ -85,10 +87,13 @@ bool keeps_structures(Ipopt::ApplicationReturnStatus status) {
 struct IpoptSolver::Implementation {
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new Ipopt::IpoptApplication(/*create_console_out=*/false);
   Ipopt::SmartPtr<IpoptProgram> program = new IpoptProgram;
+  Ipopt::SmartPtr<Ipopt::NLP> seen;  ///< the program as the algorithm sees it
+  Ipopt::SmartPtr<Ipopt::AlgorithmBuilder> builder;
   bool has_structures = false;  ///< it has solved a problem; the sizes of the next are its own
 
-  Implementation() {
+  explicit Implementation(LinearSolver linear_solver) : builder(new AlgorithmBuilder(linear_solver, *program)) {
     use_one_thread();
+    seen = new Ipopt::TNLPAdapter(Ipopt::GetRawPtr(program), Ipopt::ConstPtr(application->Jnlst()));
     auto options = application->Options();
     const bool are_set = options->SetIntegerValue("print_level", 0) && options->SetStringValue("sb", "yes") &&
                          options->SetStringValue("linear_solver", "mumps") &&
@@ -131,20 +136,20 @@ struct IpoptSolver::Implementation {
   }
 };
 
-IpoptSolver::IpoptSolver() : implementation_(std::make_unique<Implementation>()) {}
+IpoptSolver::IpoptSolver(LinearSolver linear_solver)
+    : implementation_(std::make_unique<Implementation>(linear_solver)) {}
 IpoptSolver::~IpoptSolver() = default;
 
 solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point, const solver::NlpOptions& options) {
   SALTUS_ASSERT(point.w.size() == nlp.variables());
-  auto& [application, program, has_structures] = *implementation_;
+  auto& [application, program, seen, builder, has_structures] = *implementation_;
   const bool has_multipliers = point.y.size() == nlp.constraints() && point.z_lower.size() == nlp.variables() &&
                                point.z_upper.size() == nlp.variables();
   implementation_->set_options(options, has_multipliers);
   program->set(nlp, point, options);
-  const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
   const auto status = [&] {
     const SymbolicPause pause;  // Ipopt itself lets one thread at a time use MUMPS
-    return has_structures ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
+    return has_structures ? application->ReOptimizeNLP(seen) : application->OptimizeNLP(seen, builder);
   }();
   has_structures = keeps_structures(status);
 
