@@ -37,7 +37,7 @@ std::vector<int> blocks_by_minimum_degree(Index size, Index equations, std::span
                                           std::span<const int> columns) {
   if (size == 0) return {};
   const auto n = static_cast<int>(size);
-  auto block = fronts::pair_equations(n, static_cast<int>(equations), rows, columns);
+  auto block = fronts::nodes_of_pairs(fronts::pair_equations(n, static_cast<int>(equations), rows, columns), n);
   const auto place = places_by_degree(block, rows, columns);
   for (int& b : block) b = place[at(b)];
   return fronts::merge_blocks(fronts::make_block_tree(n, rows, columns, block));

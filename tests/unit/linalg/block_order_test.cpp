@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <map>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "random_chains.hpp"
 #include "saltus/linalg/block_ldl.hpp"
+#include "saltus/linalg/fronts/pairs_internal.hpp"
 
 namespace saltus::linalg {
 namespace {
@@ -90,6 +93,15 @@ TEST(BlockOrder, pairs_as_many_equations_with_variables_as_it_can) {
   factors.analyse(6, rows, columns, block);
   EXPECT_EQ(factors.factorise(std::vector<double>{1.0, 1.0, 1.0, 1.0, 1.0, 1.0}), (Inertia{3, 3, 0}));
   EXPECT_EQ(factors.delayed_rows(), 0);
+}
+
+TEST(BlockOrder, pairs_equations_with_variables_of_their_block_where_it_can) {
+  // Equation 2 has variables 0, of a later block, and 1, of its own; equation 3 has only 1 in the second trial.
+  const std::vector<int> rows{2, 2, 3}, columns{0, 1, 1}, block{1, 0, 0, 0};
+  const auto first = [](const std::vector<int>& of, std::size_t count) { return std::span(of).first(count); };
+  EXPECT_EQ(fronts::pair_equations(3, 1, first(rows, 2), first(columns, 2), first(block, 3)),
+            (std::vector<int>{-1, 0}));
+  EXPECT_EQ(fronts::pair_equations(4, 2, rows, columns, block), (std::vector<int>{0, 1}));
 }
 
 TEST(BlockOrder, of_nothing_is_nothing) { EXPECT_TRUE(blocks_by_minimum_degree(0, 0, {}, {}).empty()); }

@@ -6,9 +6,10 @@
 namespace saltus::adapters {
 namespace {
 
-/// Where solutions are not exact enough, pivots are compared with their columns more strictly, at most up to half.
+/// Where solutions are not exact enough, pivots are compared with their columns more strictly. Ipopt's limit for MUMPS:
+/// above, thousands of rows are delayed for no more digits.
 constexpr double stricter = 100.0;
-constexpr double strictest = 0.5;
+constexpr double strictest = 0.1;
 
 }  // namespace
 

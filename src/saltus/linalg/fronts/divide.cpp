@@ -126,14 +126,17 @@ std::vector<int> divide_blocks(Index equations, std::span<const int> rows, std::
                                std::span<const int> block) {
   const auto size = static_cast<int>(block.size());
   if (size == 0) return {};
-  std::vector<int> inner_rows, inner_columns;
-  for (std::size_t e = 0; e < rows.size(); ++e) {
-    if (block[at(rows[e])] != block[at(columns[e])]) continue;
-    inner_rows.push_back(rows[e]);
-    inner_columns.push_back(columns[e]);
+  const auto equation = fronts::pair_equations(size, static_cast<int>(equations), rows, columns, block);
+  // An equation whose variable is eliminated later would have no pivot before.
+  std::vector<int> later(block.begin(), block.end());
+  for (std::size_t v = 0; v < equation.size(); ++v) {
+    if (equation[v] < 0) continue;
+    const auto row = equation.size() + at(equation[v]);
+    if (later[row] < later[v]) later[row] = later[v];
+    if (later[v] < later[row]) later[v] = later[row];
   }
-  const auto node = fronts::pair_equations(size, static_cast<int>(equations), inner_rows, inner_columns);
-  const auto place = Division(fronts::make_block_tree(size, rows, columns, block), node).run();
+  const auto node = fronts::nodes_of_pairs(equation, size);
+  const auto place = Division(fronts::make_block_tree(size, rows, columns, later), node).run();
   return fronts::merge_blocks(fronts::make_block_tree(size, rows, columns, place));
 }
 

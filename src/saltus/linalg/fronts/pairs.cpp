@@ -9,13 +9,20 @@ namespace {
 /// Gives equations variables of their own, as many as can have one.
 class Matching {
  public:
-  Matching(const Graph& variables_of, int equations, int variables)
-      : variables_of_(variables_of), next_(at(equations)), seen_(at(variables), -1), equation_(at(variables), -1) {}
+  /// @param equation  of each variable, or -1; they are kept, perhaps with other variables
+  Matching(const Graph& variables_of, int equations, std::vector<int> equation)
+      : variables_of_(variables_of), next_(at(equations)), seen_(equation.size(), -1), equation_(std::move(equation)) {}
 
   /// The equation of each variable, or -1.
   std::vector<int> run() {
-    std::vector<int> order(next_.size());
-    std::iota(order.begin(), order.end(), 0);
+    std::vector<int> order;
+    std::vector<bool> has_one(next_.size(), false);
+    for (const int equation : equation_) {
+      if (equation >= 0) has_one[at(equation)] = true;
+    }
+    for (int equation = 0; equation < std::ssize(next_); ++equation) {
+      if (!has_one[at(equation)]) order.push_back(equation);
+    }
     std::stable_sort(order.begin(), order.end(),
                      [this](int i, int j) { return variables_of_.of(i).size() < variables_of_.of(j).size(); });
     for (const int equation : order) find(equation);
@@ -70,14 +77,23 @@ Graph::Graph(int size, std::vector<std::pair<int, int>> edges) : start(at(size) 
   std::partial_sum(start.begin(), start.end(), start.begin());
 }
 
-std::vector<int> pair_equations(int size, int equations, std::span<const int> rows, std::span<const int> columns) {
+std::vector<int> pair_equations(int size, int equations, std::span<const int> rows, std::span<const int> columns,
+                                std::span<const int> block) {
   const int variables = size - equations;
-  std::vector<std::pair<int, int>> entries;
+  std::vector<std::pair<int, int>> all, inside;
   for (std::size_t e = 0; e < rows.size(); ++e) {
     const auto [low, high] = std::minmax(rows[e], columns[e]);
-    if (low < variables && high >= variables) entries.emplace_back(high - variables, low);
+    if (low >= variables || high < variables) continue;
+    all.emplace_back(high - variables, low);
+    if (!block.empty() && block[at(low)] == block[at(high)]) inside.push_back(all.back());
   }
-  const auto equation = Matching(Graph(equations, std::move(entries)), equations, variables).run();
+  std::vector<int> equation(at(variables), -1);
+  equation = Matching(Graph(equations, std::move(inside)), equations, std::move(equation)).run();
+  return Matching(Graph(equations, std::move(all)), equations, std::move(equation)).run();
+}
+
+std::vector<int> nodes_of_pairs(const std::vector<int>& equation, int size) {
+  const int variables = static_cast<int>(equation.size());
   std::vector<int> node(at(size), -1);
   int nodes = 0;
   for (int v = 0; v < variables; ++v) {
