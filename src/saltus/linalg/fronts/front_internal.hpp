@@ -9,7 +9,7 @@ namespace saltus::linalg::fronts {
 inline constexpr int tile_rows = 8;
 inline constexpr int tile_columns = 4;
 /// Pivots whose updates of later columns are made together.
-inline constexpr int panel_pivots = 8;
+inline constexpr int panel_pivots = 12;
 
 /// Holds the inverse of a pivot: of one row, or with the next pivot that of two, where `below` is not 0.
 struct Pivot {

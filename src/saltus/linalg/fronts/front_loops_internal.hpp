@@ -39,19 +39,17 @@ SALTUS_INLINE double largest(const double* x, int first, int last) {
 }
 
 /// x -= sum over q of factors[q] * columns[q * stride] for the entries from `first` to before `last`.
-SALTUS_INLINE void subtract_columns(double* x, int first, int last, const double* columns, std::ptrdiff_t stride,
-                                    const double* factors, int count) {
+SALTUS_INLINE void subtract_columns(double* __restrict x, int first, int last, const double* columns,
+                                    std::ptrdiff_t stride, const double* factors, int count) {
   int q = 0;
   for (; q + 4 <= count; q += 4) {
     const double *a = columns + q * stride, *b = a + stride, *c = b + stride, *d = c + stride;
     const double fa = factors[q], fb = factors[q + 1], fc = factors[q + 2], fd = factors[q + 3];
-#pragma GCC ivdep
     for (int i = first; i < last; ++i) x[i] -= (a[i] * fa + b[i] * fb) + (c[i] * fc + d[i] * fd);
   }
   for (; q < count; ++q) {
     const double* a = columns + q * stride;
     const double fa = factors[q];
-#pragma GCC ivdep
     for (int i = first; i < last; ++i) x[i] -= a[i] * fa;
   }
 }
@@ -171,10 +169,9 @@ struct Elimination {
 
   /// Whether candidate c, whose column is in x, is a pivot; and if it is, eliminates it.
   SALTUS_INLINE bool try_one(int c) {
-    const double diagonal = std::exchange(x[c], 0.0);
-    inside = largest(x, done, front.candidates);
+    const double diagonal = x[c];
+    inside = std::max(largest(x, done, c), largest(x, c + 1, front.candidates));
     outside = largest(x, front.candidates, front.size);
-    x[c] = diagonal;
     const double size = std::abs(diagonal);
     if (!(size > rule.smallest) || size < rule.tolerance * std::max(inside, outside)) return false;
     accept_one(c);
