@@ -54,7 +54,8 @@ class SparseLu : public SparseLuOf<double> {
 /// threshold.
 [[nodiscard]] std::vector<Index> dependent_columns(const SparseColumns& a, double threshold);
 
-/// An order of least degree of a square matrix with these places of entries (AMD, of A + A').
+/// An order of least degree of a square matrix with these places of entries (AMD, of A + A'). A row without a diagonal
+/// entry counts as dense and comes last.
 [[nodiscard]] std::vector<std::size_t> order_of_least_degree(Index size, std::span<const int> start,
                                                              std::span<const int> rows);
 

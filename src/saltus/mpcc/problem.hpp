@@ -113,6 +113,9 @@ class Problem {
   [[nodiscard]] virtual std::string row_name(int row) const;
   /// Returns structure for solvers that use it; null for problems without any.
   [[nodiscard]] virtual const Chain* chain() const { return nullptr; }
+  /// Returns the block of each variable in an order in which a linear solver may eliminate them, block by block with
+  /// increasing numbers (elimination.hpp); empty where nothing is known.
+  [[nodiscard]] virtual std::vector<int> elimination_blocks() const { return {}; }
 
   // A discretisation may add terms of its own to the objective and rows of its own to g. They steer the relaxed
   // problems and are no part of what the user asks for.

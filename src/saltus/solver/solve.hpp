@@ -13,6 +13,7 @@
 #include "saltus/solver/lpcc_solver.hpp"
 #include "saltus/solver/multipliers.hpp"
 #include "saltus/solver/nlp_solver.hpp"
+#include "saltus/solver/strategy.hpp"
 
 namespace saltus::solver {
 
@@ -20,12 +21,6 @@ namespace saltus::solver {
 enum class FirstProblem {
   relaxed,  ///< that of the first sigma
   branch,   ///< that of the sides of the start, which are right where it is a solution of a similar problem
-};
-
-/// Names how the relaxed problems are solved.
-enum class Strategy {
-  structured,  ///< all in one loop of the interior-point method: sigma falls inside of it
-  ipopt,       ///< one after the other
 };
 
 /// Holds [optimize.mpcc] (docs/options.md).

@@ -56,12 +56,13 @@ struct PolynomialStatement {
   std::vector<Polynomial> H;
   Bounds w_bounds;  ///< none if empty
   Bounds g_bounds;
+  std::vector<int> elimination_blocks{};  ///< unknown if empty
 };
 
 class PolynomialProblem : public Problem {
  public:
   explicit PolynomialProblem(PolynomialStatement statement) : statement_(std::move(statement)) {
-    auto& [n, f, g, G, H, w_bounds, g_bounds] = statement_;
+    auto& [n, f, g, G, H, w_bounds, g_bounds, blocks] = statement_;
     if (w_bounds.lower.size() == 0) {
       w_bounds.upper = linalg::Vector::constant(n, std::numeric_limits<double>::infinity());
       w_bounds.lower = -w_bounds.upper;
@@ -111,6 +112,7 @@ class PolynomialProblem : public Problem {
   }
   [[nodiscard]] const Pattern& jacobian_pattern() const override { return jacobian_; }
   [[nodiscard]] const Pattern& hessian_pattern() const override { return hessian_; }
+  [[nodiscard]] std::vector<int> elimination_blocks() const override { return statement_.elimination_blocks; }
   /// Lets tests say that a side follows from bounds.
   void set_sign(int side, Sign sign) { signs_[static_cast<std::size_t>(side)] = sign; }
 

@@ -54,17 +54,4 @@ bool BarrierUpdate::UpdateBarrierParameter() {
   return true;
 }
 
-Ipopt::SmartPtr<Ipopt::LineSearch> LoopBuilder::BuildLineSearch(const Ipopt::Journalist& journalist,
-                                                                const Ipopt::OptionsList& options,
-                                                                const std::string& prefix) {
-  line_search_ = AlgorithmBuilder::BuildLineSearch(journalist, options, prefix);
-  return line_search_;
-}
-
-Ipopt::SmartPtr<Ipopt::MuUpdate> LoopBuilder::BuildMuUpdate(const Ipopt::Journalist& /*journalist*/,
-                                                            const Ipopt::OptionsList& /*options*/,
-                                                            const std::string& /*prefix*/) {
-  return new BarrierUpdate(line_search_, loop_);
-}
-
 }  // namespace saltus::adapters

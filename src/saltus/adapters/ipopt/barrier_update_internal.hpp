@@ -1,7 +1,6 @@
 // Barrier parameters that whoever states the problem chooses while Ipopt's loop runs.
 #pragma once
 
-#include <IpAlgBuilder.hpp>
 #include <IpLineSearch.hpp>
 #include <IpMuUpdate.hpp>
 
@@ -32,21 +31,6 @@ class BarrierUpdate final : public Ipopt::MuUpdate {
 
   Ipopt::SmartPtr<Ipopt::LineSearch> line_search_;
   BarrierLoop& loop_;
-};
-
-/// Builds Ipopt's algorithm with these barrier parameters.
-class LoopBuilder final : public Ipopt::AlgorithmBuilder {
- public:
-  explicit LoopBuilder(BarrierLoop& loop) : loop_(loop) {}
-  Ipopt::SmartPtr<Ipopt::LineSearch> BuildLineSearch(const Ipopt::Journalist& journalist,
-                                                     const Ipopt::OptionsList& options,
-                                                     const std::string& prefix) override;
-  Ipopt::SmartPtr<Ipopt::MuUpdate> BuildMuUpdate(const Ipopt::Journalist& journalist, const Ipopt::OptionsList& options,
-                                                 const std::string& prefix) override;
-
- private:
-  BarrierLoop& loop_;
-  Ipopt::SmartPtr<Ipopt::LineSearch> line_search_;
 };
 
 }  // namespace saltus::adapters

@@ -3,8 +3,10 @@
 #include <limits>
 
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/base/stopwatch.hpp"
+#include "saltus/mpcc/elimination.hpp"
 
 namespace saltus::adapters {
 namespace {
@@ -130,6 +132,25 @@ void IpoptProgram::find_rows() {
   }
   c_ = y_ = linalg::Vector::zero(problem_->constraints());
   jacobian_ = linalg::Vector::zero(pattern.entries());
+}
+
+std::vector<int> IpoptProgram::elimination_blocks(int size) const {
+  const auto of_variables = problem_->elimination_blocks();
+  if (of_variables.empty()) return {};
+  const auto of_rows = mpcc::blocks_of_rows(of_variables, problem_->jacobian_pattern(), problem_->constraints());
+  std::vector<int> blocks, of_equations, of_inequalities;
+  for (int i = 0; i < problem_->variables(); ++i) {
+    const bool is_fixed = problem_->variable_bounds().lower[i] == problem_->variable_bounds().upper[i];
+    if (!is_fixed) blocks.push_back(of_variables[at(i)]);
+  }
+  for (const int row : rows_) {
+    const bool is_equation = problem_->constraint_bounds().lower[row] == problem_->constraint_bounds().upper[row];
+    (is_equation ? of_equations : of_inequalities).push_back(of_rows[at(row)]);
+  }
+  for (const auto& more : {of_inequalities, of_equations, of_inequalities}) {
+    blocks.insert(blocks.end(), more.begin(), more.end());
+  }
+  return std::ssize(blocks) == size ? blocks : std::vector<int>();
 }
 
 bool IpoptProgram::get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries,

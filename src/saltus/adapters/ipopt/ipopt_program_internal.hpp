@@ -28,6 +28,11 @@ class IpoptProgram final : public Ipopt::TNLP {
   [[nodiscard]] bool is_too_long() const { return pace_.longest > 0 && pace_.untaken > pace_.longest; }
   /// Makes the current iterate the point.
   void take_iterate(const Ipopt::IpoptData* data, Ipopt::IpoptCalculatedQuantities* quantities);
+  /// Returns the block of each row of Ipopt's augmented system of this size (Problem::elimination_blocks); empty where
+  /// the problem has no order, or Ipopt has made another program of it.
+  [[nodiscard]] std::vector<int> elimination_blocks(int size) const;
+  /// Returns how many rows Ipopt sees.
+  [[nodiscard]] int rows() const { return static_cast<int>(rows_.size()); }
   [[nodiscard]] double evaluation_seconds() const { return evaluation_seconds_; }
 
   bool get_nlp_info(Ipopt::Index& n, Ipopt::Index& m, Ipopt::Index& jacobian_entries, Ipopt::Index& hessian_entries,

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <dlfcn.h>
 
-#include "saltus/adapters/ipopt/barrier_update_internal.hpp"
+#include "saltus/adapters/ipopt/algorithm_builder_internal.hpp"
 #include "saltus/adapters/ipopt/ipopt_program_internal.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/base/symbolic_lock.hpp"
@@ -139,9 +139,17 @@ void set_options_of_loop(Ipopt::IpoptApplication& application, const solver::Nlp
 }  // namespace
 
 struct IpoptSolver::Implementation {
+  LinearSolver linear_solver;
   Ipopt::SmartPtr<Ipopt::IpoptApplication> application = new_application();
   Ipopt::SmartPtr<IpoptProgram> program = new IpoptProgram;
+  Ipopt::SmartPtr<Ipopt::NLP> seen;  ///< the program as the algorithm sees it
+  Ipopt::SmartPtr<Ipopt::AlgorithmBuilder> builder;
   bool has_structures = false;  ///< it has solved a problem; the sizes of the next are its own
+
+  explicit Implementation(LinearSolver chosen)
+      : linear_solver(chosen), builder(new AlgorithmBuilder(chosen, *program)) {
+    seen = new Ipopt::TNLPAdapter(Ipopt::GetRawPtr(program), Ipopt::ConstPtr(application->Jnlst()));
+  }
 
   void set_options(const solver::NlpOptions& wanted, bool with_multipliers) {
     auto options = application->Options();
@@ -164,18 +172,18 @@ struct IpoptSolver::Implementation {
   }
 };
 
-IpoptSolver::IpoptSolver() : implementation_(std::make_unique<Implementation>()) {}
+IpoptSolver::IpoptSolver(LinearSolver linear_solver)
+    : implementation_(std::make_unique<Implementation>(linear_solver)) {}
 IpoptSolver::~IpoptSolver() = default;
 
 solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point, const solver::NlpOptions& options) {
   SALTUS_ASSERT(point.w.size() == nlp.variables());
-  auto& [application, program, has_structures] = *implementation_;
+  auto& [linear_solver, application, program, seen, builder, has_structures] = *implementation_;
   implementation_->set_options(options, has_multipliers(nlp, point));
   program->set(nlp, point, options);
-  const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
   const auto status = [&] {
     const SymbolicPause pause;  // Ipopt itself lets one thread at a time use MUMPS
-    return has_structures ? application->ReOptimizeTNLP(seen) : application->OptimizeTNLP(seen);
+    return has_structures ? application->ReOptimizeNLP(seen) : application->OptimizeNLP(seen, builder);
   }();
   has_structures = keeps_structures(status);
 
@@ -210,12 +218,13 @@ solver::NlpReport IpoptSolver::follow(mpcc::Problem& nlp, solver::NlpPoint& poin
   program->set(nlp, point, options);
   program->let_it_run(longest);
   BarrierLoop loop{.first_mu = first, .next = next, .program = *program};
-  const Ipopt::SmartPtr<Ipopt::TNLP> seen = Ipopt::GetRawPtr(program);
-  const Ipopt::SmartPtr<Ipopt::NLP> adapter = new Ipopt::TNLPAdapter(seen, ConstPtr(application->Jnlst()));
-  Ipopt::SmartPtr<Ipopt::AlgorithmBuilder> builder = new LoopBuilder(loop);
+  const Ipopt::SmartPtr<Ipopt::NLP> seen =
+      new Ipopt::TNLPAdapter(Ipopt::GetRawPtr(program), Ipopt::ConstPtr(application->Jnlst()));
+  Ipopt::SmartPtr<Ipopt::AlgorithmBuilder> builder =
+      new AlgorithmBuilder(implementation_->linear_solver, *program, &loop);
   const auto status = [&] {
     const SymbolicPause pause;
-    return application->OptimizeNLP(adapter, builder);
+    return application->OptimizeNLP(seen, builder);
   }();
   Outcome outcome = outcome_of(status);
   if (loop.is_ended)

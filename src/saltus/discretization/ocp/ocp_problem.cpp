@@ -9,6 +9,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/mpcc/elimination.hpp"
 
 namespace saltus::discretization {
 
@@ -107,6 +108,13 @@ const std::vector<mpcc::Sign>& OcpProblem::signs() const { return implementation
 const mpcc::Pattern& OcpProblem::jacobian_pattern() const { return implementation_->jacobian_pattern; }
 const mpcc::Pattern& OcpProblem::hessian_pattern() const { return implementation_->hessian_pattern; }
 const mpcc::Chain* OcpProblem::chain() const { return &implementation_->structure->chain; }
+
+std::vector<int> OcpProblem::elimination_blocks() const {
+  auto blocks = mpcc::elimination_blocks(*chain(), variables());
+  mpcc::place_with_rows(blocks, jacobian_pattern(), rows());
+  return blocks;
+}
+
 int OcpProblem::pair_group(int pair) const { return implementation_->structure->pair_group[at(pair)]; }
 
 double OcpProblem::objective(ConstVectorView w) {

@@ -114,6 +114,7 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] std::string name(int variable) const override;
   [[nodiscard]] std::string row_name(int row) const override;
   [[nodiscard]] const mpcc::Chain* chain() const override;
+  [[nodiscard]] std::vector<int> elimination_blocks() const override;
   void with_method_terms(mpcc::ConstVectorView w) override;
   void without_method_terms() override;
   void relaxed_by(double part) override;

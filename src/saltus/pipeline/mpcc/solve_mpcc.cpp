@@ -58,7 +58,7 @@ Expected<result::MpccResult> solve_mpcc(foreign::Problem& problem, const solver:
   const auto start = start_at(problem, x);
   if (!start) return tl::unexpected(start.error());
   const Stopwatch stopwatch;
-  adapters::IpoptSolver nlp;
+  adapters::IpoptSolver nlp(adapters::linear_solver_of(options.strategy));
   adapters::HighsLpcc lpcc;
   auto solution = solver::solve(problem, nlp, lpcc, options, *start);
   if (!solution) return tl::unexpected(solution.error());

@@ -86,7 +86,7 @@ class MoreElements {
   int most_iterations_;  ///< of all solutions together
   SolvedOcp& solved_;
   Stopwatch clock_;
-  adapters::IpoptSolver ipopt_;
+  adapters::IpoptSolver ipopt_{adapters::linear_solver_of(options_.strategy)};
   adapters::HighsLpcc highs_;
 };
 
@@ -102,7 +102,7 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
   solver::SolveOptions wanted = options.mpcc;
   wanted.is_interrupted = observers.is_interrupted;
   wanted.on_step = observers.on_step;
-  adapters::IpoptSolver ipopt;
+  adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
   adapters::HighsLpcc highs;
   auto& problem = *solved.stated.problem;
   const Stopwatch solving;

@@ -84,6 +84,17 @@ linalg::Vector BranchProblem::reduced(ConstVectorView w) const {
   return v.at_least(reduction_.bounds.lower).at_most(reduction_.bounds.upper);
 }
 
+std::vector<int> BranchProblem::elimination_blocks() const {
+  const auto of_problem = problem_.elimination_blocks();
+  std::vector<int> blocks(of_problem.empty() ? 0 : at(variables()), 0);
+  for (std::size_t i = 0; i < of_problem.size(); ++i) {
+    if (reduction_.place[i] < 0) continue;
+    int& block = blocks[at(reduction_.place[i])];
+    block = std::max(block, of_problem[i]);
+  }
+  return blocks;
+}
+
 void BranchProblem::objective_gradient(ConstVectorView v, VectorView gradient) {
   linalg::Vector whole(problem_.variables());
   problem_.objective_gradient(full(v), whole);

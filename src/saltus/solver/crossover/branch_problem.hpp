@@ -37,6 +37,7 @@ class BranchProblem final : public mpcc::Problem {
                mpcc::VectorView values) override;
   [[nodiscard]] const mpcc::Pattern& jacobian_pattern() const override { return jacobian_pattern_; }
   [[nodiscard]] const mpcc::Pattern& hessian_pattern() const override { return hessian_pattern_; }
+  [[nodiscard]] std::vector<int> elimination_blocks() const override;
 
  private:
   /// Entries of the problem's Hessian that are left, and 2 where both triangles fall on one diagonal entry.

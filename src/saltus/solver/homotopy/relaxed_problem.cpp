@@ -5,6 +5,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/mpcc/elimination.hpp"
 
 namespace saltus::solver::homotopy {
 
@@ -148,6 +149,14 @@ linalg::Vector RelaxedProblem::with_elastic_variables(ConstVectorView w) {
     s = std::clamp(c[G] * c[G + problem_.pairs()], s, largest_elastic);
   }
   return extended;
+}
+
+std::vector<int> RelaxedProblem::elimination_blocks() const {
+  auto blocks = problem_.elimination_blocks();
+  if (blocks.empty()) return blocks;
+  blocks.resize(at(variables()), -1);
+  mpcc::place_with_rows(blocks, jacobian_pattern_, constraints());
+  return blocks;
 }
 
 double RelaxedProblem::objective(ConstVectorView w) {

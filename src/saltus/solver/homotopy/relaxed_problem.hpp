@@ -38,6 +38,7 @@ class RelaxedProblem final : public mpcc::Problem {
                mpcc::VectorView values) override;
   [[nodiscard]] const mpcc::Pattern& jacobian_pattern() const override { return jacobian_pattern_; }
   [[nodiscard]] const mpcc::Pattern& hessian_pattern() const override { return hessian_pattern_; }
+  [[nodiscard]] std::vector<int> elimination_blocks() const override;
 
  private:
   /// One entry of the gradient of a side of a pair.
