@@ -18,7 +18,9 @@ using result::Termination;
 
 /// Of the branch problem of a start, which may be far from its solution. In one go: the solver keeps its barrier.
 constexpr int start_iterations = 3000;
-/// Of the first problem of a path that is compared with another.
+/// Iterations of the first problems of paths that are compared: one that is hard is no better than the other, which may
+/// take twice as many then.
+constexpr int compared_iterations = 150;
 constexpr int least_iterations = 50;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
@@ -97,6 +99,7 @@ PathEnd follow_loops(Run& run, const Attempt& first) {
   };
   std::vector<Candidate> candidates;
   Attempt attempt = first;
+  if (sigmas.size() > 1) attempt.iteration_limit = compared_iterations;
   for (const double sigma : sigmas) {
     attempt.sigma_initial = sigma;
     const int before = run.solution.iterations;

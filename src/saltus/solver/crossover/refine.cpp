@@ -7,6 +7,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/linalg/sparse_factors.hpp"
+#include "saltus/solver/crossover/corrector_internal.hpp"
 #include "saltus/solver/sparse.hpp"
 
 namespace saltus::solver::crossover {
@@ -14,12 +15,9 @@ namespace {
 
 using Matrix = linalg::SparseColumns;
 
-/// Weight of the regularisation: small beside anything that matters, large beside rounding of entries of order 1.
-constexpr double regularisation = 1e-9;
 constexpr int largest_steps = 12;
 /// An error from which no step leads back.
 constexpr double lost = 1.0;
-constexpr int refinements = 5;
 /// Where bounds are weakly active, snapping onto them must not cost more feasibility than this.
 constexpr double allowed_violation = 1e-11;
 
@@ -70,16 +68,6 @@ double error_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values)
   return std::isfinite(slope.sum() + values.c.sum()) ? error : std::numeric_limits<double>::infinity();
 }
 
-/// Which bounds and rows hold with equality, and where the others stand in the system.
-struct ActiveSet {
-  std::vector<int> column;  ///< of each variable that no active bound holds; else -1
-  linalg::Vector held;      ///< values of the others
-  std::vector<int> line;    ///< of each active row; else -1
-  linalg::Vector target;    ///< values of active rows
-  int variables = 0;
-  int rows = 0;
-};
-
 ActiveSet find_active_set(mpcc::Problem& nlp, const NlpPoint& point, const linalg::Vector& c) {
   const auto& bounds = nlp.variable_bounds();
   const auto& rows = nlp.constraint_bounds();
@@ -103,80 +91,28 @@ ActiveSet find_active_set(mpcc::Problem& nlp, const NlpPoint& point, const linal
   return active;
 }
 
-/// [H A'; A 0] of the free variables and active rows, without regularisation.
-Matrix system_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values, const ActiveSet& active) {
+/// [H A'; A 0] of the free variables and active rows, without regularisation. Its places do not depend on the point.
+Symmetric system_of(mpcc::Problem& nlp, const NlpPoint& point, const Values& values, const ActiveSet& active) {
+  Symmetric system;
+  system.size = active.variables + active.rows;
   linalg::Vector entries(nlp.hessian_pattern().entries());
   nlp.hessian(point.w, 1.0, point.y, entries);
   const auto& pattern = nlp.hessian_pattern();
-  std::vector<linalg::Triplet> triplets;
   for (int e = 0; e < pattern.entries(); ++e) {
     const int row = active.column[at(pattern.row[at(e)])];
     const int column = active.column[at(pattern.column[at(e)])];
-    if (row < 0 || column < 0) continue;
-    triplets.push_back({row, column, entries[e]});
-    if (row != column) triplets.push_back({column, row, entries[e]});
+    if (row >= 0 && column >= 0) system.add(row, column, entries[e]);
   }
   for (int row = 0; row < values.jacobian.rows(); ++row) {
     const int line = active.line[at(row)];
     if (line < 0) continue;
     for (const linalg::Entry entry : values.jacobian.along(row)) {
       const int column = active.column[at(entry.inner)];
-      if (column < 0) continue;
-      triplets.push_back({active.variables + line, column, entry.value});
-      triplets.push_back({column, active.variables + line, entry.value});
+      if (column >= 0) system.add(active.variables + line, column, entry.value);
     }
   }
-  const int size = active.variables + active.rows;
-  return {size, size, triplets};
+  return system;
 }
-
-/// Solves exact systems by corrections with the factors of a regularised one, which need not be of the same point.
-class Corrector {
- public:
-  explicit Corrector(int variables) : variables_(variables) {}
-
-  /// Factorises anew where the factors of an earlier point correct too slowly; empty if that fails.
-  [[nodiscard]] linalg::Vector solve(const Matrix& system, const linalg::Vector& right) {
-    if (has_factors_) {
-      auto [solution, left] = corrected(system, right);
-      if (left <= enough * right.norm()) return solution;
-    }
-    if (!factorise(system)) return {};
-    return corrected(system, right).first;
-  }
-
- private:
-  static constexpr double enough = 1e-6;  ///< of the right-hand side may be left by old factors
-
-  bool factorise(const Matrix& system) {
-    std::vector<linalg::Triplet> shift;
-    for (linalg::Index i = 0; i < system.rows(); ++i) {
-      shift.push_back({i, i, i < variables_ ? regularisation : -regularisation});
-    }
-    return has_factors_ = factors_.compute(system + Matrix(system.rows(), system.cols(), shift));
-  }
-
-  /// The solution and the norm of what it leaves.
-  [[nodiscard]] std::pair<linalg::Vector, double> corrected(const Matrix& system, const linalg::Vector& right) const {
-    linalg::Vector solution = linalg::Vector::zero(right.size());
-    linalg::Vector rest = right;
-    double left = right.norm();
-    for (int i = 0; i < refinements; ++i) {
-      const linalg::Vector next = solution + factors_.solve(rest);
-      const linalg::Vector next_rest = right - system * next;
-      const double next_left = next_rest.norm();
-      if (!(next_left <= left)) break;
-      solution = next;
-      rest = next_rest;
-      left = next_left;
-    }
-    return {solution, left};
-  }
-
-  int variables_;
-  bool has_factors_ = false;
-  linalg::SparseLu factors_;
-};
 
 /// Multipliers of active bounds from stationarity; those of the others are zero.
 void set_bound_multipliers(NlpPoint& point, const Values& values, const ActiveSet& active, const mpcc::Bounds& bounds) {
@@ -236,7 +172,7 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
   for (linalg::Index i = 0; i < trial.y.size(); ++i) {
     if (active.line[at(i)] < 0) trial.y[i] = 0.0;
   }
-  Corrector corrector(active.variables);
+  Corrector corrector(nlp, active);
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < largest_steps; ++step) {
     values = evaluate(nlp, trial.w);
@@ -256,7 +192,7 @@ double refine(mpcc::Problem& nlp, NlpPoint& point) {
     if (active.variables + active.rows == 0) break;
     const linalg::Vector d =
         corrector.solve(system_of(nlp, trial, values, active), right_side_of(trial, values, active));
-    if (d.size() == 0 || !d.all_finite()) break;
+    if (!d.all_finite()) break;
     add_correction(d, active, trial);
   }
   return best;
