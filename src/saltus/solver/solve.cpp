@@ -18,10 +18,8 @@ using result::Termination;
 
 /// Of the branch problem of a start, which may be far from its solution. In one go: the solver keeps its barrier.
 constexpr int start_iterations = 3000;
-/// Iterations of the first problems of paths that are compared: one that is hard is no better than the other, which may
-/// take twice as many then.
+/// Iterations of the first problem of a path that is compared with one to come: a hard one is not worth more.
 constexpr int compared_iterations = 150;
-constexpr int least_iterations = 50;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
@@ -99,17 +97,14 @@ PathEnd follow_loops(Run& run, const Attempt& first) {
   };
   std::vector<Candidate> candidates;
   Attempt attempt = first;
-  if (sigmas.size() > 1) attempt.iteration_limit = compared_iterations;
   for (const double sigma : sigmas) {
     attempt.sigma_initial = sigma;
-    const int before = run.solution.iterations;
+    attempt.iteration_limit = sigma == sigmas.back() ? first.iteration_limit : compared_iterations;
     auto path = std::make_unique<RelaxedPath>(run, attempt);
     const PathEnd end = path->loop(sigmas.size() > 1 ? small : 0.0);
     if (end != PathEnd::paused && end != PathEnd::failed) return shown(*path, end);
     const double objective = path->objective();
     if (end == PathEnd::paused) candidates.push_back({std::move(path), objective});
-    // Another one may not take much longer.
-    attempt.iteration_limit = std::max(least_iterations, 2 * (run.solution.iterations - before));
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const auto& a, const auto& b) { return a.objective < b.objective; });
