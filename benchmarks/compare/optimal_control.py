@@ -25,11 +25,11 @@ import table
 HERE = pathlib.Path(__file__).resolve().parent
 MODELS = contenders.ROOT / "models"
 NOSNOC = contenders.BUILD / "nosnoc-venv" / "bin" / "python3"
-# Model files and what is set in them: the settings of the literature, from sigma = 1, as the others have them.
+# Model files and what is set in them: the settings of the literature; the others begin with sigma = 1.
 PROBLEMS = {
     "turbo car": (MODELS / "turbo-car.toml", ("v_max=25",)),
     "sliding mode": (MODELS / "slide-and-hide.toml", ()),
-    "cart-pole": (MODELS / "cart-pole.toml", ("optimize.stages=2", "optimize.mpcc.sigma_initial=1")),
+    "cart-pole": (MODELS / "cart-pole.toml", ("optimize.stages=2", "optimize.mpcc.sigma_initial=auto")),
     "motor, u^2": (MODELS / "voice-coil.toml", ("optimize.stages=2",)),
     "motor, T": (MODELS / "voice-coil-time.toml", ("optimize.stages=2",)),
     "Stewart-Anitescu": (MODELS / "stewart-anitescu.toml", ()),

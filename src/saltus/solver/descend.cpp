@@ -26,7 +26,7 @@ constexpr int largest_rounds = 200;
 /// Of one branch problem.
 constexpr int branch_iterations = 500;
 /// Of one that begins at a point which is equal to the last: where it is better, that shows soon.
-constexpr int move_iterations = 40;
+constexpr int move_iterations = 25;
 /// Of the objective: a fall that is worth more iterations, or a point that is not solved yet.
 constexpr double worth = 1e-3;
 /// Flips tried one by one before the linear program decides.

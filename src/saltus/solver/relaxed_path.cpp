@@ -28,9 +28,12 @@ RelaxedPath::RelaxedPath(Run& run, Attempt attempt)
 }
 
 PathEnd RelaxedPath::follow() {
+  return follow_from(level_ ? run_.schedule.next(level_->sigma) : attempt_.sigma_initial);
+}
+
+PathEnd RelaxedPath::follow_from(double sigma) {
   const auto& schedule = run_.schedule;
   int failures = 0;
-  double sigma = level_ ? schedule.next(level_->sigma) : attempt_.sigma_initial;
   // Behind the last one, too, where only digits are missing.
   const auto next = [&] { return sigma > schedule.sigma_final ? schedule.next(sigma) : schedule.sigma_factor * sigma; };
   for (;; sigma = next()) {
@@ -52,7 +55,6 @@ PathEnd RelaxedPath::loop(double until) {
   if (!homotopy::next_level(run_.schedule, *level_)) return follow();
   is_in_loop_ = true;
   const PathEnd end = run_loop(until);
-  is_in_loop_ = false;
   if (end != PathEnd::failed || run_.is_over()) return run_.is_over() ? PathEnd::stopped : end;
   // What is left undecided at the last relaxed problem that was solved may not matter.
   const bool may_cross = run_.options.crossover && until == 0.0;
@@ -81,7 +83,7 @@ PathEnd RelaxedPath::run_loop(double until) {
     report.iterations = iterations - std::exchange(counted, iterations);
     take(at, report);
     level_ = level;
-    end = run_.is_over() ? PathEnd::stopped : end_at(!following, 0);
+    end = run_.is_over() ? PathEnd::stopped : end_at(/*is_last=*/false, 0);
     if (!end && level.sigma <= until) end = PathEnd::paused;
     if (end || !following) return std::nullopt;
     level = *following;
@@ -91,9 +93,10 @@ PathEnd RelaxedPath::run_loop(double until) {
   const NlpOptions options = run_.nlp_options(run_.options.iteration_limit);
   NlpReport report = run_.nlp.follow(*state_.problem, point, options, level.mu, longest_barrier, next);
   run_.count_evaluation(std::exchange(report.evaluation_seconds, 0.0));
-  // The loop's last problem is solved to its barrier only.
-  if (end == PathEnd::finished) solve(level.sigma);
+  is_in_loop_ = false;
   if (end) return *end;
+  // The loop's last problem is solved to its barrier only.
+  if (report.termination == Termination::completed) return follow_from(level.sigma);
   move_back();
   report.iterations -= counted;
   take(point, report);
@@ -110,8 +113,9 @@ std::optional<PathEnd> RelaxedPath::end_at(bool is_last, int failures) {
     return PathEnd::crossed_over;
   }
   if (is_solved && has_settled()) return PathEnd::finished;
-  // Problems of larger sigma are not solved as sharply.
-  const bool is_sharp = is_solved && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
+  // Problems of larger sigma, and those of the loop, are not solved as sharply.
+  const bool is_sharp =
+      is_solved && !is_in_loop_ && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
   if (is_sharp && !run_.options.crossover) return PathEnd::finished;
   if (failures >= failures_that_end) return PathEnd::failed;
   if (is_last && !(is_solved && is_nearly_done())) return is_solved ? PathEnd::finished : PathEnd::failed;

@@ -51,6 +51,7 @@ class RelaxedPath {
   bool solve(double sigma, int iteration_limit = 500);
   bool take(const NlpPoint& point, const NlpReport& report);
   PathEnd run_loop(double until);
+  PathEnd follow_from(double sigma);
 
   Run& run_;
   Attempt attempt_;

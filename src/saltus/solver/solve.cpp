@@ -19,7 +19,7 @@ using result::Termination;
 /// Of the branch problem of a start, which may be far from its solution. In one go: the solver keeps its barrier.
 constexpr int start_iterations = 3000;
 /// Iterations of the first problem of a path that is compared with one to come: a hard one is not worth more.
-constexpr int compared_iterations = 150;
+constexpr int compared_iterations = 250;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
