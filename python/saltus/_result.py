@@ -22,7 +22,7 @@ Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
 _OF_OPTIMUM = (
-    "objective objective_terms horizon parameters u grid h speed_of_time multipliers homotopy certificate "
+    "objective objective_terms horizon parameters u grid h speed_of_time multipliers homotopy starts certificate "
     "verification statistics"
 ).split()
 

@@ -269,6 +269,19 @@ plant = { push = 0.15 }
 """
 
 
+class SeveralStarts(tool.ToolTest):
+    def test_the_best_is_taken_and_all_are_listed(self):
+        out, _ = self.run_tool("optimize", "turbo-car", "--set", "optimize.mpcc.starts=3", "--out", "r.json", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        starts = result["starts"]
+        self.assertEqual([start["seed"] for start in starts], [0, 1, 2])
+        taken = [start for start in starts if start["is_taken"]]
+        self.assertEqual([start["objective"] for start in taken], [result["objective"]])
+        self.assertEqual(result["objective"], min(start["objective"] for start in starts if start["termination"] == "completed"))
+        self.assertIn("starts (*: taken)", out)
+        self.assertIn("a whole number from 1 to 1000", self.run_tool("optimize", "turbo-car", "--set", "optimize.mpcc.starts=0", code=2)[1])
+
+
 class ClosedLoop(tool.ToolTest):
     def test_feedback_brings_it_there_where_the_open_loop_does_not(self):
         file = self.write("m.toml", UNSTABLE)

@@ -52,6 +52,17 @@ std::string to_line(const result::HomotopyStep& step) {
       residual(step.complementarity_residual), step.seconds, step.message.empty() ? "" : "   " + step.message);
 }
 
+std::string starts_table(const std::vector<result::StartOutcome>& starts) {
+  if (starts.empty()) return "";
+  std::vector<std::vector<std::string>> rows{{"seed", "", "objective", "violation", "iterations", "s"}};
+  for (const auto& start : starts) {
+    rows.push_back({fmt::format("{}{}", start.seed, start.is_taken ? " *" : ""), std::string(name(start.termination)),
+                    fmt::format("{:.9g}", start.objective), residual(start.infeasibility),
+                    fmt::format("{}", start.iterations), fmt::format("{:.2f}", start.seconds)});
+  }
+  return "starts (*: taken)\n" + aligned(rows);
+}
+
 std::string to_table(const result::MpccResult& result) {
   const auto& statistics = result.statistics;
   std::string text = wrapped("file", {result.file});
@@ -66,6 +77,7 @@ std::string to_table(const result::MpccResult& result) {
     label = "";
   }
   text += variables_line(result);
+  text += starts_table(result.starts);
   text += path_table(result.homotopy);
   text += wrapped("statistics", {fmt::format("{} iterations", statistics.iterations),
                                  fmt::format("{:.2f} s reading and derivatives", statistics.build_seconds),

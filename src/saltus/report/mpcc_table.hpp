@@ -12,5 +12,7 @@ namespace saltus::report {
 
 /// Writes one problem of a path on a line: phase, sigma, iterations, objective, infeasibility, min(|G|, |H|), seconds.
 [[nodiscard]] std::string to_line(const result::HomotopyStep& step);
+/// Returns a table of what came of several starts; empty for none.
+[[nodiscard]] std::string starts_table(const std::vector<result::StartOutcome>& starts);
 
 }  // namespace saltus::report

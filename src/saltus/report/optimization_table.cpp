@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/report/mpcc_table.hpp"
 #include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/optimization_words_internal.hpp"
 #include "saltus/report/text_columns_internal.hpp"
@@ -90,6 +91,7 @@ std::string optimization_statistics(const result::Optimization& optimization) {
   const auto solved = optimization.homotopy.size();
   auto text = paragraph("size", fmt::format("{} variables, {} equations, {} pairs", statistics.variables,
                                             statistics.equations, statistics.pairs));
+  text += starts_table(optimization.starts);
   text += paragraph("statistics", fmt::format("{} problem{}{}, {} iterations; {:.3g} s (building {:.2g}, functions "
                                               "{:.2g}, linear algebra {:.2g})",
                                               solved, solved == 1 ? "" : "s",

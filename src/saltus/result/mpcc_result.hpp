@@ -26,6 +26,7 @@ struct MpccResult {
   double tolerance = 0.0;  ///< of its residuals
   MpccMultipliers multipliers;
   std::vector<HomotopyStep> homotopy;
+  std::vector<StartOutcome> starts;  ///< where there were several
   OptimizationStatistics statistics;
 };
 

@@ -35,6 +35,17 @@ struct HomotopyStep {
   std::string message;  ///< why it was not taken, or what the solver said; empty if all is well
 };
 
+/// Holds what came of one start of several.
+struct StartOutcome {
+  int seed = 0;  ///< 0: the start itself
+  Termination termination = Termination::not_converged;
+  double objective = 0.0;
+  double infeasibility = 0.0;  ///< of rows, bounds and pairs
+  int iterations = 0;
+  double seconds = 0.0;
+  bool is_taken = false;
+};
+
 enum class StationarityType { S, M, C, A, W };
 [[nodiscard]] std::string_view name(StationarityType type);
 /// Returns the inverse of name; nullopt if there is none of that name.
@@ -127,6 +138,7 @@ struct Optimization {
   std::vector<double> state_lower, state_upper, control_lower, control_upper;  ///< bounds, for the picture
   std::vector<ConstraintMultiplier> multipliers;
   std::vector<HomotopyStep> homotopy;
+  std::vector<StartOutcome> starts;  ///< where there were several
   Certificate certificate;
   std::optional<Verification> verification;
   OptimizationStatistics statistics;

@@ -60,6 +60,10 @@ class Run {
   Stopwatch stopwatch_;
 };
 
+/// Solves from one start, whatever SolveOptions::starts.
+[[nodiscard]] Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
+                                            const SolveOptions& options, const std::optional<Start>& start);
+
 /// Goes from run.branch to better branches, until none is found: flips of biactive pairs with negative multipliers,
 /// then the linear program over them. Leaves certificate and multipliers in run.solution.
 void descend(Run& run);

@@ -204,8 +204,8 @@ void judge(Run& run) {
 
 }  // namespace
 
-Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
-                         const std::optional<Start>& start) {
+Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
+                              const std::optional<Start>& start) {
   if (auto checked = check_options(options); !checked) return tl::unexpected(checked.error());
   Start from = start.value_or(Start{.w = problem.start(), .multipliers = {}});
   SALTUS_ASSERT(from.w.size() == problem.variables());

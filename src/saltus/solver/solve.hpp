@@ -35,8 +35,9 @@ struct SolveOptions {
   homotopy::WarmStart warm_start = homotopy::WarmStart::primal;
   FirstProblem first = FirstProblem::relaxed;
   bool crossover = true;
+  int starts = 1;                      ///< the start itself, and others by seeds 1, 2, ...
   double tolerance = 1e-8;             ///< of the three residuals
-  int iteration_limit = 3000;          ///< of all relaxed and branch problems together
+  int iteration_limit = 3000;          ///< of all relaxed and branch problems of a start together
   std::optional<double> time_limit{};  ///< seconds
   /// Ends everything at the next iteration of the solver (stopped_by_user).
   std::function<bool()> is_interrupted = [] { return false; };
@@ -55,6 +56,7 @@ struct Solution {
   MpccMultipliers multipliers;
   result::Certificate certificate;
   std::vector<result::HomotopyStep> homotopy;
+  std::vector<result::StartOutcome> starts;  ///< where there were several
   bool crossed_over = false;  ///< w solves a branch problem, whose sides are `sides`
   std::vector<mpcc::ActiveSide> sides;
   int iterations = 0;
@@ -67,7 +69,12 @@ struct Start {
   MpccMultipliers multipliers;
 };
 
-/// Solves from problem.start(), or from `start`.
+/// Returns the start of a seed: 0 the given one, else one half way from it to a random point, which is drawn between
+/// finite bounds, else within max(1, |w|) of w. Same seed, same bits on every machine.
+[[nodiscard]] linalg::Vector start_of_seed(const mpcc::Problem& problem, ConstVectorView w, int seed);
+
+/// Solves from problem.start(), or from `start`; with several starts from each, and gives the best: of those that are
+/// completed the one with the lowest objective. Then iterations are those of all.
 /// Fails (invalid_option) for a schedule or tolerances outside their ranges, and (invalid_model) if a function is not
 /// finite at the start: the message names it.
 [[nodiscard]] Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,

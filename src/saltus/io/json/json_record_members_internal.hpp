@@ -253,6 +253,15 @@ struct RecordMembers<result::HomotopyStep> {
 };
 
 template <>
+struct RecordMembers<result::StartOutcome> {
+  using R = result::StartOutcome;
+  static constexpr auto list = std::make_tuple(
+      field("seed", &R::seed), field("termination", &R::termination), field("objective", &R::objective),
+      field("infeasibility", &R::infeasibility), field("iterations", &R::iterations), field("seconds", &R::seconds),
+      field("is_taken", &R::is_taken));
+};
+
+template <>
 struct RecordMembers<result::Certificate> {
   using R = result::Certificate;
   static constexpr auto list = std::make_tuple(
@@ -322,7 +331,8 @@ struct RecordMembers<result::Optimization> {
       field("objective", &R::objective), field("objective_terms", &R::terms), field("horizon", &R::horizon),
       field("parameters", &R::parameters), field("u", &R::u), field("grid", &R::grid), field("h", &R::h),
       field("speed_of_time", &R::speed_of_time, Presence::if_any), field("multipliers", &R::multipliers),
-      field("homotopy", &R::homotopy), field("certificate", &R::certificate),
+      field("homotopy", &R::homotopy), field("starts", &R::starts, Presence::if_any),
+      field("certificate", &R::certificate),
       field("verification", &R::verification, Presence::if_any));
 };
 

@@ -25,6 +25,7 @@ std::string to_json(const result::MpccResult& result) {
                    {"certificate", record_json(result.certificate)},
                    {"multipliers", record_json(result.multipliers)},
                    {"homotopy", value_json(result.homotopy)},
+                   {"starts", value_json(result.starts)},
                    {"statistics", record_json(result.statistics)}});
 }
 

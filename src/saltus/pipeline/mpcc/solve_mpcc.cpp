@@ -42,6 +42,8 @@ result::MpccResult result_of(const foreign::Problem& problem, const solver::Solu
                         list_of(multipliers.G), list_of(multipliers.H)};
   result.homotopy = solution.homotopy;
   for (auto& step : result.homotopy) step.objective = problem.in_sense_of_file(step.objective);
+  result.starts = solution.starts;
+  for (auto& outcome : result.starts) outcome.objective = problem.in_sense_of_file(outcome.objective);
   result.statistics.iterations = solution.iterations;
   result.statistics.variables = problem.variables();
   result.statistics.equations = problem.constraints();

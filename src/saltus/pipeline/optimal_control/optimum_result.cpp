@@ -48,6 +48,7 @@ result::Optimization solved_point(const SolvedOcp& solved) {
   found.objective = solution.objective;
   found.terms = problem.objective_terms(solution.w);
   found.homotopy = solution.homotopy;
+  found.starts = solution.starts;
   found.certificate = solution.certificate;
   const auto& multipliers = solution.multipliers;
   if (multipliers.rows.size() == problem.constraints()) {

@@ -38,6 +38,7 @@ std::optional<solver::Start> same_structure(const discretization::OcpProblem& pr
 void go_on_with(solver::Solution next, solver::Solution& solution) {
   next.homotopy.insert(next.homotopy.begin(), solution.homotopy.begin(), solution.homotopy.end());
   next.iterations += solution.iterations;
+  next.starts = std::move(solution.starts);
   next.evaluation_seconds += solution.evaluation_seconds;
   next.solver_seconds += solution.solver_seconds;
   solution = std::move(next);
@@ -49,6 +50,7 @@ class MoreElements {
   MoreElements(const model::Ocp& ocp, solver::SolveOptions options, SolvedOcp& solved)
       : ocp_(ocp), options_(std::move(options)), most_iterations_(options_.iteration_limit), solved_(solved) {
     options_.first = solver::FirstProblem::branch;
+    options_.starts = 1;
   }
 
   /// @return whether there are intervals that are better with an element more; they have it

@@ -20,6 +20,7 @@ using solver::homotopy::Relaxation;
 using solver::homotopy::Steering;
 using solver::homotopy::WarmStart;
 
+constexpr auto starts_of = [](auto& o) -> auto& { return o.starts; };
 constexpr auto strategy_of = [](auto& o) -> auto& { return o.strategy; };
 constexpr auto sigma_initial_of = [](auto& o) -> auto& { return o.sigma_initial; };
 constexpr auto sigma_factor_of = [](auto& o) -> auto& { return o.schedule.sigma_factor; };
@@ -32,6 +33,7 @@ constexpr auto steering_of = [](auto& o) -> auto& { return o.steering; };
 constexpr auto first_of = [](auto& o) -> auto& { return o.first; };
 constexpr auto warm_start_of = [](auto& o) -> auto& { return o.warm_start; };
 
+constexpr double most_starts = 1000.0;
 constexpr double most_iterations = std::numeric_limits<int>::max();
 
 constexpr Choices<Strategy, 2> strategies{{"structured", "ipopt"}, {Strategy::structured, Strategy::ipopt}};
@@ -51,6 +53,9 @@ const std::array fields_of_mpcc{
     choice_field<strategy_of, strategies, SolveOptions>(
         "solver",
         "All relaxed problems in one loop of the interior-point method (structured), or one after the other (ipopt)."),
+    number_field<starts_of, SolveOptions>(
+        "starts", Numbers{.whole = true, .from = 1.0, .up_to = most_starts},
+        "The problem is solved from its start and from random ones beside it (seeds 1, 2, …); the best is the answer."),
     choice_field<relaxation_of, relaxations, SolveOptions>("method", "How complementarities are relaxed by sigma."),
     choice_field<steering_of, steerings, SolveOptions>(
         "steering", "What makes sigma small: its bound alone, or a price on the sum or the largest of the products."),
@@ -73,7 +78,7 @@ const std::array fields_of_mpcc{
         "tolerance", positive_number, "Of feasibility, complementarity min(|G|, |H|) and stationarity of the answer."),
     number_field<iteration_limit_of, SolveOptions>("iteration_limit",
                                                    Numbers{.whole = true, .from = 1.0, .up_to = most_iterations},
-                                                   "Of the solver, in all problems together."),
+                                                   "Of the solver, in all problems of a start together."),
 };
 
 }  // namespace
