@@ -134,7 +134,7 @@ reformulation = "stewart"
 /// A mass that pushes another one, elastically. Where it brakes so that both only touch J = 11.242, and what is behind
 /// a collision grows with the root of its velocity: no derivative at that point tells of J = 1.0585.
 TEST(OcpIntervalEnds, AMotionThatOnlyGrazesIsComparedWithCollisions) {
-  // With 3 elements the branch problem behind the graze is solved or not by its last digits: the open list has it.
+  // With 4 elements the branch problem behind the graze is not solved: the open list has it.
   const auto result = optimized(stated(R"toml(
 [model]
 name = "pushed"
@@ -159,7 +159,7 @@ horizon = 1.5
 control_intervals = 2
 running_cost = "0.05*u^2"
 terminal_cost = "10*(x2 - 1.2)^2 + x1^2"
-elements = 4
+elements = 5
 stages = 2
 start = "simulated"
 )toml"));

@@ -58,7 +58,7 @@ PathEnd RelaxedPath::loop(double until) {
   if (end != PathEnd::failed || run_.is_over()) return run_.is_over() ? PathEnd::stopped : end;
   // What is left undecided at the last relaxed problem that was solved may not matter.
   const bool may_cross = run_.options.crossover && until == 0.0;
-  if (may_cross && crossing_.cross({w_, level_->sigma, /*is_of_loop=*/true, /*is_last=*/true})) {
+  if (may_cross && crossing_.cross({w_, level_->sigma, /*is_of_loop=*/false, /*is_last=*/false})) {
     return PathEnd::crossed_over;
   }
   return until == 0.0 ? follow() : PathEnd::failed;

@@ -15,18 +15,19 @@ constexpr const char* mpcc_format = "saltus-mpcc/1";
 
 std::string to_json(const result::MpccResult& result) {
   const auto& status = result.status;
-  return laid_out({{"format", mpcc_format},
-                   {"file", result.file},
-                   {"sha256", result.sha256},
-                   {"status", {{"termination", name(status.termination)}, {"message", status.message}}},
-                   {"objective", result.objective},
-                   {"x", result.x},
-                   {"names", result.names},
-                   {"certificate", record_json(result.certificate)},
-                   {"multipliers", record_json(result.multipliers)},
-                   {"homotopy", value_json(result.homotopy)},
-                   {"starts", value_json(result.starts)},
-                   {"statistics", record_json(result.statistics)}});
+  Json json{{"format", mpcc_format},
+            {"file", result.file},
+            {"sha256", result.sha256},
+            {"status", {{"termination", name(status.termination)}, {"message", status.message}}},
+            {"objective", result.objective},
+            {"x", result.x},
+            {"names", result.names},
+            {"certificate", record_json(result.certificate)},
+            {"multipliers", record_json(result.multipliers)},
+            {"homotopy", value_json(result.homotopy)},
+            {"statistics", record_json(result.statistics)}};
+  if (!result.starts.empty()) json["starts"] = value_json(result.starts);
+  return laid_out(json);
 }
 
 Expected<std::vector<double>> read_mpcc_start(const std::filesystem::path& file) {
