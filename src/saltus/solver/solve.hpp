@@ -57,7 +57,7 @@ struct Solution {
   result::Certificate certificate;
   std::vector<result::HomotopyStep> homotopy;
   std::vector<result::StartOutcome> starts;  ///< where there were several
-  bool crossed_over = false;  ///< w solves a branch problem, whose sides are `sides`
+  bool crossed_over = false;                 ///< w solves a branch problem, whose sides are `sides`
   std::vector<mpcc::ActiveSide> sides;
   int iterations = 0;
   double evaluation_seconds = 0.0, solver_seconds = 0.0;

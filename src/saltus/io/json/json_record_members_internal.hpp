@@ -255,10 +255,10 @@ struct RecordMembers<result::HomotopyStep> {
 template <>
 struct RecordMembers<result::StartOutcome> {
   using R = result::StartOutcome;
-  static constexpr auto list = std::make_tuple(
-      field("seed", &R::seed), field("termination", &R::termination), field("objective", &R::objective),
-      field("infeasibility", &R::infeasibility), field("iterations", &R::iterations), field("seconds", &R::seconds),
-      field("is_taken", &R::is_taken));
+  static constexpr auto list =
+      std::make_tuple(field("seed", &R::seed), field("termination", &R::termination), field("objective", &R::objective),
+                      field("infeasibility", &R::infeasibility), field("iterations", &R::iterations),
+                      field("seconds", &R::seconds), field("is_taken", &R::is_taken));
 };
 
 template <>
@@ -332,8 +332,7 @@ struct RecordMembers<result::Optimization> {
       field("parameters", &R::parameters), field("u", &R::u), field("grid", &R::grid), field("h", &R::h),
       field("speed_of_time", &R::speed_of_time, Presence::if_any), field("multipliers", &R::multipliers),
       field("homotopy", &R::homotopy), field("starts", &R::starts, Presence::if_any),
-      field("certificate", &R::certificate),
-      field("verification", &R::verification, Presence::if_any));
+      field("certificate", &R::certificate), field("verification", &R::verification, Presence::if_any));
 };
 
 /// Names what another run begins with: bounds, states at the ends of intervals, and the vectors of the transcription.
