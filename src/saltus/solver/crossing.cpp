@@ -36,8 +36,7 @@ bool Crossing::is_worth_trying(const RelaxedPoint& point, const linalg::Vector& 
   if (run_.problem.pairs() == 0) return true;
   if (!point.is_of_loop) return point.sigma <= rounding * crossover_sigma_of_problems;
   if (point.sigma > rounding * crossover_sigma) return false;
-  return point.is_last || point.sigma <= rounding * undecided_sigma ||
-         crossover::undecided_groups(run_.problem, run_.groups, c) == 0;
+  return point.sigma <= rounding * undecided_sigma || crossover::undecided_groups(run_.problem, run_.groups, c) == 0;
 }
 
 bool Crossing::cross(const RelaxedPoint& point) {

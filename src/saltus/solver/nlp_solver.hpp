@@ -74,7 +74,7 @@ class NlpSolver {
   [[nodiscard]] virtual NlpReport solve(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options) = 0;
   /// Solves barrier problems, one from the point of the other in a single loop, for as long as `next` gives another.
   /// Meanwhile `next` may change parameters of the problem, and solve other problems. The report says `completed` if
-  /// `next` has ended the loop. Tolerances of `options` are not used, and its multipliers of the start neither.
+  /// `next` has ended the loop. Multipliers of the start are used if they are there, tolerances of `options` are not.
   /// @param first    the first barrier parameter
   /// @param longest  iterations of one barrier problem that are too many (step_size_too_small)
   [[nodiscard]] virtual NlpReport follow(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options, double first,

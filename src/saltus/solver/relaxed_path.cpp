@@ -137,7 +137,7 @@ bool RelaxedPath::has_settled() const {
 /// Where no branch was accepted, and the relaxed point itself is a solution but for a digit or two.
 bool RelaxedPath::is_nearly_done() const {
   const double tolerance = run_.options.tolerance;
-  return run_.options.crossover && !is_in_loop_ && infeasibility_ > tolerance && infeasibility_ <= 100.0 * tolerance &&
+  return run_.options.crossover && infeasibility_ > tolerance && infeasibility_ <= 100.0 * tolerance &&
          state_.sigma > 1e-3 * run_.schedule.sigma_final;
 }
 
@@ -199,7 +199,8 @@ bool RelaxedPath::solve(double sigma, int iteration_limit) {
 bool RelaxedPath::take(const NlpPoint& point, const NlpReport& report) {
   const linalg::Vector w = point.w.head(w_.size());
   const double violation = certificate::scaled_infeasibility(run_.problem, w);
-  const double infeasibility = point.w.all_finite() && !report.diverging ? infeasibility_of(w) : NAN;
+  const double complementarity = certificate::complementarity(run_.problem, w);
+  const double infeasibility = point.w.all_finite() && !report.diverging ? std::max(violation, complementarity) : NAN;
   const bool stands_still =
       report.termination == Termination::step_size_too_small && violation <= run_.options.tolerance;
   const bool is_solved = report.termination == Termination::completed || stands_still;
@@ -221,7 +222,7 @@ bool RelaxedPath::take(const NlpPoint& point, const NlpReport& report) {
   step.sigma = state_.sigma;
   step.objective = run_.problem.objective(w);
   step.primal_infeasibility = violation;
-  step.complementarity_residual = certificate::complementarity(run_.problem, w);
+  step.complementarity_residual = complementarity;
   run_.record(step, &report, started_);
   return is_solved;
 }

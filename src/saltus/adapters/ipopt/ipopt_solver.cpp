@@ -136,6 +136,20 @@ void set_options_of_loop(Ipopt::IpoptApplication& application, const solver::Nlp
   SALTUS_ASSERT(are_set);
 }
 
+solver::NlpReport report_of(const Outcome& outcome, Ipopt::ApplicationReturnStatus status, const IpoptProgram& program,
+                            Ipopt::IpoptApplication& application) {
+  solver::NlpReport report;
+  report.termination = outcome.termination;
+  report.diverging = status == Ipopt::Diverging_Iterates;
+  report.objective = program.objective();
+  report.evaluation_seconds = program.evaluation_seconds();
+  report.message = outcome.message;
+  if (const auto statistics = application.Statistics(); Ipopt::IsValid(statistics)) {
+    report.iterations = statistics->IterationCount();
+  }
+  return report;
+}
+
 }  // namespace
 
 struct IpoptSolver::Implementation {
@@ -196,16 +210,7 @@ solver::NlpReport IpoptSolver::solve(mpcc::Problem& nlp, solver::NlpPoint& point
     outcome = outcome_of(Ipopt::Search_Direction_Becomes_Too_Small);
   else if (is_stopped && program->is_cut_off())
     outcome = {Termination::not_converged, "its objective is too large"};
-  solver::NlpReport report;
-  report.termination = outcome.termination;
-  report.diverging = status == Ipopt::Diverging_Iterates;
-  report.objective = program->objective();
-  report.evaluation_seconds = program->evaluation_seconds();
-  report.message = outcome.message;
-  if (const auto statistics = application->Statistics(); Ipopt::IsValid(statistics)) {
-    report.iterations = statistics->IterationCount();
-  }
-  return report;
+  return report_of(outcome, status, *program, *application);
 }
 
 solver::NlpReport IpoptSolver::follow(mpcc::Problem& nlp, solver::NlpPoint& point, const solver::NlpOptions& options,
@@ -231,16 +236,7 @@ solver::NlpReport IpoptSolver::follow(mpcc::Problem& nlp, solver::NlpPoint& poin
     outcome = {Termination::completed, ""};
   else if (program->is_too_long())
     outcome = {Termination::step_size_too_small, "a barrier problem takes too long"};
-  solver::NlpReport report;
-  report.termination = outcome.termination;
-  report.diverging = status == Ipopt::Diverging_Iterates;
-  report.objective = program->objective();
-  report.evaluation_seconds = program->evaluation_seconds();
-  report.message = outcome.message;
-  if (const auto statistics = application->Statistics(); Ipopt::IsValid(statistics)) {
-    report.iterations = statistics->IterationCount();
-  }
-  return report;
+  return report_of(outcome, status, *program, *application);
 }
 
 }  // namespace saltus::adapters
