@@ -22,9 +22,11 @@ BranchClosure Problem::close_branch(const std::vector<ActiveSide>& sides) const 
   return {};
 }
 
-std::vector<BranchMove> Problem::equal_branches(const std::vector<ActiveSide>& sides, ConstVectorView w) const {
+std::vector<BranchMove> Problem::neighbours(const std::vector<ActiveSide>& sides, ConstVectorView w,
+                                            const Multipliers& multipliers) {
   static_cast<void>(sides);
   static_cast<void>(w);
+  static_cast<void>(multipliers);
   return {};
 }
 

@@ -1,12 +1,14 @@
 // A mathematical program with complementarity constraints: the seam between whoever states one and whoever solves it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "saltus/linalg/matrix.hpp"
 #include "saltus/mpcc/chain.hpp"
+#include "saltus/mpcc/multipliers.hpp"
 
 namespace saltus::mpcc {
 
@@ -68,6 +70,8 @@ struct BranchClosure {
 struct BranchMove {
   std::vector<ActiveSide> sides;
   linalg::Vector start;
+  /// Slope of the objective along the move, by the multipliers of the branch; nothing where they do not say it.
+  std::optional<double> price{};
   std::vector<int> appearing{};  ///< variables that may not come back to 0 before the branch is known to be better
   bool is_elsewhere = false;     ///< not the same point: it may be far from the solution of its branch
 };
@@ -135,10 +139,11 @@ class Problem {
   /// Gives variables that only the rows of a method ask for the values that these rows have at w, a solution of a
   /// branch problem. By default there are none.
   virtual void complete(VectorView w) { static_cast<void>(w); }
-  /// Returns other sides with which the same point can be written, although no pair of it is biactive: what a closure
-  /// keeps apart (an element of length zero has the modes of either neighbour). By default none.
-  [[nodiscard]] virtual std::vector<BranchMove> equal_branches(const std::vector<ActiveSide>& sides,
-                                                               ConstVectorView w) const;
+  /// Returns other sides beside a solution of a branch, with which the objective may fall though no pair is biactive:
+  /// what a closure keeps apart (an element of length zero has the modes of either neighbour). By default none.
+  /// @param multipliers  of the problem at w, of which those of pairs bear what their sides are held by
+  [[nodiscard]] virtual std::vector<BranchMove> neighbours(const std::vector<ActiveSide>& sides, ConstVectorView w,
+                                                           const Multipliers& multipliers);
 };
 
 }  // namespace saltus::mpcc

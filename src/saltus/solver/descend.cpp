@@ -31,6 +31,8 @@ constexpr int move_iterations = 25;
 constexpr double worth = 1e-3;
 /// Flips tried one by one before the linear program decides.
 constexpr int flips_tried = 5;
+/// Moves tried one by one of those that promise a fall.
+constexpr int priced_tried = 8;
 
 ActiveSide other(ActiveSide side) { return side == ActiveSide::G ? ActiveSide::H : ActiveSide::G; }
 
@@ -76,7 +78,7 @@ class Descent {
     if (flip()) return true;
     if (run_.is_over()) return false;
     // Where the linear program leads to no better point another one may be beside it.
-    return decide() || (!run_.is_over() && run_.solution.certificate.b_stationary == false && move());
+    return decide() || (!run_.is_over() && !run_.solution.certificate.b_stationary.value_or(false) && move());
   }
 
   [[nodiscard]] bool is_certified() const {
@@ -175,17 +177,52 @@ class Descent {
     return false;
   }
 
-  /// The same point written with other sides, from which the objective may fall, or one beside it.
+  /// Branches beside this one: those whose multipliers promise a fall, all that are apart from each other at once, then
+  /// the best of them one by one; then those of which the multipliers say nothing.
   bool move() {
     visited_.insert(branch().sides);
-    for (const auto& candidate : run_.problem.equal_branches(branch().sides, branch().w)) {
+    auto candidates = run_.problem.neighbours(branch().sides, branch().w, run_.solution.multipliers);
+    const double least = tolerance() * std::max(1.0, std::abs(branch().objective));
+    const auto promises = [&](const mpcc::BranchMove& move) { return move.price && *move.price < -least; };
+    const auto unknown = std::stable_partition(candidates.begin(), candidates.end(), promises);
+    std::stable_sort(candidates.begin(), unknown, [](const auto& a, const auto& b) { return *a.price < *b.price; });
+    const auto tried = std::min(unknown, candidates.begin() + priced_tried);
+    if (unknown - candidates.begin() > 1 && take_move(together({candidates.begin(), unknown}))) return true;
+    for (auto one = candidates.begin(); one != candidates.end(); ++one) {
+      if (one >= tried && one < unknown) continue;
+      if (one >= unknown && one->price) continue;
       if (run_.is_over()) return false;
-      const bool is_better = candidate.is_elsewhere
-                                 ? take(candidate, "another point with other sides")
-                                 : take(candidate, "the same point with other sides", move_iterations);
-      if (is_better) return true;
+      if (take_move(*one)) return true;
     }
     return false;
+  }
+
+  bool take_move(const mpcc::BranchMove& move) {
+    return move.is_elsewhere ? take(move, "another point with other modes")
+                             : take(move, "another mode sequence", move_iterations);
+  }
+
+  /// Moves in one, the best first: each that changes nothing that one before it changes.
+  [[nodiscard]] mpcc::BranchMove together(const std::vector<mpcc::BranchMove>& moves) {
+    mpcc::BranchMove all{branch().sides, branch().w};
+    for (const auto& move : moves) {
+      bool is_apart = true;
+      for (std::size_t i = 0; i < all.sides.size(); ++i) {
+        is_apart = is_apart && (move.sides[i] == branch().sides[i] || all.sides[i] == branch().sides[i]);
+      }
+      for (linalg::Index i = 0; i < all.start.size(); ++i) {
+        is_apart = is_apart && (move.start[i] == branch().w[i] || all.start[i] == branch().w[i]);
+      }
+      if (!is_apart) continue;
+      for (std::size_t i = 0; i < all.sides.size(); ++i) {
+        if (move.sides[i] != branch().sides[i]) all.sides[i] = move.sides[i];
+      }
+      for (linalg::Index i = 0; i < all.start.size(); ++i) {
+        if (move.start[i] != branch().w[i]) all.start[i] = move.start[i];
+      }
+      all.appearing.insert(all.appearing.end(), move.appearing.begin(), move.appearing.end());
+    }
+    return all;
   }
 
   /// The linear program: true if it led to a better branch, else the certificate has its answer.

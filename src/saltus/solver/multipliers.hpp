@@ -1,13 +1,10 @@
-// Multipliers of a problem with complementarities.
+// Multipliers of a problem with complementarities, as the solver finds them.
 #pragma once
 
-#include "saltus/linalg/matrix.hpp"
+#include "saltus/mpcc/multipliers.hpp"
 
 namespace saltus::solver {
 
-/// Holds multipliers of L = f + rows'g + lower'(l - w) + upper'(w - u) - G'G - H'H, lower and upper >= 0.
-struct MpccMultipliers {
-  linalg::Vector rows, lower, upper, G, H;
-};
+using MpccMultipliers = mpcc::Multipliers;
 
 }  // namespace saltus::solver

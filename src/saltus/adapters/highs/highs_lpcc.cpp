@@ -125,14 +125,30 @@ class Search {
     }
   }
 
+  /// From the basis of the node before; where simplex does not come to an end from there, from the beginning.
+  HighsModelStatus solve_node() {
+    const auto is_decided = [&] {
+      const auto status = highs_.getModelStatus();
+      return status == HighsModelStatus::kOptimal || status == HighsModelStatus::kInfeasible;
+    };
+    highs_.run();
+    for (const char* presolve : {"on", "off"}) {
+      if (is_decided() || out_of_time()) break;
+      highs_.clearSolver();
+      highs_.setOptionValue("presolve", presolve);
+      highs_.run();
+    }
+    highs_.setOptionValue("presolve", "choose");
+    return highs_.getModelStatus();
+  }
+
   void explore() {
     if (is_cut_short_ || best_.nodes >= node_limit_ || out_of_time()) {
       is_cut_short_ = true;
       return;
     }
     ++best_.nodes;
-    highs_.run();
-    const HighsModelStatus status = highs_.getModelStatus();
+    const HighsModelStatus status = solve_node();
     if (status == HighsModelStatus::kInfeasible) return;
     if (status != HighsModelStatus::kOptimal) {
       is_cut_short_ = true;

@@ -69,9 +69,4 @@ class ElementSides {
   int per_selection_ = 0;
 };
 
-/// Adds moves of what happens while time stands still at the end of an interval. It comes into the interval before,
-/// with an element of what follows, or into the one behind, with an element of what was before.
-void add_moved_standstills(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                           std::vector<mpcc::BranchMove>& moves);
-
 }  // namespace saltus::discretization

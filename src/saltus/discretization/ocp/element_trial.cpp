@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
 
 #include "saltus/discretization/ocp/element_trial_internal.hpp"
+#include "saltus/discretization/ocp/surface_states_internal.hpp"
 #include "saltus/linalg/factors.hpp"
 
 namespace saltus::discretization {
@@ -14,6 +18,15 @@ constexpr int largest_steps = 15;
 constexpr double solved = 1e-10;
 /// By which selections and multipliers may be beyond their bounds.
 constexpr double allowed = 1e-8;
+
+/// What is left, relative to the beginning, of the multiplier that comes to 0 first.
+double least_left(const std::vector<double>& begin, const std::vector<double>& end) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < begin.size(); ++k) {
+    if (begin[k] > on_surface) least = std::min(least, end[k] / begin[k]);
+  }
+  return least;
+}
 
 }  // namespace
 
@@ -96,14 +109,29 @@ void ElementTrial::begin_at(const std::vector<double>& left, linalg::View local)
   if (layout.end_time.count > 0) local[layout.end_time.first] = left[at(kernel.states)];
 }
 
-std::optional<linalg::Vector> ElementTrial::solve(const std::vector<double>& left, std::size_t interval,
-                                                  const Modes& modes, double length) const {
+/// Those that an element shares with others; its own are 0. Lengths are in parts of a control interval: the speed is 1.
+std::vector<double> ElementTrial::inputs(const std::vector<double>& left, std::size_t interval) const {
   const auto& kernel = made_.kernel;
   std::vector<double> z = left;
   for (const int place : made_.interval[interval].shared) z.push_back(value_at(place, w_, made_.constants));
   z[left.size() + at(kernel.shared.controls + kernel.shared.parameters + kernel.shared.held + 1)] = 1.0;
-  const std::size_t first = z.size();
-  z.resize(first + at(kernel.layout.size), 0.0);
+  z.resize(z.size() + at(kernel.layout.size), 0.0);
+  return z;
+}
+
+std::vector<double> ElementTrial::inputs(const std::vector<double>& left, std::size_t interval,
+                                         const linalg::Vector& own, double length) const {
+  std::vector<double> z = inputs(left, interval);
+  z[z.size() - at(own.size()) - 1] = length;
+  std::copy(own.data(), own.data() + own.size(), z.end() - own.size());
+  return z;
+}
+
+std::optional<linalg::Vector> ElementTrial::solve(const std::vector<double>& left, std::size_t interval,
+                                                  const Modes& modes, double length) const {
+  const auto& kernel = made_.kernel;
+  std::vector<double> z = inputs(left, interval);
+  const std::size_t first = z.size() - at(kernel.layout.size);
   linalg::View local(z.data() + first, kernel.layout.size);
   begin_at(left, local);
   local[kernel.layout.h] = length;
@@ -112,6 +140,29 @@ std::optional<linalg::Vector> ElementTrial::solve(const std::vector<double>& lef
     if (!solve(z, first, is_held)) return std::nullopt;
   } while (hold_beyond(local, is_held));
   return local.tail(kernel.layout.size - 1);
+}
+
+/// From rest multipliers fall with the square of time.
+std::optional<linalg::Vector> ElementTrial::solve_to_end(const std::vector<double>& left, std::size_t interval,
+                                                         const Modes& modes, double& length) const {
+  constexpr int most_steps = 60;
+  constexpr double enough = 1e-9, largest_growth = 10.0;
+  double low = 0.0, at_low = 1.0, high = std::numeric_limits<double>::infinity(), at_high = 0.0;
+  for (int step = 0; step < most_steps; ++step) {
+    auto own = solve(left, interval, modes, length);
+    if (!own) return std::nullopt;
+    const double rest = least_left(lambda(left), lambda(right_of(*own)));
+    if (std::abs(rest) <= enough) return own;
+    std::tie(rest > 0.0 ? low : high, rest > 0.0 ? at_low : at_high) = std::pair(length, rest);
+    if (std::isinf(high)) {
+      if (!(rest < 1.0)) return std::nullopt;
+      length *= std::min(1.0 / (1.0 - rest), largest_growth);
+    } else {
+      const bool halve = step % 3 == 0;
+      length = halve ? 0.5 * (low + high) : low + (high - low) * at_low / (at_low - at_high);
+    }
+  }
+  return std::nullopt;
 }
 
 /// Where selections are not unique, those of the smallest step may be beyond their bounds: there they stay.

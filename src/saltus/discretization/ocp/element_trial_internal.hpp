@@ -32,12 +32,25 @@ class ElementTrial {
   /// @param length  in parts of a control interval
   [[nodiscard]] std::optional<linalg::Vector> solve(const std::vector<double>& left, std::size_t interval,
                                                     const Modes& modes, double length) const;
+  /// Returns the local variables of such an element.
+  [[nodiscard]] std::vector<double> inputs(const std::vector<double>& left, std::size_t interval,
+                                           const linalg::Vector& own, double length) const;
+  /// Returns which of its variables, the length first, these modes hold.
+  [[nodiscard]] std::vector<bool> held(const Modes& modes) const {
+    linalg::Vector local = linalg::Vector::zero(made_.kernel.layout.size);
+    return hold(modes, local);
+  }
+  /// Returns the same where time stands still: until one of the multipliers has come to 0.
+  /// @param length  where to begin; then that of the element
+  [[nodiscard]] std::optional<linalg::Vector> solve_to_end(const std::vector<double>& left, std::size_t interval,
+                                                           const Modes& modes, double& length) const;
   /// Returns whether selections and multipliers are within their bounds.
   [[nodiscard]] bool is_admissible(const linalg::Vector& own) const;
   /// Returns whether the clock stands.
   [[nodiscard]] bool stands_still(const std::vector<double>& left, const linalg::Vector& own) const;
 
  private:
+  [[nodiscard]] std::vector<double> inputs(const std::vector<double>& left, std::size_t interval) const;
   [[nodiscard]] std::vector<bool> hold(const Modes& modes, linalg::View local) const;
   [[nodiscard]] bool hold_beyond(linalg::View local, std::vector<bool>& is_held) const;
   /// @param first  of the element's variables among the local ones

@@ -5,6 +5,7 @@
 
 #include "saltus/discretization/ocp/element_items_internal.hpp"
 #include "saltus/discretization/ocp/element_trial_internal.hpp"
+#include "saltus/discretization/ocp/neighbours_internal.hpp"
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
 namespace saltus::discretization {
@@ -112,8 +113,8 @@ class GrazedSides {
 
 }  // namespace
 
-void add_grazed_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                      std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves) {
+void add_grazed_sides(const SolvedBranch& branch, std::set<int>& crowded, Moves& moves) {
+  const auto& [made, modes, w, multipliers] = branch;
   if (made.kernel.clock < 0) return;
   const GrazedSides grazed(made, modes, w);
   for (std::size_t e = 1; e < made.element.size(); ++e) {
@@ -122,7 +123,7 @@ void add_grazed_sides(const OcpStructure& made, const ElementSides& modes, mpcc:
     std::vector<linalg::Vector> points;
     grazed.add_crossing(e, surfaces, points);
     const auto count = moves.size();
-    for (const auto& point : points) add_touched_sides_at(made, modes, point, e, crowded, moves);
+    for (const auto& point : points) add_insertions_at({made, modes, point, nullptr}, e, crowded, moves);
     for (auto i = count; i < moves.size(); ++i) moves[i].is_elsewhere = true;
   }
 }

@@ -2,6 +2,7 @@
 #include <iterator>
 
 #include "saltus/discretization/ocp/element_items_internal.hpp"
+#include "saltus/discretization/ocp/neighbours_internal.hpp"
 
 namespace saltus::discretization {
 namespace {
@@ -71,9 +72,8 @@ class MovedStandstills {
 
 }  // namespace
 
-void add_moved_standstills(const OcpStructure& made, const ElementSides& modes, ConstVectorView w,
-                           std::vector<mpcc::BranchMove>& moves) {
-  if (made.kernel.clock >= 0) MovedStandstills(made, modes, w).add_to(moves);
+void add_moved_standstills(const SolvedBranch& branch, Moves& moves) {
+  if (branch.made.kernel.clock >= 0) MovedStandstills(branch.made, branch.modes, branch.w).add_to(moves);
 }
 
 }  // namespace saltus::discretization

@@ -121,18 +121,14 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] int pair_group(int pair) const override;
   [[nodiscard]] mpcc::BranchClosure close_branch(const std::vector<mpcc::ActiveSide>& sides) const override;
   void complete(mpcc::VectorView w) override;
-  /// Gives other ways to write the same solution:
-  /// - A switch at the end of an interval can as well be in the interval before or behind it, in an element that has
-  ///   vanished.
-  /// - An element that has vanished can as well have the modes of a neighbour.
-  /// - Where an element ends on a surface, the motion can go on in other modes, in an element or more that are
-  /// inserted.
-  /// - Between two elements of equal modes and others a switch can be written with one element more. It is on the side
-  ///   whose lengths are at their bound.
-  [[nodiscard]] std::vector<mpcc::BranchMove> equal_branches(const std::vector<mpcc::ActiveSide>& sides,
-                                                             mpcc::ConstVectorView w) const override;
+  /// Gives mode sequences that differ by an element, with mode insertion gradients as prices. It is inserted with
+  /// length zero where the motion can go on in other modes or in those of the next interval. It is removed where its
+  /// length is zero. It is divided where it is as long as it may be. What happens at impacts comes in one.
+  [[nodiscard]] std::vector<mpcc::BranchMove> neighbours(const std::vector<mpcc::ActiveSide>& sides,
+                                                         mpcc::ConstVectorView w,
+                                                         const mpcc::Multipliers& multipliers) override;
   /// Returns intervals whose number of elements holds the objective up: one presses against its largest length, or the
-  /// last equal_branches() has found a motion for which there is none left.
+  /// last neighbours() have found a motion for which there is none left.
   /// @param upper  multipliers of upper bounds at w
   [[nodiscard]] std::vector<int> crowded_intervals(mpcc::ConstVectorView w, const linalg::Vector& upper,
                                                    double tolerance) const;

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "saltus/discretization/ocp/element_items_internal.hpp"
+#include "saltus/discretization/ocp/neighbours_internal.hpp"
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
 namespace saltus::discretization {
@@ -100,8 +101,8 @@ class ReachedRegions {
 
 }  // namespace
 
-void add_reached_regions(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                         std::vector<mpcc::BranchMove>& moves) {
+void add_reached_regions(const SolvedBranch& branch, Moves& moves) {
+  const auto& [made, modes, w, multipliers] = branch;
   int pair = 0;
   for (const auto& part : made.kernel.parts) {
     const bool is_step = part.form == reformulation::Form::step;

@@ -1,8 +1,6 @@
 // On which side of each surface an element is, in either form.
 #pragma once
 
-#include <functional>
-#include <set>
 #include <vector>
 
 #include "saltus/discretization/ocp/element_sides_internal.hpp"
@@ -43,33 +41,5 @@ class SurfaceStates {
   const OcpStructure& made_;
   std::vector<Surface> surfaces_;
 };
-
-/// Adds moves of surfaces that elements are held on although nothing depends on their selections there: either side of
-/// them is the same point.
-/// @param functions  rows of the problem at a point
-void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                    const std::function<linalg::Vector(const linalg::Vector&)>& functions,
-                    std::vector<mpcc::BranchMove>& moves);
-
-/// Adds moves of modes in which the motion can go on from where an element ends: an element of them is inserted, or
-/// several up to the end of an impact, or what follows has them. Of surfaces crossed at once an element between has the
-/// sides one by one.
-/// @param crowded  intervals that have no element left for such a move are added
-void add_touched_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                       std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves);
-
-/// Adds those of them that begin where an element does.
-void add_touched_sides_at(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                          std::size_t element, std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves);
-
-/// Adds moves to impacts where bodies only graze: behind one of velocity 0 nothing differs, so that they begin at a
-/// point with other controls, where it has some.
-void add_grazed_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                      std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves);
-
-/// Adds moves of regions by indicators that a state comes to at the end of the horizon, or is held at until then: it
-/// goes on through them, to the line between them and another one.
-void add_reached_regions(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                         std::vector<mpcc::BranchMove>& moves);
 
 }  // namespace saltus::discretization

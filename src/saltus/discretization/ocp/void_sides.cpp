@@ -4,6 +4,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/discretization/ocp/neighbours_internal.hpp"
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
 namespace saltus::discretization {
@@ -13,8 +14,14 @@ using Functions = std::function<linalg::Vector(const linalg::Vector&)>;
 
 class VoidSides {
  public:
-  VoidSides(const OcpStructure& made, const ElementSides& modes, const linalg::Vector& w, const Functions& functions)
-      : made_(made), modes_(modes), w_(w), functions_(functions), states_(made), elements_(made.element.size()) {}
+  VoidSides(const SolvedBranch& branch, const Functions& functions)
+      : made_(branch.made),
+        modes_(branch.modes),
+        w_(branch.w),
+        multipliers_(*branch.multipliers),
+        functions_(functions),
+        states_(made_),
+        elements_(made_.element.size()) {}
 
   void add_to(std::vector<mpcc::BranchMove>& moves) const {
     for (std::size_t surface = 0; surface < states_.count(); ++surface) {
@@ -93,6 +100,7 @@ class VoidSides {
           states_.select(e, surface, side, move.start);
         }
         for (int k = 0; k < made_.kernel.layout.lifted.size; ++k) lift(k, move.start);
+        move.price = price_of_freed(modes_.all(), move.sides, multipliers_);
         moves.push_back(std::move(move));
       }
     }
@@ -100,7 +108,8 @@ class VoidSides {
 
   const OcpStructure& made_;
   const ElementSides& modes_;
-  const linalg::Vector& w_;
+  const linalg::Vector w_;
+  const mpcc::Multipliers& multipliers_;
   const Functions& functions_;
   SurfaceStates states_;
   std::size_t elements_;
@@ -108,10 +117,8 @@ class VoidSides {
 
 }  // namespace
 
-void add_void_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                    const Functions& functions, std::vector<mpcc::BranchMove>& moves) {
-  const linalg::Vector here = w;
-  VoidSides(made, modes, here, functions).add_to(moves);
+void add_void_sides(const SolvedBranch& branch, const Functions& functions, Moves& moves) {
+  VoidSides(branch, functions).add_to(moves);
 }
 
 }  // namespace saltus::discretization

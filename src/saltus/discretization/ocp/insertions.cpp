@@ -1,4 +1,5 @@
-// Modes in which the motion can go on from where an element ends, and does not; and several surfaces crossed at once.
+// Elements of length zero: modes in which the motion can go on from where an element ends, and does not; and several
+// surfaces crossed at once.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -10,6 +11,7 @@
 #include "saltus/base/contains.hpp"
 #include "saltus/discretization/ocp/element_items_internal.hpp"
 #include "saltus/discretization/ocp/element_trial_internal.hpp"
+#include "saltus/discretization/ocp/insertion_prices_internal.hpp"
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
 namespace saltus::discretization {
@@ -24,25 +26,36 @@ constexpr std::size_t largest_chain = 3;
 /// Surfaces that are combined with all others.
 constexpr std::size_t largest_combined = 4;
 
-class TouchedSides {
+class Insertions {
  public:
-  TouchedSides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w, std::set<int>& crowded)
-      : made_(made), modes_(modes), w_(w), crowded_(crowded), states_(made), items_(made, modes, w), trial_(made, w) {}
+  Insertions(const SolvedBranch& branch, std::set<int>& crowded)
+      : made_(branch.made),
+        modes_(branch.modes),
+        w_(branch.w),
+        crowded_(crowded),
+        multipliers_(branch.multipliers),
+        states_(made_),
+        items_(made_, modes_, w_),
+        trial_(made_, w_) {
+    if (branch.multipliers != nullptr) prices_.emplace(branch);
+  }
 
-  void add_to(std::vector<mpcc::BranchMove>& moves) const {
+  void add_to(Moves& moves) const {
     for (std::size_t e = 0; e <= made_.element.size(); ++e) add_continued(e, moves);
     for (std::size_t e = 0; e < made_.element.size(); ++e) add_crossed(e, moves);
   }
 
-  void add_continued(std::size_t e, std::vector<mpcc::BranchMove>& moves) const {
+  void add_continued(std::size_t e, Moves& moves) const {
     const bool is_first = e == 0, is_last = e == made_.element.size();
     Node node{
         .element = e, .before = is_first ? Modes{} : modes_.modes(e - 1), .after = is_last ? Modes{} : modes_.modes(e)};
     const auto left = trial_.left_of(e);
     if (!is_touched(node, trial_.lambda(left))) return;
+    const bool has_beyond = !is_first && !is_last && made_.element[e].number == 0 && node.before != node.after;
     const auto begin_in = [&](std::size_t k) {
       node.interval = k;
-      node.place = index(e) - made_.interval[k].first_element;
+      node.place = static_cast<Items::difference_type>(e) - made_.interval[k].first_element;
+      if (has_beyond) node.beyond = static_cast<int>(k) == made_.element[e - 1].interval ? node.after : node.before;
       extend(node, left, is_first ? node.after : node.before, {}, moves);
     };
     if (!is_first) begin_in(at(made_.element[e - 1].interval));
@@ -56,6 +69,7 @@ class TouchedSides {
     std::size_t interval = 0;          ///< in which elements are inserted
     Items::difference_type place = 0;  ///< of what follows, in the interval
     Modes before, after;               ///< empty at the ends of the horizon
+    Modes beyond{};                    ///< of the element on the other side of a control node, if it is another mode
   };
 
   /// Whether a surface is reached that is not slid on all the time, or slid on with a selection at its bound.
@@ -90,16 +104,18 @@ class TouchedSides {
 
   /// Everything that can follow these elements, which have been inserted.
   void extend(const Node& node, const std::vector<double>& left, const Modes& before, const Items& chain,
-              std::vector<mpcc::BranchMove>& moves) const {
+              Moves& moves) const {
     if (chain.size() == largest_chain) return;
     std::vector<std::vector<double>> impacts;
     // What follows anyway is another motion behind an impact.
-    for (const auto& modes : candidates(trial_.lambda(left), before, chain.empty() ? node.after : Modes{})) {
+    auto list = candidates(trial_.lambda(left), before, chain.empty() ? node.after : Modes{});
+    if (chain.empty() && !node.beyond.empty()) list.push_back(node.beyond);
+    for (const auto& modes : list) {
       double length = inserted_share;
       auto own = trial_.solve(left, node.interval, modes, length);
       const bool stands = own && trial_.stands_still(left, *own);
-      if (stands) own = solve_to_end(left, node.interval, modes, length);
-      if (!own || !trial_.is_admissible(*own)) continue;
+      if (stands) own = trial_.solve_to_end(left, node.interval, modes, length);
+      if (!own || (modes != node.beyond && !trial_.is_admissible(*own))) continue;
       const auto right = trial_.right_of(*own);
       // Several modes may say the same of an impact.
       if (stands && std::any_of(impacts.begin(), impacts.end(), [&](auto& other) { return is_same(right, other); })) {
@@ -111,8 +127,9 @@ class TouchedSides {
         impacts.push_back(right);
         extend(node, right, modes, longer, moves);
       } else {
-        insert(node, longer, moves);
         if (chain.empty()) replace(node, modes, moves);
+        const auto price = price_of({node.element, node.interval, left, longer.back()});
+        if (!is_dear(price)) insert(node, longer, price, moves);
       }
     }
   }
@@ -147,42 +164,17 @@ class TouchedSides {
     return list;
   }
 
-  /// While time stands still: until one of the multipliers has come to 0. From rest they fall with the square of time.
-  [[nodiscard]] std::optional<linalg::Vector> solve_to_end(const std::vector<double>& left, std::size_t interval,
-                                                           const Modes& modes, double& length) const {
-    constexpr int largest_steps = 60;
-    constexpr double enough = 1e-9, largest_growth = 10.0;
-    double low = 0.0, at_low = 1.0, high = std::numeric_limits<double>::infinity(), at_high = 0.0;
-    for (int step = 0; step < largest_steps; ++step) {
-      auto own = trial_.solve(left, interval, modes, length);
-      if (!own) return std::nullopt;
-      const double rest = least_left(trial_.lambda(left), trial_.lambda(trial_.right_of(*own)));
-      if (std::abs(rest) <= enough) return own;
-      std::tie(rest > 0.0 ? low : high, rest > 0.0 ? at_low : at_high) = std::pair(length, rest);
-      if (std::isinf(high)) {
-        if (!(rest < 1.0)) return std::nullopt;
-        length *= std::min(1.0 / (1.0 - rest), largest_growth);
-      } else {
-        const bool halve = step % 3 == 0;
-        length = halve ? 0.5 * (low + high) : low + (high - low) * at_low / (at_low - at_high);
-      }
-    }
-    return std::nullopt;
+  [[nodiscard]] std::optional<double> price_of(const Insertion& insertion) const {
+    return prices_ ? prices_->price(insertion) : std::nullopt;
   }
+  [[nodiscard]] static bool is_dear(const std::optional<double>& price) { return price && *price >= 0.0; }
 
-  /// What is left, relative to the beginning, of the multiplier that comes to 0 first.
-  [[nodiscard]] static double least_left(const std::vector<double>& begin, const std::vector<double>& end) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < begin.size(); ++k) {
-      if (begin[k] > on_surface) least = std::min(least, end[k] / begin[k]);
-    }
-    return least;
-  }
-
-  void insert(const Node& node, const Items& chain, std::vector<mpcc::BranchMove>& moves) const {
+  void insert(const Node& node, const Items& chain, std::optional<double> price, Moves& moves) const {
     Items items = items_.of_interval(node.interval);
     items.insert(items.begin() + node.place, chain.begin(), chain.end());
+    const auto count = moves.size();
     const bool have_room = items_.add_solved(node.interval, items, moves);
+    if (moves.size() > count) moves.back().price = price;
     if (!have_room && is_another_motion(node, chain.front())) crowded_.insert(static_cast<int>(node.interval));
   }
 
@@ -199,7 +191,7 @@ class TouchedSides {
   }
 
   /// Instead of what follows, where that stays on the surfaces: until then the motion is the same.
-  void replace(const Node& node, const Modes& modes, std::vector<mpcc::BranchMove>& moves) const {
+  void replace(const Node& node, const Modes& modes, Moves& moves) const {
     Items items = items_.of_interval(node.interval);
     if (node.place == std::ssize(items)) return;
     for (auto item = items.begin() + node.place; item != items.end(); ++item) {
@@ -211,11 +203,14 @@ class TouchedSides {
       const bool is_end = std::next(item) == items.end() || std::next(item)->modes != modes_.modes(item->element);
       if (is_end) break;
     }
+    const auto count = moves.size();
     items_.add_solved(node.interval, items, moves);
+    if (moves.size() > count && prices_)
+      moves.back().price = price_of_freed(modes_.all(), moves.back().sides, *multipliers_);
   }
 
   /// Several surfaces that are crossed at once are crossed one by one.
-  void add_crossed(std::size_t e, std::vector<mpcc::BranchMove>& moves) const {
+  void add_crossed(std::size_t e, Moves& moves) const {
     const Modes before = modes_.modes(e);
     if (e + 1 == made_.element.size()) {
       for (std::size_t s = 0; s < states_.count(); ++s) add_touched(e, s, before, moves);
@@ -235,31 +230,48 @@ class TouchedSides {
     for (const auto s : differing) insert_beside(e, states_.with(before, s, states_.of(after, s)), moves);
   }
 
-  void add_touched(std::size_t e, std::size_t surface, const Modes& modes, std::vector<mpcc::BranchMove>& moves) const {
+  void add_touched(std::size_t e, std::size_t surface, const Modes& modes, Moves& moves) const {
     const int state = states_.of(modes, surface);
     if (state == 0 || !states_.is_on(surface, trial_.lambda(trial_.left_of(e + 1)))) return;
     insert_beside(e, states_.with(modes, surface, -state), moves);
   }
 
-  /// A short element behind e, in its interval, in the next one, or in both.
-  void insert_beside(std::size_t e, const Modes& modes, std::vector<mpcc::BranchMove>& moves) const {
+  /// A short element behind e, in its interval, in the next one, or in both, unless multipliers say that it is of no
+  /// use.
+  void insert_beside(std::size_t e, const Modes& modes, Moves& moves) const {
     const auto k = at(made_.element[e].interval);
     Items items = items_.of_interval(k);
     const auto place = items.begin() + made_.element[e].number + 1;
     const bool is_last = place == items.end();
     items.insert(place, {e, inserted_share, modes});
-    items_.add({{k, items}}, moves);
+    const auto price = price_beside(e, k, modes);
+    const auto add = [&](std::vector<std::pair<std::size_t, Items>> changes, std::optional<double> of_change) {
+      const auto count = moves.size();
+      if (!is_dear(of_change)) items_.add(std::move(changes), moves);
+      if (moves.size() > count) moves.back().price = of_change;
+    };
+    add({{k, items}}, price);
     if (!is_last || k + 1 == made_.interval.size()) return;
     Items next = items_.of_interval(k + 1);
     next.insert(next.begin(), {e, inserted_share, modes});
-    items_.add({{k + 1, next}}, moves);
-    items_.add({{k, items}, {k + 1, next}}, moves);
+    const auto next_price = price_beside(e, k + 1, modes);
+    add({{k + 1, next}}, next_price);
+    add({{k, items}, {k + 1, next}}, price && next_price ? std::optional(*price + *next_price) : std::nullopt);
+  }
+
+  [[nodiscard]] std::optional<double> price_beside(std::size_t e, std::size_t k, const Modes& modes) const {
+    const auto left = trial_.left_of(e + 1);
+    auto own = trial_.solve(left, k, modes, inserted_share);
+    if (!own) return std::numeric_limits<double>::infinity();
+    return price_of({e + 1, k, left, {e, inserted_share, modes, std::move(*own)}});
   }
 
   const OcpStructure& made_;
   const ElementSides& modes_;
   mpcc::ConstVectorView w_;
   std::set<int>& crowded_;
+  const mpcc::Multipliers* multipliers_;
+  std::optional<InsertionPrices> prices_;
   SurfaceStates states_;
   ElementItems items_;
   ElementTrial trial_;
@@ -267,14 +279,12 @@ class TouchedSides {
 
 }  // namespace
 
-void add_touched_sides(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                       std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves) {
-  TouchedSides(made, modes, w, crowded).add_to(moves);
+void add_insertions(const SolvedBranch& branch, std::set<int>& crowded, Moves& moves) {
+  Insertions(branch, crowded).add_to(moves);
 }
 
-void add_touched_sides_at(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
-                          std::size_t element, std::set<int>& crowded, std::vector<mpcc::BranchMove>& moves) {
-  TouchedSides(made, modes, w, crowded).add_continued(element, moves);
+void add_insertions_at(const SolvedBranch& branch, std::size_t element, std::set<int>& crowded, Moves& moves) {
+  Insertions(branch, crowded).add_continued(element, moves);
 }
 
 }  // namespace saltus::discretization
