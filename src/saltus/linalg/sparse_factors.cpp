@@ -129,13 +129,50 @@ Matrix SparseLu::solve(ConstView right) const {
   return solution;
 }
 
-std::vector<Index> dependent_columns(const SparseColumns& a, double threshold) {
-  Eigen::SparseQR<EigenSparse<double>, Eigen::COLAMDOrdering<int>> factors;
+namespace {
+
+using SparseQr = Eigen::SparseQR<EigenSparse<double>, Eigen::COLAMDOrdering<int>>;
+
+void factorise(const SparseColumns& a, double threshold, SparseQr& factors) {
   factors.setPivotThreshold(threshold);
   factors.compute(EigenSparse<double>(eigen(a)));
+}
+
+std::vector<Index> columns_behind_rank(const SparseQr& factors) {
   std::vector<Index> dependent;
-  for (Index i = factors.rank(); i < a.cols(); ++i) dependent.push_back(factors.colsPermutation().indices()[i]);
+  for (Index i = factors.rank(); i < factors.cols(); ++i) dependent.push_back(factors.colsPermutation().indices()[i]);
   return dependent;
+}
+
+}  // namespace
+
+std::vector<Index> dependent_columns(const SparseColumns& a, double threshold) {
+  SparseQr factors;
+  factorise(a, threshold, factors);
+  return columns_behind_rank(factors);
+}
+
+NullSpace null_space(const SparseColumns& a, double threshold) {
+  SparseQr factors;
+  factorise(a, threshold, factors);
+  NullSpace result{.dependent = columns_behind_rank(factors), .vectors = {}};
+  const Index rank = factors.rank();
+  const auto& order = factors.colsPermutation().indices();
+  const EigenSparse<double> upper = factors.matrixR();
+  std::vector<Triplet> entries;
+  for (std::size_t k = 0; k < result.dependent.size(); ++k) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(rank);
+    for (EigenSparse<double>::InnerIterator entry(upper, rank + index(k)); entry; ++entry) {
+      if (entry.row() < rank) x[entry.row()] -= entry.value();
+    }
+    if (rank > 0) upper.topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(x);
+    for (Index i = 0; i < rank; ++i) {
+      if (x[i] != 0.0) entries.push_back({order[i], index(k), x[i]});
+    }
+    entries.push_back({result.dependent[k], index(k), 1.0});
+  }
+  result.vectors = SparseColumns(a.cols(), index(result.dependent.size()), entries);
+  return result;
 }
 
 std::vector<std::size_t> order_of_least_degree(Index size, std::span<const int> start, std::span<const int> rows) {

@@ -54,6 +54,15 @@ class SparseLu : public SparseLuOf<double> {
 /// threshold.
 [[nodiscard]] std::vector<Index> dependent_columns(const SparseColumns& a, double threshold);
 
+/// Vectors x with A x = 0, one for each column that depends on those before it in that order: 1 at this column, 0 at
+/// the other dependent ones. Columns of A should be of a similar size. Cost: that of dependent_columns, and of one
+/// triangular solution for each vector.
+struct NullSpace {
+  std::vector<Index> dependent;
+  SparseColumns vectors;  ///< columns of A x dependent columns
+};
+[[nodiscard]] NullSpace null_space(const SparseColumns& a, double threshold);
+
 /// An order of least degree of a square matrix with these places of entries (AMD, of A + A'). A row without a diagonal
 /// entry counts as dense and comes last.
 [[nodiscard]] std::vector<std::size_t> order_of_least_degree(Index size, std::span<const int> start,

@@ -198,6 +198,35 @@ TEST(DependentColumns, LeaveABasis) {
 }
 
 /// The tip of an arrow comes last: before it, it would fill all of the matrix.
+TEST(NullSpace, IsTakenToZero) {
+  std::mt19937 random(7);
+  auto entries = random_entries(random, 12, 6);
+  // Columns 6 to 8 are combinations of the others.
+  const std::size_t own = entries.size();
+  for (std::size_t e = 0; e < own; ++e) {
+    const auto [row, column, value] = entries[e];
+    if (column < 2) entries.push_back({row, 6, 2.0 * value});
+    if (column == 2) entries.push_back({row, 7, -value});
+    if (column == 3) entries.push_back({row, 8, value});
+    if (column == 5) entries.push_back({row, 8, 0.5 * value});
+  }
+  const SparseColumns a(12, 9, entries);
+  const NullSpace null = null_space(a, 1e-10);
+  ASSERT_EQ(null.dependent.size(), 3U);
+  EXPECT_LT((a.dense() * null.vectors.dense()).max_abs(), 1e-13);
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      EXPECT_EQ(null.vectors(null.dependent[j], static_cast<Index>(k)), j == k ? 1.0 : 0.0);
+    }
+  }
+}
+
+TEST(NullSpace, OfNothingHasAllUnitVectors) {
+  const NullSpace null = null_space(SparseColumns(1, 3), 1e-10);
+  EXPECT_EQ(null.dependent.size(), 3U);
+  EXPECT_EQ(null.vectors.dense().sum_abs(), 3.0);
+}
+
 TEST(OrderOfLeastDegree, LeavesTheTipOfAnArrowToTheEnd) {
   const int n = 30;
   std::vector<int> start{0}, rows;
