@@ -27,7 +27,7 @@ class CachedFunction {
 
 struct Problem::Implementation {
   Statement statement;
-  mpcc::Bounds variable_bounds, constraint_bounds;
+  mpcc::Bounds variable_bounds, constraint_bounds, row_ranges;
   std::vector<mpcc::Sign> signs;
   mpcc::Pattern jacobian_pattern, hessian_pattern;
   CachedFunction values;       ///< objective; (g, G, H)

@@ -4,6 +4,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/foreign/functions_internal.hpp"
 #include "saltus/foreign/make_problem_internal.hpp"
+#include "saltus/foreign/row_ranges_internal.hpp"
 #include "saltus/foreign/signs_internal.hpp"
 
 namespace saltus::foreign {
@@ -58,6 +59,7 @@ std::unique_ptr<Problem> make_problem(Statement statement) {
   all->hessian_pattern = pattern_of(hessian);
   const casadi::Slice sides(static_cast<casadi_int>(all->statement.rows.size()), c.numel());
   all->signs = signs_of(w, c(sides), jacobian(sides, casadi::Slice()), all->variable_bounds);
+  all->row_ranges = ranges_of(w, c, jacobian, all->variable_bounds);
   all->values = CachedFunction("values", w, f, c);
   all->derivatives = CachedFunction("derivatives", w, SX::densify(SX::gradient(f, w)), entries_of(jacobian));
   all->hessian = model::ModelFunction("hessian", {w, factor, y}, {entries_of(hessian)});

@@ -20,6 +20,7 @@ int Problem::constraints() const { return static_cast<int>(implementation_->stat
 int Problem::pairs() const { return static_cast<int>(implementation_->statement.pairs.size()); }
 const mpcc::Bounds& Problem::variable_bounds() const { return implementation_->variable_bounds; }
 const mpcc::Bounds& Problem::constraint_bounds() const { return implementation_->constraint_bounds; }
+const mpcc::Bounds& Problem::row_ranges() const { return implementation_->row_ranges; }
 const std::vector<mpcc::Sign>& Problem::signs() const { return implementation_->signs; }
 const mpcc::Pattern& Problem::jacobian_pattern() const { return implementation_->jacobian_pattern; }
 const mpcc::Pattern& Problem::hessian_pattern() const { return implementation_->hessian_pattern; }

@@ -1,0 +1,16 @@
+// Between which values rows stay, whatever the variables do within their bounds.
+#pragma once
+
+#include <casadi/core/sx.hpp>
+
+#include "saltus/mpcc/problem.hpp"
+
+namespace saltus::foreign {
+
+/// Returns the least and the greatest value of each row that is affine in w, infinite for the others. Constants count as
+/// affine.
+/// @param jacobian  of rows
+[[nodiscard]] mpcc::Bounds ranges_of(const casadi::SX& w, const casadi::SX& rows, const casadi::SX& jacobian,
+                                     const mpcc::Bounds& bounds);
+
+}  // namespace saltus::foreign
