@@ -8,7 +8,7 @@ import tool
 
 EXAMPLES = tool.SOURCE / "examples" / "mpcc"
 SHARED = tool.SOURCE / ".." / "shared" / "data" / "mpcc"
-KEYS = ["format", "file", "sha256", "status", "objective", "x", "names", "certificate", "multipliers", "homotopy", "statistics"]
+KEYS = ["format", "file", "sha256", "status", "objective", "x", "names", "presolve", "certificate", "multipliers", "homotopy", "statistics"]
 
 
 class MpccTest(tool.ToolTest):

@@ -99,6 +99,16 @@ test("constraints are grouped by name, those that matter most first", () => {
   assert.deepEqual(marks.marker.symbol, ["circle-open", "circle"]);
 });
 
+test("limits of multipliers that are not unique are marks of their own", () => {
+  const open = (range) => ({name: "v == 0", time: 2, value: null, range});
+  const [group] = saltus.constraintGroups([open([0.4, null]), open([1, 2]), open([null, null])]);
+  assert.deepEqual(group.ranges.map(({range}) => saltus.rangeText(range)), ["at least 0.4", "1 to 2", "not determined"]);
+  assert.deepEqual(saltus.rangePoints(group).y, [0.4, null, 1, 2, null, 0, null]);
+  const traces = saltus.stemTraces([group], {curves: ["red"]});
+  assert.equal(traces.length, 3);
+  assert.equal(saltus.stemTraces(saltus.constraintGroups([{name: "a", time: 0, value: 1}]), {curves: ["red"]}).length, 2);
+});
+
 test("simulation and solution are compared where both have rows, behind a jump", () => {
   const {trajectory, optimization: {open_loop: simulated}} = result;
   assert.deepEqual(saltus.commonRows(trajectory.t, simulated.t, 1e-9), [[0, 0], [2, 2], [4, 3]]);

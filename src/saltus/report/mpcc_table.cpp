@@ -43,6 +43,29 @@ std::string variables_line(const result::MpccResult& result) {
   return wrapped("variables", pieces);
 }
 
+/// What presolve has found, if anything.
+std::string presolve_line(const result::PresolveCounts& of) {
+  std::vector<std::string> pieces;
+  const auto add = [&](int count, const char* what) {
+    if (count > 0) pieces.push_back(fmt::format("{}: {}", what, count));
+  };
+  add(of.fixed_variables, "fixed variables");
+  add(of.empty_rows, "empty rows");
+  add(of.forced_pairs, "pairs with one side that is never zero");
+  add(of.fixed_pairs, "pairs with one side that is always zero");
+  return pieces.empty() ? "" : wrapped("presolve", pieces);
+}
+
+std::string not_unique_line(const std::vector<result::MpccMultipliers::Range>& rows) {
+  if (rows.empty()) return "";
+  std::string names;
+  for (std::size_t i = 0; i < std::min<std::size_t>(rows.size(), 3); ++i) {
+    names += fmt::format("{}{}", i > 0 ? ", " : "", rows[i].name);
+  }
+  return paragraph("", fmt::format("Multipliers of {} row{} are not unique: {}{}.", rows.size(),
+                                   rows.size() == 1 ? "" : "s", names, rows.size() > 3 ? ", ..." : ""));
+}
+
 }  // namespace
 
 std::string to_line(const result::HomotopyStep& step) {
@@ -68,6 +91,7 @@ std::string to_table(const result::MpccResult& result) {
   std::string text = wrapped("file", {result.file});
   text += wrapped("size", {fmt::format("variables: {}", result.x.size()), fmt::format("rows: {}", statistics.equations),
                            fmt::format("complementarities: {}", statistics.pairs)});
+  text += presolve_line(result.presolve);
   text += paragraph("status", std::string(name(result.status.termination)) +
                                   (result.status.message.empty() ? "" : ": " + result.status.message));
   text += wrapped("objective", {fmt::format("{:.12g}", result.objective)});
@@ -76,6 +100,7 @@ std::string to_table(const result::MpccResult& result) {
     text += paragraph(label, finding.text);
     label = "";
   }
+  text += not_unique_line(result.multipliers.not_unique);
   text += variables_line(result);
   text += starts_table(result.starts);
   text += path_table(result.homotopy);

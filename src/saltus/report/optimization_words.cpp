@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -28,7 +30,8 @@ Finding residuals(const result::Certificate& certificate, double tolerance) {
   const auto piece = [&](double residual, std::string_view good, std::string_view bad) {
     return fmt::format("{} {}", within(residual) ? good : bad, error_text(residual));
   };
-  const auto& [primal, complementarity, stationarity, biactive, type, b_stationary, decrease] = certificate;
+  const double primal = certificate.primal_infeasibility, stationarity = certificate.stationarity;
+  const double complementarity = certificate.complementarity_residual;
   const bool all = within(primal) && within(complementarity) && within(stationarity);
   auto text = fmt::format("{}; {}; {}", piece(primal, "feasible to", "NOT feasible: a bound or row is violated by"),
                           piece(complementarity, "complementarity", "complementarity NOT reached:"),
@@ -61,6 +64,49 @@ Finding b_stationarity(const result::Certificate& certificate) {
                           ? fmt::format(" ({} of its steepest)", error_text(-*certificate.lpcc_decrease))
                           : "",
                       pairs)};
+}
+
+std::string names_text(const std::vector<std::string>& names, std::size_t all) {
+  std::string text;
+  for (const auto& name : names) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", name);
+  return names.size() < all ? text + ", ..." : text;
+}
+
+/// What gradients and second derivatives say; nothing where they are not known.
+std::vector<Finding> regularity(const result::Certificate& certificate) {
+  if (!certificate.licq) return {};
+  std::string text = "Gradients of active constraints are linearly independent";
+  if (!*certificate.licq) {
+    text = fmt::format("Gradients of active constraints depend on each other: {} of them {} of others ({})",
+                       certificate.dependent_rows,
+                       certificate.dependent_rows == 1 ? "is a combination" : "are combinations",
+                       names_text(certificate.dependent, certificate.dependent.size()));
+  }
+  const bool is_saddle = certificate.sosc == false;
+  if (certificate.sosc == true) text += "; second-order sufficient: no point of the same pieces nearby is better";
+  if (is_saddle) text += "; NOT second-order sufficient: along some direction the objective falls to second order";
+  if (!certificate.sosc) text += "; second derivatives decide nothing";
+  return {{is_saddle ? Tone::bad : Tone::neutral, text + "."}};
+}
+
+std::string limits_text(const std::vector<double>& range) {
+  const double lower = range.front(), upper = range.back();
+  if (!std::isfinite(lower) && !std::isfinite(upper)) return "nothing determines it";
+  if (!std::isfinite(upper)) return fmt::format("at least {:.6g}", lower);
+  if (!std::isfinite(lower)) return fmt::format("at most {:.6g}", upper);
+  return fmt::format("from {:.6g} to {:.6g}", lower, upper);
+}
+
+/// The first multiplier that is not unique, and how many others.
+std::vector<Finding> multiplier_findings(const std::vector<result::ConstraintMultiplier>& multipliers) {
+  const auto is_open = [](const auto& one) { return one.range.size() == 2; };
+  const auto first = std::find_if(multipliers.begin(), multipliers.end(), is_open);
+  if (first == multipliers.end()) return {};
+  const auto others = std::count_if(first + 1, multipliers.end(), is_open);
+  return {{Tone::neutral,
+           fmt::format("The multiplier of `{}` at t = {:.6g} is not unique: {}{}.", first->name, first->time,
+                       limits_text(first->range),
+                       others == 0 ? "" : fmt::format("; {} more {} not", others, others == 1 ? "is" : "are"))}};
 }
 
 std::string interval_text(const result::Optimization& optimization, int interval) {
@@ -151,11 +197,21 @@ std::string feedback_words(const std::vector<std::pair<std::string, double>>& pl
 }  // namespace
 
 std::vector<Finding> certificate_findings(const result::Certificate& certificate, double tolerance) {
-  return {residuals(certificate, tolerance), b_stationarity(certificate)};
+  std::vector<Finding> findings{residuals(certificate, tolerance), b_stationarity(certificate)};
+  if (certificate.b_stationary == true && certificate.other_sides_tried == false) {
+    findings.push_back(
+        {Tone::neutral,
+         "Not every other way to write this point was tried (a limit, or too few elements of an interval): "
+         "switches a little earlier or later may be better."});
+  }
+  for (auto& finding : regularity(certificate)) findings.push_back(std::move(finding));
+  return findings;
 }
 
 std::vector<Finding> certificate_findings(const result::Result& result) {
-  return certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
+  auto findings = certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
+  for (auto& finding : multiplier_findings(result.optimization->multipliers)) findings.push_back(std::move(finding));
+  return findings;
 }
 
 std::vector<Finding> verification_findings(const result::Optimization& optimization) {

@@ -61,9 +61,10 @@ json open_loop_data(const result::Optimization& optimization, std::size_t states
 
 json multipliers_data(const std::vector<result::ConstraintMultiplier>& multipliers) {
   json list = json::array();
-  for (const auto& [name, time, value] : multipliers) {
+  for (const auto& [name, time, value, range] : multipliers) {
     if (list.size() == multipliers_in_page) break;
     list.push_back({{"name", name}, {"time", time}, {"value", value}});
+    if (!range.empty()) list.back()["range"] = range;
   }
   return list;
 }

@@ -60,13 +60,25 @@ struct Certificate {
   std::optional<StationarityType> stationarity_type;
   std::optional<bool> b_stationary;  ///< nullopt: not decided
   std::optional<double> lpcc_decrease;
+  /// Other sides with which the same point can be written were tried to the end, and none is better; nullopt: not
+  /// known.
+  std::optional<bool> other_sides_tried;
+  // Of the branch problem, if it is solved; nullopt: not known.
+  std::optional<bool> licq;            ///< gradients of active constraints are linearly independent
+  int dependent_rows = 0;              ///< as many are combinations of others
+  std::vector<std::string> dependent;  ///< the first rows that take part
+  std::optional<bool> unique_multipliers;
+  std::optional<bool> strict_complementarity;  ///< no active inequality has a zero multiplier
+  std::optional<bool> ulsc;                    ///< no side of a biactive pair has one
+  std::optional<bool> sosc;                    ///< second-order sufficient
 };
 
 /// Holds the multiplier of a terminal, path or boundary constraint; positive where an upper bound or `<=` presses.
 struct ConstraintMultiplier {
   std::string name;
   double time = 0.0;
-  double value = 0.0;
+  double value = 0.0;           ///< NaN where it is not unique
+  std::vector<double> range{};  ///< the least and the greatest, where it is not unique; not finite: without a limit
 };
 
 /// Holds the controls over the whole horizon, from the start on.

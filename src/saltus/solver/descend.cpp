@@ -62,7 +62,9 @@ class Descent {
       certify();
       if (run_.is_over() || !leaves()) break;
     }
+    const bool is_cut_short = run_.is_over();
     if (!is_certified()) go_back();
+    run_.solution.certificate.other_sides_tried = !is_cut_short;
   }
 
  private:

@@ -67,6 +67,9 @@ class Run {
 /// Goes from run.branch to better branches, until none is found: flips of biactive pairs with negative multipliers,
 /// then the linear program over them. Leaves certificate and multipliers in run.solution.
 void descend(Run& run);
+/// Adds to the certificate of run.branch what gradients of constraints and second derivatives say, if it is solved.
+/// Leaves the set of its multipliers in run.solution.
+void appraise(Run& run);
 /// Helps where no branch was accepted: the linear program at the relaxed point proposes sides. Leaves run.branch if it
 /// works.
 void rescue(Run& run);

@@ -222,6 +222,7 @@ Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver
   Solution& solution = run.solution;
   if (run.branch) {
     descend(run);
+    appraise(run);
     solution.crossed_over = true;
     solution.w = run.branch->w;
     solution.sides = run.branch->sides;

@@ -9,6 +9,7 @@
 #include "saltus/base/error.hpp"
 #include "saltus/mpcc/problem.hpp"
 #include "saltus/result/optimization.hpp"
+#include "saltus/solver/certificate/multiplier_set.hpp"
 #include "saltus/solver/homotopy/follow_path.hpp"
 #include "saltus/solver/lpcc_solver.hpp"
 #include "saltus/solver/multipliers.hpp"
@@ -54,6 +55,7 @@ struct Solution {
   double objective = 0.0;
   linalg::Vector w;
   MpccMultipliers multipliers;
+  std::optional<certificate::MultiplierSet> multiplier_set;  ///< of the branch problem that w solves
   result::Certificate certificate;
   std::vector<result::HomotopyStep> homotopy;
   std::vector<result::StartOutcome> starts;  ///< where there were several

@@ -237,8 +237,8 @@ struct RecordMembers<result::ObjectiveTerms> {
 template <>
 struct RecordMembers<result::ConstraintMultiplier> {
   using R = result::ConstraintMultiplier;
-  static constexpr auto list =
-      std::make_tuple(field("name", &R::name), field("time", &R::time), field("value", &R::value));
+  static constexpr auto list = std::make_tuple(field("name", &R::name), field("time", &R::time),
+                                               field("value", &R::value), field("range", &R::range, Presence::if_any));
 };
 
 template <>
@@ -268,7 +268,12 @@ struct RecordMembers<result::Certificate> {
       field("primal_infeasibility", &R::primal_infeasibility),
       field("complementarity_residual", &R::complementarity_residual), field("stationarity", &R::stationarity),
       field("biactive", &R::biactive), field("stationarity_type", &R::stationarity_type),
-      field("b_stationary", &R::b_stationary), field("lpcc_decrease", &R::lpcc_decrease));
+      field("b_stationary", &R::b_stationary), field("lpcc_decrease", &R::lpcc_decrease),
+      field("other_sides_tried", &R::other_sides_tried, Presence::later), field("licq", &R::licq, Presence::later),
+      field("dependent_rows", &R::dependent_rows, Presence::later), field("dependent", &R::dependent, Presence::if_any),
+      field("unique_multipliers", &R::unique_multipliers, Presence::later),
+      field("strict_complementarity", &R::strict_complementarity, Presence::later),
+      field("ulsc", &R::ulsc, Presence::later), field("sosc", &R::sosc, Presence::later));
 };
 
 template <>
@@ -318,10 +323,27 @@ struct RecordMembers<result::OptimizationStatistics> {
 };
 
 template <>
+struct RecordMembers<result::PresolveCounts> {
+  using R = result::PresolveCounts;
+  static constexpr auto list =
+      std::make_tuple(field("fixed_variables", &R::fixed_variables), field("empty_rows", &R::empty_rows),
+                      field("forced_pairs", &R::forced_pairs), field("fixed_pairs", &R::fixed_pairs),
+                      field("infeasible", &R::infeasible, Presence::if_any));
+};
+
+template <>
+struct RecordMembers<result::MpccMultipliers::Range> {
+  using R = result::MpccMultipliers::Range;
+  static constexpr auto list =
+      std::make_tuple(field("row", &R::row), field("name", &R::name), field("range", &R::range));
+};
+
+template <>
 struct RecordMembers<result::MpccMultipliers> {
   using R = result::MpccMultipliers;
-  static constexpr auto list = std::make_tuple(field("rows", &R::rows), field("lower", &R::lower),
-                                               field("upper", &R::upper), field("G", &R::G), field("H", &R::H));
+  static constexpr auto list =
+      std::make_tuple(field("rows", &R::rows), field("lower", &R::lower), field("upper", &R::upper), field("G", &R::G),
+                      field("H", &R::H), field("not_unique", &R::not_unique, Presence::if_any));
 };
 
 template <>

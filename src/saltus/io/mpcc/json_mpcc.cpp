@@ -22,6 +22,7 @@ std::string to_json(const result::MpccResult& result) {
             {"objective", result.objective},
             {"x", result.x},
             {"names", result.names},
+            {"presolve", record_json(result.presolve)},
             {"certificate", record_json(result.certificate)},
             {"multipliers", record_json(result.multipliers)},
             {"homotopy", value_json(result.homotopy)},

@@ -9,6 +9,7 @@
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/bodies/drawing.hpp"
 #include "saltus/pipeline/optimal_control/advice_internal.hpp"
+#include "saltus/pipeline/optimal_control/constraint_multipliers_internal.hpp"
 #include "saltus/pipeline/optimal_control/optimum_result_internal.hpp"
 #include "saltus/pipeline/options/number_list_internal.hpp"
 #include "saltus/pipeline/options/optimize_fields.hpp"
@@ -51,12 +52,7 @@ result::Optimization solved_point(const SolvedOcp& solved) {
   found.starts = solution.starts;
   found.certificate = solution.certificate;
   const auto& multipliers = solution.multipliers;
-  if (multipliers.rows.size() == problem.constraints()) {
-    const linalg::Vector bounds = multipliers.upper.size() == problem.variables()
-                                      ? linalg::Vector(multipliers.upper - multipliers.lower)
-                                      : linalg::Vector();
-    found.multipliers = problem.constraint_multipliers(solution.w, multipliers.rows, bounds);
-  }
+  found.multipliers = constraint_multipliers(problem, solution);
   found.primal = list_of(solution.w);
   found.dual_rows = list_of(multipliers.rows);
   found.dual_lower = list_of(multipliers.lower);

@@ -114,6 +114,12 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
   if (wanted.time_limit) *wanted.time_limit -= solving.seconds();
   MoreElements more(ocp, wanted, solved);
   for (int round = 0; round < most_rounds && more.add();) ++round;
+  const auto& found = solved.solution;
+  // Some sides of the same point need an element more.
+  auto& tried = solved.solution.certificate.other_sides_tried;
+  if (!solved.stated.problem->crowded_intervals(found.w, found.multipliers.upper, wanted.tolerance).empty() && tried) {
+    tried = false;
+  }
   return solved;
 }
 

@@ -7,12 +7,13 @@ saltus.constraintsTogether = 6;
 /** Entries by constraint, those with the largest multiplier first. */
 saltus.constraintGroups = (multipliers) => {
   const groups = new Map();
-  for (const {name, time, value} of multipliers) {
-    if (!groups.has(name)) groups.set(name, {name, t: [], values: [], largest: 0});
+  for (const {name, time, value, range} of multipliers) {
+    if (!groups.has(name)) groups.set(name, {name, t: [], values: [], ranges: [], largest: 0});
     const group = groups.get(name);
+    if (range !== undefined) group.ranges.push({time, range});
     group.t.push(time);
     group.values.push(value);
-    group.largest = Math.max(group.largest, Math.abs(value ?? 0));
+    group.largest = Math.max(group.largest, Math.abs(value ?? range?.[0] ?? range?.[1] ?? 0));
   }
   return [...groups.values()].sort((a, b) => b.largest - a.largest);
 };
@@ -22,6 +23,27 @@ saltus.stems = ({t, values}) => ({
   x: t.flatMap((time) => [time, time, null]),
   y: values.flatMap((value) => [0, value, null]),
 });
+
+/** "at least 0.4": what is known of a multiplier that is not unique. */
+saltus.rangeText = ([lower, upper]) => {
+  if (lower === null && upper === null) return "not determined";
+  if (upper === null) return `at least ${saltus.brief(lower)}`;
+  return lower === null ? `at most ${saltus.brief(upper)}` : `${saltus.brief(lower)} to ${saltus.brief(upper)}`;
+};
+
+/** Limits of multipliers that are not unique, joined where there are two; 0 stands for none. */
+saltus.rangePoints = ({ranges}) => {
+  const points = {x: [], y: [], text: []};
+  for (const {time, range} of ranges) {
+    const limits = range.filter((limit) => limit !== null);
+    for (const y of [...(limits.length > 0 ? limits : [0]), null]) {
+      points.x.push(time);
+      points.y.push(y);
+      points.text.push(saltus.rangeText(range));
+    }
+  }
+  return points;
+};
 
 saltus.stemTraces = (groups, palette) => groups.flatMap((group, n) => {
   const color = palette.curves[n % palette.curves.length];
@@ -46,7 +68,18 @@ saltus.stemTraces = (groups, palette) => groups.flatMap((group, n) => {
       legendgroup: String(n),
       hovertemplate: "t = %{x:.6g}: %{y:.6g}<extra>%{fullData.name}</extra>",
       marker: {size: 6, color, symbol: group.values.map((value) => (value === 0 ? "circle-open" : "circle"))},
-    }
+    },
+    ...(group.ranges.length === 0 ? [] : [{
+      type: "scatter",
+      mode: "lines+markers",
+      ...saltus.rangePoints(group),
+      name: `${name}: not unique`,
+      legendgroup: String(n),
+      hovertemplate: "t = %{x:.6g}: %{text}<extra>%{fullData.name}</extra>",
+      connectgaps: false,
+      line: {color, width: 1, dash: "dot"},
+      marker: {size: 8, color, symbol: "diamond-open"},
+    }]),
   ];
 });
 
@@ -84,6 +117,9 @@ saltus.constraintPicture = (result, timeline) => {
   const note = [
     "How much the optimal objective would fall if a constraint were relaxed by one unit: positive where an upper bound or",
     "<= presses, negative where a lower bound or >= does, 0 (hollow) where it does not matter.",
+    groups.some(({ranges}) => ranges.length > 0) ?
+        "Diamonds: limits of multipliers that are not unique, since constraints hold each other there." :
+        "",
     all > multipliers.length ? `The first ${multipliers.length} of ${all}.` : ""
   ].join(" ");
   const card = saltus.drawingCard(

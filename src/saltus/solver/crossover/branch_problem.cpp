@@ -58,7 +58,10 @@ void BranchProblem::drop_rows(const std::vector<int>& rows) {
   linalg::Index next = 0;
   auto& [lower, upper] = reduction_.row_bounds;
   for (std::size_t row = 0; row < is_dropped.size(); ++row) {
-    if (is_dropped[row]) continue;
+    if (is_dropped[row]) {
+      left_out_.push_back(reduction_.rows[row]);
+      continue;
+    }
     reduction_.rows[at(next)] = reduction_.rows[row];
     lower[next] = lower[index(row)];
     upper[next] = upper[index(row)];

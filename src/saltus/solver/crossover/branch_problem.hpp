@@ -22,6 +22,8 @@ class BranchProblem final : public mpcc::Problem {
   void keep_above(const std::vector<int>& variables, mpcc::ConstVectorView w);
   /// Leaves rows out, by their numbers here.
   void drop_rows(const std::vector<int>& rows);
+  /// Returns the rows that were left out so, by their numbers in the whole problem.
+  [[nodiscard]] const std::vector<int>& left_out() const { return left_out_; }
 
   [[nodiscard]] int variables() const override { return reduction_.variables(); }
   [[nodiscard]] int constraints() const override { return static_cast<int>(reduction_.rows.size()); }
@@ -49,6 +51,7 @@ class BranchProblem final : public mpcc::Problem {
 
   mpcc::Problem& problem_;
   Reduction reduction_;
+  std::vector<int> left_out_;
   CachedFunctions cache_;
   std::vector<mpcc::Sign> no_signs_;
   std::vector<int> jacobian_entries_;

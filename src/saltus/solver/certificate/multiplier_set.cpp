@@ -1,0 +1,172 @@
+#include "saltus/solver/certificate/multiplier_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "saltus/base/at.hpp"
+
+namespace saltus::solver::certificate {
+namespace {
+
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+/// Of one linear program; as few dimensions as gradients depend on each other.
+constexpr double linear_seconds = 10.0;
+/// A width that is rounding, relative to the value.
+constexpr double small_width = 1e-7;
+
+/// V without what rounding leaves, for gradients of their own length.
+linalg::SparseRows vectors_of(const ActiveGradients& gradients) {
+  const auto null = linalg::null_space(gradients.matrix, dependence);
+  std::vector<linalg::Triplet> entries;
+  for (linalg::Index k = 0; k < null.vectors.cols(); ++k) {
+    double largest = 0.0;
+    for (const linalg::Entry entry : null.vectors.along(k)) largest = std::max(largest, std::abs(entry.value));
+    for (const linalg::Entry entry : null.vectors.along(k)) {
+      if (std::abs(entry.value) <= dependence * largest) continue;
+      entries.push_back({entry.inner, k, entry.value / gradients.size[at(entry.inner)]});
+    }
+  }
+  return {std::ssize(gradients.size), null.vectors.cols(), entries};
+}
+
+std::vector<double> dense(const linalg::SparseRows& matrix, int row, double factor = 1.0) {
+  std::vector<double> values(at(matrix.cols()), 0.0);
+  for (const linalg::Entry entry : matrix.along(row)) values[at(entry.inner)] = factor * entry.value;
+  return values;
+}
+
+bool is_zero(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
+}
+
+}  // namespace
+
+bool MultiplierRange::is_unique() const {
+  const bool is_limited = std::isfinite(lower) && std::isfinite(upper);
+  return is_limited && upper - lower <= small_width * std::max({1.0, std::abs(lower), std::abs(upper)});
+}
+
+MultiplierSet::MultiplierSet(mpcc::Problem& problem, crossover::Branch& branch, double tolerance)
+    : active_(find_active(problem, branch, tolerance)) {
+  const auto& reduction = branch.problem->reduction();
+  const RowMatrix jacobian = jacobian_matrix(problem, branch.problem->full(branch.point.w));
+  vectors_ = vectors_of(gradients_of(active_, reduction, jacobian));
+  find_slopes(problem, branch, jacobian);
+  add_signs(reduction);
+}
+
+void MultiplierSet::find_slopes(mpcc::Problem& problem, const crossover::Branch& branch, const RowMatrix& jacobian) {
+  const auto& reduction = branch.problem->reduction();
+  const int n = problem.variables();
+  linalg::Vector gradient(n);
+  problem.objective_gradient(branch.problem->full(branch.point.w), gradient);
+  slope_ = linalg::Vector::zero(n);
+  for (int i = 0; i < n; ++i) {
+    const int place = reduction.place[at(i)];
+    leader_.push_back(place < 0 ? i : reduction.leader[at(place)]);
+    slope_[leader_.back()] += gradient[i];
+  }
+  const auto is_free = [&](int i) {
+    const int place = reduction.place[at(i)];
+    return place >= 0 && active_.bounds[at(place)] == At::none;
+  };
+  std::vector<linalg::Triplet> entries;
+  for (std::size_t j = 0; j < active_.rows.size(); ++j) {
+    for (const linalg::Entry entry : jacobian.along(active_.rows[j].row)) {
+      slope_[leader_[at(entry.inner)]] += active_.rows[j].multiplier * entry.value;
+      if (is_free(entry.inner)) continue;
+      for (const linalg::Entry part : vectors_.along(index(j))) {
+        entries.push_back({leader_[at(entry.inner)], part.inner, entry.value * part.value});
+      }
+    }
+  }
+  // Terms that cancel leave rounding.
+  std::vector<linalg::Triplet> sizes = entries;
+  for (auto& entry : sizes) entry.value = std::abs(entry.value);
+  const linalg::SparseRows sums(n, vectors_.cols(), entries), size(n, vectors_.cols(), sizes);
+  std::vector<linalg::Triplet> kept;
+  for (const auto& entry : sums.triplets()) {
+    if (std::abs(entry.value) > dependence * size(entry.row, entry.column)) kept.push_back(entry);
+  }
+  slope_change_ = linalg::SparseRows(n, vectors_.cols(), kept);
+}
+
+void MultiplierSet::add_signs(const crossover::Reduction& reduction) {
+  const auto add = [this](At at_bound, double value, const linalg::SparseRows& changes, int row) {
+    if (at_bound != At::lower && at_bound != At::upper) return;
+    const double sign = at_bound == At::upper ? 1.0 : -1.0;
+    auto change = dense(changes, row, sign);
+    if (is_zero(change)) return;
+    signs_.push_back(std::move(change));
+    // The point itself has the signs, but for rounding.
+    least_.push_back(std::min(-sign * value, 0.0));
+  };
+  for (std::size_t j = 0; j < active_.rows.size(); ++j) {
+    add(active_.rows[j].at, active_.rows[j].multiplier, vectors_, static_cast<int>(j));
+  }
+  // A positive slope is that of a lower bound.
+  const linalg::SparseRows& changes = slope_change_;
+  for (std::size_t place = 0; place < active_.bounds.size(); ++place) {
+    const int leader = reduction.leader[place];
+    const At at_bound = active_.bounds[place];
+    const At as_row = at_bound == At::lower ? At::upper : at_bound == At::upper ? At::lower : at_bound;
+    add(as_row, slope_[leader], changes, leader);
+  }
+}
+
+std::vector<int> MultiplierSet::rows_that_depend() const {
+  std::vector<int> rows;
+  for (std::size_t j = 0; j < active_.rows.size(); ++j) {
+    if (vectors_.along(index(j)).size() > 0) rows.push_back(active_.rows[j].row);
+  }
+  std::sort(rows.begin(), rows.end());
+  return rows;
+}
+
+MultiplierRange MultiplierSet::range(double value, const std::vector<double>& change, LpccSolver& linear) const {
+  MultiplierRange found{value, value};
+  if (is_zero(change)) return found;
+  LpccProblem problem;
+  const auto dimensions = std::ssize(change);
+  problem.variables.lower = linalg::Vector::constant(dimensions, -no_limit);
+  problem.variables.upper = linalg::Vector::constant(dimensions, no_limit);
+  problem.rows.lower = linalg::ConstView(least_);
+  problem.rows.upper = linalg::Vector::constant(std::ssize(least_), no_limit);
+  std::vector<double> entries;
+  for (std::size_t i = 0; i < signs_.size(); ++i) {
+    for (std::size_t k = 0; k < change.size(); ++k) {
+      if (signs_[i][k] == 0.0) continue;
+      problem.pattern.add(static_cast<int>(i), static_cast<int>(k));
+      entries.push_back(signs_[i][k]);
+    }
+  }
+  problem.entries = linalg::ConstView(entries);
+  const auto least = [&](double sign) {
+    problem.cost = sign * linalg::ConstView(change);
+    const LpccSolution solution = linear.solve(problem, linear_seconds);
+    return solution.termination == result::Termination::completed ? solution.objective : -no_limit;
+  };
+  found.lower = value + least(1.0);
+  found.upper = value - least(-1.0);
+  return found;
+}
+
+MultiplierRange MultiplierSet::of_row(int row, LpccSolver& linear) const {
+  for (const ActiveRow& held : active_.held) {
+    if (held.row != row) continue;
+    return {held.at == At::upper ? 0.0 : -no_limit, held.at == At::lower ? 0.0 : no_limit};
+  }
+  for (std::size_t j = 0; j < active_.rows.size(); ++j) {
+    if (active_.rows[j].row != row) continue;
+    return range(active_.rows[j].multiplier, dense(vectors_, static_cast<int>(j)), linear);
+  }
+  return {};
+}
+
+MultiplierRange MultiplierSet::of_bounds(int variable, LpccSolver& linear) const {
+  const int leader = leader_[at(variable)];
+  return range(-slope_[leader], dense(slope_change_, leader, -1.0), linear);
+}
+
+}  // namespace saltus::solver::certificate

@@ -1,0 +1,55 @@
+// All multipliers of a branch problem at its solution, where there are more than one.
+#pragma once
+
+#include <vector>
+
+#include "saltus/linalg/sparse.hpp"
+#include "saltus/solver/certificate/active_constraints.hpp"
+#include "saltus/solver/lpcc_solver.hpp"
+
+namespace saltus::solver::certificate {
+
+/// Holds the least and the greatest value that a multiplier can have; infinite where it has no limit.
+struct MultiplierRange {
+  double lower = 0.0, upper = 0.0;
+  [[nodiscard]] bool is_unique() const;
+};
+
+/// The multipliers y, z of grad f + J'y - z = 0 at a solution of a branch problem. Those of variables and rows at no
+/// bound are zero, those of inequalities have their sign. Where gradients of active constraints depend on each other
+/// they are a polyhedron: those of one point, and what is added to them, V t. The least value in it is the slope of the
+/// optimal objective where the constraint moves in one direction, the greatest in the other. Without a limit the branch
+/// has no solution in that direction.
+class MultiplierSet {
+ public:
+  /// Cost: one sparse QR factorisation of the active gradients.
+  MultiplierSet(mpcc::Problem& problem, crossover::Branch& branch, double tolerance);
+
+  [[nodiscard]] const ActiveConstraints& active() const { return active_; }
+  /// Whether they are a single point.
+  [[nodiscard]] bool is_unique() const { return dependent_rows() == 0 && active_.held.empty(); }
+  /// The number of active rows that depend on others and on active bounds.
+  [[nodiscard]] int dependent_rows() const { return static_cast<int>(vectors_.cols()); }
+  /// Rows of (g, G, H) that take part in that, in increasing order.
+  [[nodiscard]] std::vector<int> rows_that_depend() const;
+
+  /// Of the row of g; positive where the upper bound presses. Cost: two linear programs where it is not unique.
+  [[nodiscard]] MultiplierRange of_row(int row, LpccSolver& linear) const;
+  /// Of the bounds of a variable of the whole problem, upper - lower.
+  [[nodiscard]] MultiplierRange of_bounds(int variable, LpccSolver& linear) const;
+
+ private:
+  void find_slopes(mpcc::Problem& problem, const crossover::Branch& branch, const RowMatrix& jacobian);
+  void add_signs(const crossover::Reduction& reduction);
+  [[nodiscard]] MultiplierRange range(double value, const std::vector<double>& change, LpccSolver& linear) const;
+
+  ActiveConstraints active_;
+  linalg::SparseRows vectors_;          ///< V: active rows x dimensions
+  std::vector<int> leader_;             ///< of each variable of the problem: the one that stands for it
+  linalg::Vector slope_;                ///< grad f + J'y, of each variable; of equal ones with their leader
+  linalg::SparseRows slope_change_;     ///< J'V, likewise
+  std::vector<std::vector<double>> signs_;  ///< signs_[i] t >= least_[i]
+  std::vector<double> least_;
+};
+
+}  // namespace saltus::solver::certificate
