@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs what benchmarks/compare measures Saltus against, and nothing that building or testing Saltus needs: SUNDIALS
-# and Siconos from Debian (as root), SciPy and nosnoc from PyPI into virtual environments in build/benchmarks. Each of
+# and Siconos from Debian (as root), SciPy, nosnoc and mpecss from PyPI into virtual environments in build/benchmarks. Each of
 # them is optional: what cannot be installed becomes a row "not installed" of the comparison, never a failure. Safe to repeat.
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -8,6 +8,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 venv=build/benchmarks/venv
 scipy_version=1.16.3
 nosnoc_version=0.2.0
+mpecss_version=1.0.3
 
 say() { printf '%s\n' "$*" >&2; }
 is_installed() { [[ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]; }
@@ -42,3 +43,4 @@ install_debian_package libsundials-dev
 install_debian_package python3-siconos
 install_from_pypi scipy "$scipy_version" "$venv"
 install_from_pypi nosnoc "$nosnoc_version" build/benchmarks/nosnoc-venv
+install_from_pypi mpecss "$mpecss_version" build/benchmarks/mpecss-venv
