@@ -57,6 +57,27 @@ TEST(JsonOptimization, HasTheKeysOfTheContractAndItsOwnStatistics) {
   EXPECT_TRUE(json["certificate"]["lpcc_decrease"].is_null());
 }
 
+TEST(JsonOptimization, AMultiplierThatIsNotUniqueHasARange) {
+  auto original = report_samples::turbo_car();
+  auto& multiplier = original.optimization->multipliers[1];
+  multiplier.value = std::numeric_limits<double>::quiet_NaN();
+  multiplier.range = {0.375, std::numeric_limits<double>::infinity()};
+  original.optimization->certificate.licq = false;
+  original.optimization->certificate.dependent = {"v == 0"};
+  const auto text = to_json(original);
+  const auto json = ordered_json::parse(text);
+  EXPECT_TRUE(json["multipliers"][1]["value"].is_null());
+  EXPECT_EQ(json["multipliers"][1]["range"], ordered_json::array({0.375, nullptr}));
+  EXPECT_FALSE(json["multipliers"][0].contains("range"));
+  EXPECT_EQ(json["certificate"]["licq"], false);
+  EXPECT_TRUE(json["certificate"]["sosc"].is_null());
+  const auto back = parse_result(text, "r.json");
+  ASSERT_TRUE(back) << to_text(back.error());
+  EXPECT_EQ(back->optimization->multipliers[1].range.front(), 0.375);
+  EXPECT_FALSE(std::isfinite(back->optimization->multipliers[1].range.back()));
+  EXPECT_EQ(back->optimization->certificate.dependent, original.optimization->certificate.dependent);
+}
+
 TEST(JsonOptimization, WhatIsNotKnownIsNull) {
   auto original = report_samples::turbo_car();
   auto& optimization = *original.optimization;

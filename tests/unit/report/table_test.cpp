@@ -222,6 +222,28 @@ TEST(Table, OfAnOptimisationThatFailedNamesEveryFailure) {
   EXPECT_NE(text.find("Not simulated again."), std::string::npos) << text;
 }
 
+TEST(Table, SaysWhichMultipliersAreNotUnique) {
+  result::Result r = report_samples::turbo_car();
+  auto& optimization = *r.optimization;
+  EXPECT_EQ(to_table(r).find("is not unique"), std::string::npos);
+  optimization.multipliers[1].range = {0.375, std::numeric_limits<double>::infinity()};
+  optimization.multipliers[0].range = {-std::numeric_limits<double>::infinity(), 2.0};
+  optimization.certificate.licq = false;
+  optimization.certificate.dependent_rows = 2;
+  optimization.certificate.dependent = {"v == 0", "q == 200"};
+  optimization.certificate.sosc = false;
+  optimization.certificate.other_sides_tried = false;
+  std::string text = to_table(r);
+  for (std::size_t end = text.find("\n  "); end != std::string::npos; end = text.find("\n  ")) {
+    text.replace(end, text.find_first_not_of(' ', end + 1) - end, " ");
+  }
+  for (const char* part : {"The multiplier of `q == 200` at t = ", "is not unique: at most 2; 1 more is not.",
+                           "2 of them are combinations of others (`v == 0`, `q == 200`)",
+                           "NOT second-order sufficient", "Not every other way to write this point was tried"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+}
+
 /// Two families of names, and one that stands alone.
 result::Result many_states() {
   result::Result r = sample();
