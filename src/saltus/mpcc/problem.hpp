@@ -76,6 +76,12 @@ struct BranchMove {
   bool is_elsewhere = false;     ///< not the same point: it may be far from the solution of its branch
 };
 
+/// Holds a point to begin at.
+struct NamedStart {
+  std::string name;
+  linalg::Vector w;
+};
+
 /// States min f(w)   subject to   lower_w <= w <= upper_w,   lower_g <= g(w) <= upper_g,   0 <= G(w) _|_ H(w) >= 0.
 ///
 /// All constraint functions together are c(w) = (g, G, H), n_g + 2 n_pairs rows. Patterns are fixed for the life of the
@@ -112,6 +118,8 @@ class Problem {
 
   /// Returns where to begin, n_w; by default 0, moved onto the bounds.
   [[nodiscard]] virtual linalg::Vector start() const;
+  /// Returns other points to begin at, n_w each: where they lead to may be compared. By default none.
+  [[nodiscard]] virtual std::vector<NamedStart> other_starts() const { return {}; }
   [[nodiscard]] virtual std::string name(int variable) const;  ///< by default "w[3]"
   /// Returns the name of a row of (g, G, H); by default "g[0]", "G[5]", "H[5]".
   [[nodiscard]] virtual std::string row_name(int row) const;

@@ -49,7 +49,10 @@ PathEnd RelaxedPath::loop(double until) {
   if (!level_) {
     const bool is_solved = solve(attempt_.sigma_initial, attempt_.iteration_limit);
     if (run_.is_over()) return PathEnd::stopped;
-    if (!is_solved) return PathEnd::failed;
+    // The next problems of the loop go on from a feasible point as they would within one problem.
+    const bool is_usable = has_point_ && state_.report.termination == Termination::iteration_limit;
+    if (!is_solved && !is_usable) return PathEnd::failed;
+    set_level({.sigma = attempt_.sigma_initial, .mu = 0.0});
     if (attempt_.sigma_initial <= until) return PathEnd::paused;
   }
   if (!homotopy::next_level(run_.schedule, *level_)) return follow();
@@ -82,7 +85,7 @@ PathEnd RelaxedPath::run_loop(double until) {
     report.termination = Termination::completed;
     report.iterations = iterations - std::exchange(counted, iterations);
     take(at, report);
-    level_ = level;
+    set_level(level);
     end = run_.is_over() ? PathEnd::stopped : end_at(/*is_last=*/false, 0);
     if (!end && level.sigma <= until) end = PathEnd::paused;
     if (end || !following) return std::nullopt;
@@ -166,6 +169,11 @@ NlpPoint RelaxedPath::start(NlpOptions& options) {
   return point;
 }
 
+void RelaxedPath::set_level(const homotopy::Level& level) {
+  level_ = level;
+  solved_ = {.w = w_, .sigma = level.sigma};
+}
+
 /// Makes the functions those of the relaxed problem of this sigma, with the method's terms for a start at w.
 void RelaxedPath::move_to(double sigma) {
   state_.sigma = run_.relaxed.sigma = sigma;
@@ -191,7 +199,7 @@ bool RelaxedPath::solve(double sigma, int iteration_limit) {
   const NlpReport report = run_.nlp.solve(*state_.problem, point, options);
   move_back();
   const bool is_solved = take(point, report);
-  if (is_solved) level_ = {.sigma = sigma, .mu = 0.0};
+  if (is_solved) set_level({.sigma = sigma, .mu = 0.0});
   return is_solved;
 }
 
@@ -223,6 +231,8 @@ bool RelaxedPath::take(const NlpPoint& point, const NlpReport& report) {
   step.objective = run_.problem.objective(w);
   step.primal_infeasibility = violation;
   step.complementarity_residual = complementarity;
+  step.message = std::exchange(attempt_.name, {});
+  if (!step.message.empty() && !report.message.empty()) step.message += ": " + report.message;
   run_.record(step, &report, started_);
   return is_solved;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "saltus/solver/crossing_internal.hpp"
 #include "saltus/solver/homotopy/lead.hpp"
@@ -15,6 +17,7 @@ struct Attempt {
   homotopy::Steering steering = homotopy::Steering::direct;
   double sigma_initial = 1.0;
   int iteration_limit = 500;  ///< of its first problem
+  std::string name{};         ///< of its start, where there are several
 };
 
 enum class PathEnd {
@@ -23,6 +26,12 @@ enum class PathEnd {
   failed,        ///< relaxed problems could not be solved
   stopped,       ///< run.stopped
   paused,        ///< at the sigma that was asked for
+};
+
+/// Holds the solution of a relaxed problem.
+struct SolvedPoint {
+  linalg::Vector w;
+  double sigma = 1.0;
 };
 
 /// Follows the relaxed problems for falling sigma, and tries to cross over behind each. What it comes to is
@@ -38,6 +47,8 @@ class RelaxedPath {
   PathEnd loop(double until = 0.0);
   void show() { run_.relaxed = std::move(state_); }
 
+  /// Null before the first one.
+  [[nodiscard]] const std::optional<SolvedPoint>& last_solved() const { return solved_; }
   [[nodiscard]] double objective() const { return objective_; }  ///< of the last point, the user's
 
  private:
@@ -46,6 +57,7 @@ class RelaxedPath {
   [[nodiscard]] bool has_settled() const;
   [[nodiscard]] bool is_nearly_done() const;
   [[nodiscard]] NlpPoint start(NlpOptions& options);
+  void set_level(const homotopy::Level& level);
   void move_to(double sigma);
   void move_back();
   bool solve(double sigma, int iteration_limit = 500);
@@ -62,9 +74,18 @@ class RelaxedPath {
   bool has_multipliers_ = false;
   bool has_point_ = false;  ///< of the last relaxed problem, near enough to feasible ones for a branch
   double objective_ = 0.0, last_objective_ = 0.0;  ///< of the last two relaxed points
+  std::optional<SolvedPoint> solved_;              ///< of level_
   std::optional<homotopy::Level> level_;           ///< solved last
   double started_ = 0.0;                           ///< seconds of the run at the last move
   bool is_in_loop_ = false;
 };
+
+/// Follows the paths of relaxed problems that can be compared, then others where those fail, until one ends.
+///
+/// Compared are two first sigmas, and other starts beside the given one where these cost less, or where none of its own
+/// paths is solved down to the compared sigma. The path of the lowest objective there goes on, the next one where it
+/// fails. If all do: from the start of the best one, one problem after the other; the same from a smaller sigma; and
+/// elastic problems, from the last one that it solved.
+[[nodiscard]] PathEnd follow_paths(Run& run, const Start& start, const std::vector<mpcc::NamedStart>& others);
 
 }  // namespace saltus::solver

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include <fmt/format.h>
 
@@ -13,13 +12,10 @@
 namespace saltus::solver {
 namespace {
 
-using homotopy::Steering;
 using result::Termination;
 
 /// Of the branch problem of a start, which may be far from its solution. In one go: the solver keeps its barrier.
 constexpr int start_iterations = 3000;
-/// Iterations of the first problem of a path that is compared with one to come: a hard one is not worth more.
-constexpr int compared_iterations = 250;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
@@ -67,78 +63,6 @@ Expected<void> check_start(mpcc::Problem& problem, ConstVectorView w) {
     }
   }
   return {};
-}
-
-/// Whether only values of functions depend on sigma: bounds stay while a loop runs. That of an elastic problem is a
-/// price.
-bool has_loop(const Run& run) {
-  const auto relaxation = run.options.relaxation;
-  return run.options.strategy == Strategy::structured && run.problem.pairs() > 0 &&
-         run.options.steering == Steering::direct &&
-         homotopy::lower_bound(relaxation, 1.0) == homotopy::lower_bound(relaxation, 2.0);
-}
-
-PathEnd shown(RelaxedPath& path, PathEnd end) {
-  path.show();
-  return end;
-}
-
-/// The loops that can be compared: from a sigma that is so large that pairs hardly matter, and from one that is so
-/// small that they matter at once. The lower objective at the same sigma goes on; the other one where that fails.
-PathEnd follow_loops(Run& run, const Attempt& first) {
-  const double initial = run.schedule.sigma_initial;
-  const double factor = run.schedule.sigma_factor;
-  const double small = run.schedule.next(initial);
-  std::vector<double> sigmas{initial};
-  if (!run.options.sigma_initial) sigmas = {initial / (factor * factor), small};
-  struct Candidate {
-    std::unique_ptr<RelaxedPath> path;
-    double objective;
-  };
-  std::vector<Candidate> candidates;
-  Attempt attempt = first;
-  for (const double sigma : sigmas) {
-    attempt.sigma_initial = sigma;
-    attempt.iteration_limit = sigma == sigmas.back() ? first.iteration_limit : compared_iterations;
-    auto path = std::make_unique<RelaxedPath>(run, attempt);
-    const PathEnd end = path->loop(sigmas.size() > 1 ? small : 0.0);
-    if (end != PathEnd::paused && end != PathEnd::failed) return shown(*path, end);
-    const double objective = path->objective();
-    if (end == PathEnd::paused) candidates.push_back({std::move(path), objective});
-  }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const auto& a, const auto& b) { return a.objective < b.objective; });
-  for (auto& [path, objective] : candidates) {
-    const PathEnd end = path->loop();
-    if (end != PathEnd::failed) return shown(*path, end);
-  }
-  return PathEnd::failed;
-}
-
-/// The path; where it fails, one problem after the other, from a smaller sigma, and elastic.
-PathEnd follow_with_restarts(Run& run, const Start& start) {
-  Attempt attempt{.w = start.w,
-                  .multipliers = start.multipliers,
-                  .steering = run.options.steering,
-                  .sigma_initial = run.schedule.sigma_initial};
-  PathEnd end = PathEnd::failed;
-  const auto follow = [&] {
-    RelaxedPath path(run, attempt);
-    end = path.follow();
-    path.show();
-    return end != PathEnd::failed;
-  };
-  if (has_loop(run)) {
-    end = follow_loops(run, attempt);
-    if (end != PathEnd::failed) return end;
-  }
-  if (follow()) return end;
-  attempt.sigma_initial = run.schedule.next(run.schedule.sigma_initial);
-  if (follow() || run.options.steering == Steering::l1) return end;
-  attempt.sigma_initial = run.schedule.sigma_initial;
-  attempt.steering = Steering::l1;
-  follow();
-  return end;
 }
 
 double infeasibility_of(mpcc::Problem& problem, const linalg::Vector& w) {
@@ -217,7 +141,8 @@ Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver
   Run run(problem, nlp, lpcc, options);
   run.relaxed.point.w = from.w;
   const bool is_on_branch = options.first == FirstProblem::branch && solve_first_branch(run, from.w);
-  const PathEnd end = is_on_branch ? PathEnd::crossed_over : follow_with_restarts(run, from);
+  const auto others = start ? std::vector<mpcc::NamedStart>() : problem.other_starts();
+  const PathEnd end = is_on_branch ? PathEnd::crossed_over : follow_paths(run, from, others);
   if (options.crossover && end != PathEnd::crossed_over && end != PathEnd::stopped) rescue(run);
   Solution& solution = run.solution;
   if (run.branch) {

@@ -107,6 +107,48 @@ TEST(OcpGuessTest, LinesToTerminalConstraintsOfFreeHorizons) {
   EXPECT_NEAR(started(ocp, 2, {0.0, 0.5, 1.0}).states[2][0], 6.0, near);
 }
 
+/// q' = v, v' = q + u runs away; outputs: (q - t)^2 + 2 v^2, (q - 5)^2.
+Ocp runaway() {
+  Builder model("runaway");
+  const SX q = model.state("q", {1.0}), v = model.state("v", {0.0, -0.5, 0.5});
+  const SX u = model.control("u", {0.0});
+  model.dynamics("q", v);
+  model.dynamics("v", q + u);
+  model.output("running", (q - model.time()) * (q - model.time()) + 2 * v * v + u * u);
+  model.output("last", (q - 5) * (q - 5));
+  return problem_of(model, 2.0);
+}
+
+TEST(OcpGuessTest, OtherGuessesOfStates) {
+  const Ocp ocp = runaway();
+  const std::vector<double> fractions{0.0, 0.5, 1.0};
+  const auto start = started(ocp, 4, fractions);
+  ASSERT_EQ(start.others.size(), 1U);  // no cost names a state
+  EXPECT_EQ(start.others[0].states, (std::vector<std::vector<double>>(3, {1.0, 0.0})));
+}
+
+TEST(OcpGuessTest, StatesThatCostsName) {
+  Ocp ocp = runaway();
+  const std::vector<double> fractions{0.0, 0.5, 1.0};
+  const auto named = [&] { return started(ocp, 4, fractions).others.back().states; };
+  const auto expect = [](const std::vector<std::vector<double>>& states, const std::vector<double>& q) {
+    for (std::size_t i = 0; i < q.size(); ++i) {
+      EXPECT_NEAR(states[i][0], q[i], 1e-9) << i;
+      EXPECT_NEAR(states[i][1], 0.0, 1e-9) << i;
+    }
+  };
+  ocp.running_cost = 0;  // the curve t, and what is off at the start fades
+  expect(named(), {1.0, 1.5, 2.0});
+  ocp.terminal_cost = 1;
+  expect(named(), {1.0, 3.0, 5.0});
+  ocp.running_cost.reset();
+  expect(named(), {1.0, 3.0, 5.0});
+  ocp.guess = {{OcpGuess::Kind::state, 0, 1}};  // what is stated stays
+  EXPECT_EQ(named()[1], (std::vector<double>{16.0, 0.0}));
+  ocp.guess.push_back({OcpGuess::Kind::state, 1, 1});
+  EXPECT_TRUE(started(ocp, 4, fractions).others.empty());
+}
+
 TEST(OcpGuessTest, WhereTheSimulationStops) {
   Builder model("root");
   const SX x = model.state("x", {0.5}), y = model.state("y", {0.0});

@@ -82,6 +82,8 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] std::vector<double> start_fractions() const;
   void set_start(const OcpGuessValues& guess);
   void set_start(linalg::Vector w);
+  /// Adds one of other_starts().
+  void add_start(std::string name, const OcpGuessValues& guess);
   /// Takes a point of a problem of the same kernel with other intervals or elements: stretches of equal modes are cut
   /// where intervals end, and divided into as many elements as there are.
   void set_start(const OcpProblem& earlier, mpcc::ConstVectorView w);
@@ -111,6 +113,7 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] const mpcc::Pattern& hessian_pattern() const override;
 
   [[nodiscard]] linalg::Vector start() const override;
+  [[nodiscard]] std::vector<mpcc::NamedStart> other_starts() const override;
   [[nodiscard]] std::string name(int variable) const override;
   [[nodiscard]] std::string row_name(int row) const override;
   [[nodiscard]] const mpcc::Chain* chain() const override;

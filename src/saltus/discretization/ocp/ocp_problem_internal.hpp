@@ -24,6 +24,7 @@ struct OcpProblem::Implementation {
   std::unique_ptr<OcpStructure> structure;
   mpcc::Pattern jacobian_pattern, hessian_pattern;
   linalg::Vector start;
+  std::vector<mpcc::NamedStart> other_starts;
   double time_weight = 0.0;
   double method_scale = 0.0;      ///< 0: without the method's terms
   std::vector<int> mean_lengths;  ///< of heuristic_mean: variables; their mean is 1 over the number of their interval

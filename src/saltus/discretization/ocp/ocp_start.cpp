@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
@@ -146,11 +147,18 @@ void OcpProblem::set_start(const OcpGuessValues& guess) {
   StartWriter(*implementation_->structure, guess, implementation_->start).write();
 }
 
+void OcpProblem::add_start(std::string name, const OcpGuessValues& guess) {
+  auto& added = implementation_->other_starts.emplace_back(mpcc::NamedStart{std::move(name), implementation_->start});
+  StartWriter(*implementation_->structure, guess, added.w).write();
+}
+
 void OcpProblem::set_start(linalg::Vector w) {
   SALTUS_ASSERT(w.size() == variables());
   implementation_->start = std::move(w);
 }
 
 linalg::Vector OcpProblem::start() const { return implementation_->start; }
+
+std::vector<mpcc::NamedStart> OcpProblem::other_starts() const { return implementation_->other_starts; }
 
 }  // namespace saltus::discretization

@@ -14,6 +14,7 @@
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/optimal_control/guessed_simulation_internal.hpp"
 #include "saltus/pipeline/optimal_control/linear_targets_internal.hpp"
+#include "saltus/pipeline/optimal_control/named_states_internal.hpp"
 #include "saltus/pipeline/optimal_control/point_values_internal.hpp"
 
 namespace saltus::pipeline {
@@ -224,7 +225,28 @@ class Guess {
       start_.states.push_back(std::move(x));
       start_.alpha.push_back(row < simulation.alpha.size() ? simulation.alpha[row] : std::vector<double>{});
     }
+    if (needs_simulation) add_others(guesses, targets);
     return {};
+  }
+
+  void add_others(const std::vector<const OcpGuess*>& guesses, const std::vector<std::optional<double>>& targets) {
+    const std::vector<std::vector<double>> constant(times_.size(), start_.initial_state);
+    const auto add = [&](std::string name, std::vector<std::vector<double>> states) {
+      for (std::size_t row = 0; row < times_.size(); ++row) {
+        for (std::size_t i = 0; i < states[row].size(); ++i) {
+          if (is_hidden(i) || (ocp_.clock && at(ocp_.clock->state) == i) || guesses[i] != nullptr) {
+            states[row][i] = start_.states[row][i];
+          }
+          const auto bounds = state_bounds(i);
+          states[row][i] = std::max(bounds.lower, std::min(states[row][i], bounds.upper));
+        }
+      }
+      const auto is_same = [&](const OtherStates& other) { return other.states == states; };
+      const bool is_known = states == start_.states || std::any_of(start_.others.begin(), start_.others.end(), is_same);
+      if (!is_known) start_.others.push_back({std::move(name), std::move(states)});
+    };
+    add("constant states", constant);
+    add("states that costs and terminal constraints name", named_states(ocp_, values_, start_, targets, times_));
   }
 
   /// The clock and depths of contacts: nobody guesses them.

@@ -12,6 +12,12 @@ struct Ocp;
 
 namespace saltus::pipeline {
 
+/// Holds other states for the same controls, rows as OcpStart::states.
+struct OtherStates {
+  std::string name;
+  std::vector<std::vector<double>> states;
+};
+
 struct OcpStart {
   double horizon = 0.0;
   std::vector<double> parameters;             ///< all of System::p
@@ -21,6 +27,7 @@ struct OcpStart {
   std::vector<std::vector<double>> states;
   /// Selections there as far as a simulation knows them, columns as System::alpha; empty rows where none does.
   std::vector<std::vector<double>> alpha;
+  std::vector<OtherStates> others;    ///< guesses of the states that `initial_guess` does not state
   std::vector<std::string> warnings;  ///< values outside their bounds that were moved onto them
 };
 

@@ -216,7 +216,14 @@ Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptio
   for (const auto& [state, parameter] : ocp.initial_values)
     guess.parameters[at(parameter)] = guess.initial_state[at(state)];
   (*problem)->set_start(guess);
-  if (options.start_from) take_elements(ocp, *dcs, *kernel, *options.start_from, **problem);
+  if (options.start_from) {
+    take_elements(ocp, *dcs, *kernel, *options.start_from, **problem);
+  } else {
+    for (auto& [name, states] : begin->others) {
+      guess.states = std::move(states);
+      (*problem)->add_start(std::move(name), guess);
+    }
+  }
   if (const auto name = (*problem)->not_finite((*problem)->start()); !name.empty()) {
     auto error = refusal(fmt::format("{} is not finite at the initial guess", name),
                          "give an initial_guess at which costs and constraints are defined");

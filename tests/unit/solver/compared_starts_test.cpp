@@ -1,0 +1,69 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "saltus/adapters/highs/highs_lpcc.hpp"
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/solver/solve.hpp"
+#include "small_problems.hpp"
+
+namespace saltus::solver {
+namespace {
+
+/// A problem that begins where it is told to.
+class Begun : public mpcc::PolynomialProblem {
+ public:
+  Begun(mpcc::PolynomialStatement statement, linalg::Vector start, linalg::Vector other)
+      : PolynomialProblem(std::move(statement)), start_(std::move(start)), other_(std::move(other)) {}
+  [[nodiscard]] linalg::Vector start() const override { return start_; }
+  [[nodiscard]] std::vector<mpcc::NamedStart> other_starts() const override { return {{"the other one", other_}}; }
+
+ private:
+  linalg::Vector start_, other_;
+};
+
+/// min (w2^2 - 1)^2 + 0.3 w2 + w0 + w1, 0 <= w0 _|_ w1 >= 0: f = 0.29 near w2 = 1, and f = -0.31 near w2 = -1.
+Begun two_valleys(double start, double other) {
+  auto stated = small::statement(3, 1, {});
+  stated.f = {{{1.0, {0, 0, 4}}, {-2.0, {0, 0, 2}}, {1.0, {}}, {0.3, {0, 0, 1}}, {1.0, {1}}, {1.0, {0, 1}}}};
+  return {stated, linalg::Vector{0.0, 0.0, start}, linalg::Vector{0.0, 0.0, other}};
+}
+
+Expected<Solution> solved(Begun problem, const std::optional<Start>& start = std::nullopt) {
+  adapters::IpoptSolver ipopt;
+  adapters::HighsLpcc highs;
+  return solve(problem, ipopt, highs, {}, start);
+}
+
+bool has_compared(const Solution& solution) {
+  return std::any_of(solution.homotopy.begin(), solution.homotopy.end(),
+                     [](const auto& step) { return step.message == "begins at the other one"; });
+}
+
+TEST(ComparedStarts, TheLowerRelaxedObjectiveGoesOn) {
+  const auto found = solved(two_valleys(1.2, -1.2));
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->termination, result::Termination::completed);
+  EXPECT_NEAR(found->objective, -0.3054, 1e-3);
+  EXPECT_TRUE(has_compared(*found));
+}
+
+TEST(ComparedStarts, AStartThatCostsMoreIsNotTried) {
+  const auto found = solved(two_valleys(-1.2, 1.2));
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->objective, -0.3054, 1e-3);
+  EXPECT_FALSE(has_compared(*found));
+}
+
+TEST(ComparedStarts, AStartThatIsGivenIsTheOnlyOne) {
+  const auto found = solved(two_valleys(1.2, -1.2), Start{.w = linalg::Vector{0.0, 0.0, 1.2}, .multipliers = {}});
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->objective, 0.2946, 1e-3);
+  EXPECT_FALSE(has_compared(*found));
+}
+
+}  // namespace
+}  // namespace saltus::solver
