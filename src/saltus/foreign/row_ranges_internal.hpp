@@ -7,8 +7,8 @@
 
 namespace saltus::foreign {
 
-/// Returns the least and the greatest value of each row that is affine in w, infinite for the others. Constants count as
-/// affine.
+/// Returns the least and the greatest value of each row that is affine in w, infinite for the others. Constants count
+/// as affine.
 /// @param jacobian  of rows
 [[nodiscard]] mpcc::Bounds ranges_of(const casadi::SX& w, const casadi::SX& rows, const casadi::SX& jacobian,
                                      const mpcc::Bounds& bounds);

@@ -121,7 +121,9 @@ void PresolvedProblem::fix_zero_sides() {
   problem_.jacobian(problem_.start(), values);
   const auto& pattern = problem_.jacobian_pattern();
   std::vector<bool> is_fixed(at(problem_.rows()), false);
-  const auto is_implied = [&](int side) { return problem_.signs()[at(side - problem_.constraints())] == Sign::implied; };
+  const auto is_implied = [&](int side) {
+    return problem_.signs()[at(side - problem_.constraints())] == Sign::implied;
+  };
   for (const int side : found_.zero_sides) is_fixed[at(side)] = is_implied(side);
   for (int e = 0; e < pattern.entries(); ++e) {
     if (!is_fixed[at(pattern.row[at(e)])] || values[e] == 0.0) continue;

@@ -1,4 +1,5 @@
-// What bounds alone decide of a problem: rows without variables, pairs with one side that cannot be zero, contradictions.
+// What bounds alone decide of a problem: rows without variables, pairs with one side that cannot be zero,
+// contradictions.
 #pragma once
 
 #include <string>
@@ -17,9 +18,9 @@ struct Presolve {
   /// "row: 2 to 3 within the bounds of the variables, but -1 to 1 is asked for", for each contradiction.
   std::vector<std::string> infeasible;
 
-  std::vector<int> kept_rows;   ///< of g
+  std::vector<int> kept_rows;  ///< of g
   std::vector<int> kept_pairs;
-  std::vector<int> zero_sides;   ///< rows of G and H that are zero
+  std::vector<int> zero_sides;      ///< rows of G and H that are zero
   std::vector<int> positive_sides;  ///< those that need only be >= 0
 
   [[nodiscard]] bool changes_rows() const { return empty_rows + forced_pairs + fixed_pairs > 0; }

@@ -82,10 +82,10 @@ class RelaxedPath {
 
 /// Follows the paths of relaxed problems that can be compared, then others where those fail, until one ends.
 ///
-/// Compared are two first sigmas, and other starts beside the given one where these cost less, or where none of its own
-/// paths is solved down to the compared sigma. The path of the lowest objective there goes on, the next one where it
-/// fails. If all do: from the start of the best one, one problem after the other; the same from a smaller sigma; and
-/// elastic problems, from the last one that it solved.
+/// Compared are two first sigmas, from the given start and from others. Others count where they cost less, or where no
+/// path from the given one is solved down to the compared sigma. The path of the lowest objective there goes on, the
+/// next one where it fails. If all do: from the start of the best one, one problem after the other; the same from a
+/// smaller sigma; and elastic problems, from the last one that it solved.
 [[nodiscard]] PathEnd follow_paths(Run& run, const Start& start, const std::vector<mpcc::NamedStart>& others);
 
 }  // namespace saltus::solver

@@ -1,6 +1,4 @@
 // Prices of mode sequences beside a solved branch, against differences of optima.
-#include "saltus/discretization/ocp/neighbours_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -12,6 +10,7 @@
 
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/discretization/ocp/insertion_prices_internal.hpp"
+#include "saltus/discretization/ocp/neighbours_internal.hpp"
 #include "saltus/io/toml/toml_model.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/ocp_problem.hpp"
@@ -102,8 +101,8 @@ Solved solved_at_start(const std::string& text) {
   solved.branch = solver::crossover::solve_branch(problem, sides, problem.start(), *solved.ipopt, options);
   EXPECT_LE(solved.branch.primal_infeasibility, 1e-9);
   const auto states = solver::certificate::pair_states(problem, solved.branch.w, sides, 1e-8);
-  const auto multipliers = solver::certificate::multipliers_of_branch(problem, *solved.branch.problem,
-                                                                      solved.branch.point, states);
+  const auto multipliers =
+      solver::certificate::multipliers_of_branch(problem, *solved.branch.problem, solved.branch.point, states);
   solved.moves = problem.neighbours(sides, solved.branch.w, multipliers);
   return solved;
 }

@@ -165,7 +165,10 @@ inline result::Result turbo_car(int intervals = 20) {
   optimization.control_upper = {5.0};
   add_turbo_multipliers(optimization);
   optimization.homotopy = turbo_homotopy();
-  optimization.certificate = {3e-12, 0.0, 1e-11, 0, result::StationarityType::S, true, std::nullopt};
+  optimization.certificate.primal_infeasibility = 3e-12;
+  optimization.certificate.stationarity = 1e-11;
+  optimization.certificate.stationarity_type = result::StationarityType::S;
+  optimization.certificate.b_stationary = true;
   optimization.verification = turbo_verification(result.trajectory);
   optimization.statistics = {263, 1204, 1165, 240, 0.11, 0.35, 0.29, 0.83};
   optimization.primal = {0.1 + 0.2, 1.0 / 3.0, -0.0};

@@ -187,7 +187,13 @@ TEST(Table, OfAnOptimisationThatFailedNamesEveryFailure) {
   auto& optimization = *r.optimization;
   const double nan = std::nan("");
   optimization.terms.running = 1.5;
-  optimization.certificate = {3e-3, 1e-4, nan, 4, result::StationarityType::C, false, -0.03};
+  optimization.certificate.primal_infeasibility = 3e-3;
+  optimization.certificate.complementarity_residual = 1e-4;
+  optimization.certificate.stationarity = nan;
+  optimization.certificate.biactive = 4;
+  optimization.certificate.stationarity_type = result::StationarityType::C;
+  optimization.certificate.b_stationary = false;
+  optimization.certificate.lpcc_decrease = -0.03;
   auto& verification = *optimization.verification;
   verification.interval_defect = 0.02;
   verification.switches_missed = 1;
@@ -238,8 +244,8 @@ TEST(Table, SaysWhichMultipliersAreNotUnique) {
     text.replace(end, text.find_first_not_of(' ', end + 1) - end, " ");
   }
   for (const char* part : {"The multiplier of `q == 200` at t = ", "is not unique: at most 2; 1 more is not.",
-                           "2 of them are combinations of others (`v == 0`, `q == 200`)",
-                           "NOT second-order sufficient", "Not every other way to write this point was tried"}) {
+                           "2 of them are combinations of others (`v == 0`, `q == 200`)", "NOT second-order sufficient",
+                           "Not every other way to write this point was tried"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
 }

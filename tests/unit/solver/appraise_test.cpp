@@ -86,8 +86,7 @@ TEST(Appraise, ARowThatABoundHoldsTooHasNoLimitOnOneSide) {
 
 TEST(Appraise, AMultiplierIsUniqueThoughOthersAreNot) {
   // (w0 - 1)^2 + (w1 - 1)^2 with w0 >= 2 twice, w1 >= 3 once.
-  auto statement =
-      small::statement(2, 0, {{{1.0, {2}}, {-2.0, {1}}, {1.0, {0, 2}}, {-2.0, {0, 1}}, {2.0, {}}}});
+  auto statement = small::statement(2, 0, {{{1.0, {2}}, {-2.0, {1}}, {1.0, {0, 2}}, {-2.0, {0, 1}}, {2.0, {}}}});
   for (int row = 0; row < 2; ++row) small::add_row(statement, small::variable(0), 2.0, small::infinity);
   small::add_row(statement, small::variable(1), 3.0, small::infinity);
   const Solution solution = appraised(statement, {}, {3.0, 4.0});
@@ -101,8 +100,7 @@ TEST(Appraise, AMultiplierIsUniqueThoughOthersAreNot) {
 
 TEST(Appraise, ASaddleIsNotSecondOrderSufficient) {
   // (w0 - 1)^2 - w2^2 at w2 = 0, with the pair at (1, 0).
-  const auto statement =
-      small::statement(3, 1, {{{1.0, {2}}, {-2.0, {1}}, {1.0, {0, 1}}, {-1.0, {0, 0, 2}}}});
+  const auto statement = small::statement(3, 1, {{{1.0, {2}}, {-2.0, {1}}, {1.0, {0, 1}}, {-1.0, {0, 0, 2}}}});
   const Solution solution = appraised(statement, {H}, {1.0, 0.0, 0.0});
   ASSERT_EQ(solution.w[2], 0.0);
   EXPECT_EQ(solution.certificate.sosc, false);

@@ -1,10 +1,9 @@
-#include "saltus/discretization/ocp/insertion_prices_internal.hpp"
-
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/discretization/ocp/insertion_prices_internal.hpp"
 #include "saltus/linalg/factors.hpp"
 
 namespace saltus::discretization {
@@ -86,7 +85,8 @@ linalg::Vector InsertionPrices::adjoint(const Insertion& where) const {
     for (std::size_t i = 0; i < made_.linear.size(); ++i) {
       for (const auto& [variable, factor] : made_.linear[i].entries) {
         const auto place = std::find(state.begin(), state.end(), variable);
-        if (place != state.end()) adjoint[place - state.begin()] += factor * rows_[made_.first_linear_row + static_cast<int>(i)];
+        if (place != state.end())
+          adjoint[place - state.begin()] += factor * rows_[made_.first_linear_row + static_cast<int>(i)];
       }
     }
   }
@@ -106,7 +106,8 @@ std::optional<double> InsertionPrices::multiplier_of_sum(std::size_t interval) c
   const auto& lengths = made_.interval[interval].lengths;
   if (lengths.empty()) return std::nullopt;
   for (std::size_t i = 0; i < made_.linear.size(); ++i) {
-    if (made_.linear[i].entries.front().first == lengths.front()) return rows_[made_.first_linear_row + static_cast<int>(i)];
+    if (made_.linear[i].entries.front().first == lengths.front())
+      return rows_[made_.first_linear_row + static_cast<int>(i)];
   }
   return std::nullopt;
 }

@@ -26,8 +26,8 @@ std::pair<Stretch, Stretch> stretches_at(const OcpStructure& made, const Element
 }
 
 /// The same total lengths of two stretches, in equal parts, behind their boundary has moved by one element.
-linalg::Vector with_boundary(const OcpStructure& made, mpcc::ConstVectorView w, const Stretch& before, const Stretch& after,
-                             std::size_t boundary) {
+linalg::Vector with_boundary(const OcpStructure& made, mpcc::ConstVectorView w, const Stretch& before,
+                             const Stretch& after, std::size_t boundary) {
   linalg::Vector changed = w;
   const auto total = [&](const Stretch& stretch) {
     double sum = 0.0;

@@ -1,8 +1,7 @@
-#include "saltus/discretization/ocp/neighbours_internal.hpp"
-
 #include <algorithm>
 #include <utility>
 
+#include "saltus/discretization/ocp/neighbours_internal.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
 
 namespace saltus::discretization {
@@ -85,7 +84,8 @@ double price_of_freed(const ElementSides::Sides& before, const ElementSides::Sid
 
 void add_removals(const SolvedBranch& branch, Moves& moves) {
   const auto& [made, modes, w, multipliers] = branch;
-  // Equations of an element of length zero depend on each other: more than one multiplier serves, and none says a price.
+  // Equations of an element of length zero depend on each other: more than one multiplier serves, and none says a
+  // price.
   const auto add = [&](std::size_t from, std::size_t to) {
     const int h = made.element[to].length;
     if (h < 0 || w[h] >= vanished) return;

@@ -20,9 +20,9 @@ struct SolvedBranch {
   const mpcc::Multipliers* multipliers;  ///< null at a point beside the solution
 };
 
-/// Adds elements of length zero, where modes are that the motion can go on in: behind an element that ends on a surface,
-/// with the modes of the next interval, or several up to the end of an impact; or what follows has them. Of surfaces
-/// crossed at once an element between has the sides one by one.
+/// Adds elements of length zero, where modes are that the motion can go on in: behind an element that ends on a
+/// surface, with the modes of the next interval, or several up to the end of an impact; or what follows has them. Of
+/// surfaces crossed at once an element between has the sides one by one.
 /// @param crowded  intervals that have no element left for such a move are added
 void add_insertions(const SolvedBranch& branch, std::set<int>& crowded, Moves& moves);
 

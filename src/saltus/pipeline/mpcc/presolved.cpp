@@ -47,7 +47,9 @@ solver::MpccMultipliers Presolved::multipliers_of_whole(const solver::Solution& 
                                 .upper = of.upper,
                                 .G = linalg::Vector::zero(pairs),
                                 .H = linalg::Vector::zero(pairs)};
-  const auto side = [&](int row) -> double& { return row < n_g + pairs ? whole.G[row - n_g] : whole.H[row - n_g - pairs]; };
+  const auto side = [&](int row) -> double& {
+    return row < n_g + pairs ? whole.G[row - n_g] : whole.H[row - n_g - pairs];
+  };
   for (int i = 0; i < smaller_->constraints(); ++i) {
     const int row = smaller_->row_of_whole(i);
     if (row < n_g) {

@@ -1,10 +1,9 @@
-#include "saltus/pipeline/optimal_control/named_states_internal.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "saltus/base/at.hpp"
+#include "saltus/pipeline/optimal_control/named_states_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -14,6 +13,8 @@ using Row = std::vector<double>;
 
 /// Of a state, for differences of costs. They are exact for squares, whatever the step.
 constexpr double relative_step = 1e-2;
+/// Second differences below this, relative to the cost, are rounding.
+constexpr double least_bend = 1e-12;
 /// Passes over all states: squares of sums need more than one.
 constexpr int passes = 3;
 
@@ -89,7 +90,7 @@ class NamedStates {
         const double x = point.x[i], step = relative_step * std::max(1.0, std::abs(x));
         const double middle = cost_at(i, x), left = cost_at(i, x - step), right = cost_at(i, x + step);
         const double bend = left - 2.0 * middle + right;
-        if (!(bend > 1e-12 * std::max(std::abs(middle), 1e-12))) continue;
+        if (!(bend > least_bend * std::max(std::abs(middle), least_bend))) continue;
         const double next = std::clamp(x - step * (right - left) / (2.0 * bend), ocp_.system.state_lower[i],
                                        ocp_.system.state_upper[i]);
         if (cost_at(i, next) <= middle) point.x[i] = next;

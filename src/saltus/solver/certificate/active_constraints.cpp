@@ -21,7 +21,7 @@ bool is_inequality(At at) { return at == At::lower || at == At::upper; }
 
 /// Rows of g that are none of the branch problem although the user states them.
 void find_rows_of_held(mpcc::Problem& problem, const crossover::Branch& branch, const RowMatrix& jacobian,
-               const linalg::Vector& c, double tolerance, ActiveConstraints& active) {
+                       const linalg::Vector& c, double tolerance, ActiveConstraints& active) {
   std::vector<bool> is_known(at(problem.rows()), false);
   for (const auto* rows : {&branch.problem->reduction().rows, &branch.problem->left_out()}) {
     for (const int row : *rows) is_known[at(row)] = true;
@@ -56,8 +56,7 @@ ActiveConstraints find_active(mpcc::Problem& problem, crossover::Branch& branch,
   const NlpPoint& point = branch.point;
   ActiveConstraints active;
   for (linalg::Index i = 0; i < point.w.size(); ++i) {
-    active.bounds.push_back(
-        place_between(point.w[i], reduction.bounds.lower[i], reduction.bounds.upper[i], tolerance));
+    active.bounds.push_back(place_between(point.w[i], reduction.bounds.lower[i], reduction.bounds.upper[i], tolerance));
   }
   const linalg::Vector w = branch.problem->full(point.w);
   linalg::Vector c(problem.rows());

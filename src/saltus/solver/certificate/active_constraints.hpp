@@ -32,9 +32,9 @@ struct ActiveConstraints {
 
 /// Holds the gradients of active rows in the variables that no active bound holds, each divided by its length.
 struct ActiveGradients {
-  std::vector<int> column;         ///< of each variable of the branch problem; -1 if a bound holds it
-  linalg::SparseColumns matrix;    ///< such variables (at least one row) x active rows
-  std::vector<double> size;        ///< length of each gradient; 1 where it is zero
+  std::vector<int> column;       ///< of each variable of the branch problem; -1 if a bound holds it
+  linalg::SparseColumns matrix;  ///< such variables (at least one row) x active rows
+  std::vector<double> size;      ///< length of each gradient; 1 where it is zero
 
   [[nodiscard]] int variables() const;
 };

@@ -44,10 +44,10 @@ class MultiplierSet {
   [[nodiscard]] MultiplierRange range(double value, const std::vector<double>& change, LpccSolver& linear) const;
 
   ActiveConstraints active_;
-  linalg::SparseRows vectors_;          ///< V: active rows x dimensions
-  std::vector<int> leader_;             ///< of each variable of the problem: the one that stands for it
-  linalg::Vector slope_;                ///< grad f + J'y, of each variable; of equal ones with their leader
-  linalg::SparseRows slope_change_;     ///< J'V, likewise
+  linalg::SparseRows vectors_;              ///< V: active rows x dimensions
+  std::vector<int> leader_;                 ///< of each variable of the problem: the one that stands for it
+  linalg::Vector slope_;                    ///< grad f + J'y, of each variable; of equal ones with their leader
+  linalg::SparseRows slope_change_;         ///< J'V, likewise
   std::vector<std::vector<double>> signs_;  ///< signs_[i] t >= least_[i]
   std::vector<double> least_;
 };
