@@ -11,6 +11,8 @@ namespace {
 using certificate::At;
 
 constexpr std::size_t most_names = 5;
+/// Active constraints that may depend on each other: which do of more of them takes longer than the solution.
+constexpr std::size_t most_dependent = 1000;
 /// A multiplier of so many tolerances, relative to the gradient of the objective, is zero: as where signs are judged.
 constexpr double zero_multiplier = 10.0;
 
@@ -43,6 +45,11 @@ void appraise(Run& run) {
   const double tolerance = run.options.tolerance;
   auto& branch = *run.branch;
   if (!branch.is_feasible(tolerance) || !(of.stationarity <= tolerance)) return;
+  const auto active = certificate::find_active(run.problem, branch, tolerance);
+  if (active.rows.size() > most_dependent) {
+    const auto jacobian = jacobian_matrix(run.problem, branch.problem->full(branch.point.w));
+    if (!are_independent(certificate::gradients_of(active, branch.problem->reduction(), jacobian))) return;
+  }
   const auto& set = run.solution.multiplier_set.emplace(run.problem, branch, tolerance);
   of.licq = set.dependent_rows() == 0;
   of.dependent_rows = set.dependent_rows();

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/block_ldl.hpp"
+#include "saltus/linalg/block_order.hpp"
+#include "saltus/solver/crossover/corrector_internal.hpp"
 
 namespace saltus::solver::certificate {
 namespace {
@@ -106,6 +109,25 @@ ActiveGradients gradients_of(const ActiveConstraints& active, const crossover::R
   }
   result.matrix = linalg::SparseColumns(std::max(free, 1), index(active.rows.size()), entries);
   return result;
+}
+
+bool are_independent(const ActiveGradients& gradients) {
+  constexpr double least = 1e-6;
+  const int n = gradients.variables();
+  const auto rows = static_cast<int>(gradients.matrix.cols());
+  if (rows == 0) return true;
+  if (rows > n) return false;
+  crossover::Symmetric system;
+  system.size = n + rows;
+  for (int i = 0; i < n; ++i) system.add(i, i, 1.0);
+  for (int j = 0; j < rows; ++j) {
+    for (const linalg::Entry entry : gradients.matrix.along(j)) system.add(n + j, entry.inner, entry.value);
+    system.add(n + j, n + j, least * least);
+  }
+  linalg::BlockLdl factors;
+  factors.analyse(system.size, system.rows, system.columns,
+                  linalg::blocks_by_minimum_degree(system.size, rows, system.rows, system.columns));
+  return factors.factorise(system.values) == linalg::Inertia{.positive = n, .negative = rows, .zero = 0};
 }
 
 }  // namespace saltus::solver::certificate

@@ -41,6 +41,11 @@ struct ActiveGradients {
 [[nodiscard]] ActiveGradients gradients_of(const ActiveConstraints& active, const crossover::Reduction& reduction,
                                            const RowMatrix& jacobian);
 
+/// Returns whether they surely do not depend on each other: no singular value is below a millionth. It is so if
+///   [I J'; J d^2 I],  d = 1e-6,
+/// has as many negative eigenvalues as J rows. Cost: one sparse factorisation.
+[[nodiscard]] bool are_independent(const ActiveGradients& gradients);
+
 /// Gradients of length 1 that are nearer than this to a combination of others depend on them.
 inline constexpr double dependence = 1e-8;
 

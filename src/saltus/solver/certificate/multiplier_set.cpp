@@ -17,6 +17,7 @@ constexpr double small_width = 1e-7;
 
 /// V without what rounding leaves, for gradients of their own length.
 linalg::SparseRows vectors_of(const ActiveGradients& gradients) {
+  if (are_independent(gradients)) return {std::ssize(gradients.size), 0, {}};
   const auto null = linalg::null_space(gradients.matrix, dependence);
   std::vector<linalg::Triplet> entries;
   for (linalg::Index k = 0; k < null.vectors.cols(); ++k) {

@@ -22,7 +22,9 @@ bool is_positive(crossover::Branch& branch, const ActiveConstraints& active, con
   const int n = gradients.variables();
   if (n == 0) return true;
   std::vector<int> line(active.rows.size(), 0);
-  for (const linalg::Index j : linalg::dependent_columns(gradients.matrix, dependence)) line[at(j)] = -1;
+  if (!are_independent(gradients)) {
+    for (const linalg::Index j : linalg::dependent_columns(gradients.matrix, dependence)) line[at(j)] = -1;
+  }
   int rows = 0;
   for (int& place : line) place = place < 0 ? -1 : n + rows++;
   if (rows >= n) return true;
