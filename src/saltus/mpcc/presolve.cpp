@@ -13,11 +13,11 @@ namespace saltus::mpcc {
 namespace {
 
 constexpr double no_bound = std::numeric_limits<double>::infinity();
-/// A contradiction that rounding cannot make.
-constexpr double rounding = 1e-9;
+/// What neither rounding of the file's numbers nor the tolerance of a solver takes for zero.
+constexpr double certain = 1e-6;
 
 bool is_above(double value, double bound) {
-  return std::isfinite(bound) && value > bound + rounding * std::max(1.0, std::abs(bound));
+  return std::isfinite(bound) && value > bound + certain * std::max(1.0, std::abs(bound));
 }
 
 class Finder {
@@ -73,7 +73,7 @@ class Finder {
     found_.kept_pairs.push_back(pair);
   }
 
-  [[nodiscard]] bool is_positive(int side) const { return ranges_.lower[side] > rounding; }
+  [[nodiscard]] bool is_positive(int side) const { return ranges_.lower[side] > certain; }
 
   void contradict(int row, double lower, double upper) {
     if (!is_above(ranges_.lower[row], upper) && !is_above(lower, ranges_.upper[row])) return;

@@ -50,6 +50,14 @@ TEST(Presolve, NamesRowsThatContradictBounds) {
   EXPECT_EQ(found[1], "G[0] and H[0]: both are positive within the bounds of the variables");
 }
 
+// Files of discretised systems have sides like lambda + 5e-9: rounding of what they were made of.
+TEST(Presolve, ASideThatIsHardlyPositiveForcesNothing) {
+  const auto problem = sample();
+  auto near = ranges();
+  near.lower[2] = 5e-9;
+  EXPECT_EQ(presolve(problem, near).forced_pairs, 0);
+}
+
 TEST(Presolve, ASideThatIsAlwaysZeroLeavesASign) {
   const auto problem = sample();
   auto fixed = ranges();
