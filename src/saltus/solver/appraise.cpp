@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "saltus/base/at.hpp"
 #include "saltus/solver/certificate/second_order.hpp"
@@ -45,12 +46,12 @@ void appraise(Run& run) {
   const double tolerance = run.options.tolerance;
   auto& branch = *run.branch;
   if (!branch.is_feasible(tolerance) || !(of.stationarity <= tolerance)) return;
-  const auto active = certificate::find_active(run.problem, branch, tolerance);
+  auto active = certificate::find_active(run.problem, branch, tolerance);
   if (active.rows.size() > most_dependent) {
     const auto jacobian = jacobian_matrix(run.problem, branch.problem->full(branch.point.w));
     if (!are_independent(certificate::gradients_of(active, branch.problem->reduction(), jacobian))) return;
   }
-  const auto& set = run.solution.multiplier_set.emplace(run.problem, branch, tolerance);
+  const auto& set = run.solution.multiplier_set.emplace(run.problem, branch, std::move(active));
   of.licq = set.dependent_rows() == 0;
   of.dependent_rows = set.dependent_rows();
   for (const int row : set.rows_that_depend()) {

@@ -185,16 +185,16 @@ class Descent {
     visited_.insert(branch().sides);
     auto candidates = run_.problem.neighbours(branch().sides, branch().w, run_.solution.multipliers);
     const double least = tolerance() * std::max(1.0, std::abs(branch().objective));
-    const auto promises = [&](const mpcc::BranchMove& move) { return move.price && *move.price < -least; };
-    const auto unknown = std::stable_partition(candidates.begin(), candidates.end(), promises);
+    std::erase_if(candidates, [&](const mpcc::BranchMove& move) { return move.price && !(*move.price < -least); });
+    const auto unknown = std::stable_partition(candidates.begin(), candidates.end(),
+                                               [](const mpcc::BranchMove& move) { return move.price.has_value(); });
     std::stable_sort(candidates.begin(), unknown, [](const auto& a, const auto& b) { return *a.price < *b.price; });
-    const auto tried = std::min(unknown, candidates.begin() + priced_tried);
-    if (unknown - candidates.begin() > 1 && take_move(together({candidates.begin(), unknown}))) return true;
-    for (auto one = candidates.begin(); one != candidates.end(); ++one) {
-      if (one >= tried && one < unknown) continue;
-      if (one >= unknown && one->price) continue;
+    const auto priced = unknown - candidates.begin();
+    if (priced > 1 && take_move(together({candidates.begin(), unknown}))) return true;
+    if (priced > priced_tried) candidates.erase(candidates.begin() + priced_tried, unknown);
+    for (const auto& move : candidates) {
       if (run_.is_over()) return false;
-      if (take_move(*one)) return true;
+      if (take_move(move)) return true;
     }
     return false;
   }

@@ -22,10 +22,7 @@ Items ElementItems::of_interval(std::size_t k) const {
   return items;
 }
 
-int ElementItems::speed_of(std::size_t k) const {
-  const auto& shared = made_.kernel.shared;
-  return made_.interval[k].shared[at(shared.controls + shared.parameters + shared.held + 1)];
-}
+int ElementItems::speed_of(std::size_t k) const { return made_.interval[k].shared[at(made_.kernel.shared.speed())]; }
 
 bool ElementItems::stands_still(std::size_t e) const {
   if (made_.kernel.clock < 0) return false;

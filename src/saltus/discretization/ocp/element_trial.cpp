@@ -114,7 +114,7 @@ std::vector<double> ElementTrial::inputs(const std::vector<double>& left, std::s
   const auto& kernel = made_.kernel;
   std::vector<double> z = left;
   for (const int place : made_.interval[interval].shared) z.push_back(value_at(place, w_, made_.constants));
-  z[left.size() + at(kernel.shared.controls + kernel.shared.parameters + kernel.shared.held + 1)] = 1.0;
+  z[left.size() + at(kernel.shared.speed())] = 1.0;
   z.resize(z.size() + at(kernel.layout.size), 0.0);
   return z;
 }
@@ -178,24 +178,45 @@ bool ElementTrial::hold_beyond(linalg::View local, std::vector<bool>& is_held) c
   return are_beyond;
 }
 
-bool ElementTrial::solve(std::vector<double>& z, std::size_t first, const std::vector<bool>& is_held) const {
+linalg::Matrix ElementTrial::jacobian(const std::vector<double>& z) const {
   auto& element = made_.kernel.element;
   const auto& pattern = element.jacobian_pattern();
+  const int first = element.variables() - made_.kernel.layout.size;
+  std::vector<double> entries(at(pattern.entries()));
+  element.jacobian(z.data(), made_.local_parameters.data(), entries.data());
+  linalg::Matrix jacobian = linalg::Matrix::zero(element.equations(), made_.kernel.layout.size);
+  for (int e = 0; e < pattern.entries(); ++e) {
+    const int row = pattern.row[at(e)], column = pattern.column[at(e)] - first;
+    if (row < element.equations() && column >= 0) jacobian(row, column) += entries[at(e)];
+  }
+  return jacobian;
+}
+
+linalg::Matrix ElementTrial::columns_of_free(const linalg::Matrix& jacobian, const std::vector<bool>& is_held) {
+  const auto free = std::count(is_held.begin(), is_held.end(), false);
+  linalg::Matrix columns(jacobian.rows(), free);
+  linalg::Index next = 0;
+  for (linalg::Index i = 0; i < jacobian.cols(); ++i) {
+    if (!is_held[at(i)]) columns.col(next++) = jacobian.col(i);
+  }
+  return columns;
+}
+
+bool ElementTrial::solve(std::vector<double>& z, std::size_t first, const std::vector<bool>& is_held) const {
+  auto& element = made_.kernel.element;
   linalg::View local(z.data() + first, made_.kernel.layout.size);
-  std::vector<double> rows(at(element.equations() + 2 * element.pairs())), entries(at(pattern.entries()));
+  std::vector<double> rows(at(element.equations() + 2 * element.pairs()));
   const linalg::ConstView errors(rows.data(), element.equations());
   double objective = 0.0;
   for (int step = 0; step < largest_steps; ++step) {
     element.values(z.data(), made_.local_parameters.data(), &objective, rows.data());
     if (!errors.all_finite()) return false;
     if (errors.max_abs() <= solved) return true;
-    element.jacobian(z.data(), made_.local_parameters.data(), entries.data());
-    linalg::Matrix jacobian = linalg::Matrix::zero(element.equations(), local.size());
-    for (int e = 0; e < pattern.entries(); ++e) {
-      const int row = pattern.row[at(e)], column = pattern.column[at(e)] - static_cast<int>(first);
-      if (row < element.equations() && column >= 0 && !is_held[at(column)]) jacobian(row, column) += entries[at(e)];
+    const linalg::Vector change = linalg::least_squares(columns_of_free(jacobian(z), is_held), errors);
+    linalg::Index next = 0;
+    for (linalg::Index i = 0; i < local.size(); ++i) {
+      if (!is_held[at(i)]) local[i] -= change[next++];
     }
-    local -= linalg::least_squares(jacobian, errors);
   }
   return false;
 }

@@ -35,6 +35,10 @@ class ElementTrial {
   /// Returns the local variables of such an element.
   [[nodiscard]] std::vector<double> inputs(const std::vector<double>& left, std::size_t interval,
                                            const linalg::Vector& own, double length) const;
+  /// Returns derivatives of its equations with respect to its variables, the length first, at local variables.
+  [[nodiscard]] linalg::Matrix jacobian(const std::vector<double>& z) const;
+  /// Returns those columns of it whose variables are not held.
+  [[nodiscard]] static linalg::Matrix columns_of_free(const linalg::Matrix& jacobian, const std::vector<bool>& is_held);
   /// Returns which of its variables, the length first, these modes hold.
   [[nodiscard]] std::vector<bool> held(const Modes& modes) const {
     linalg::Vector local = linalg::Vector::zero(made_.kernel.layout.size);

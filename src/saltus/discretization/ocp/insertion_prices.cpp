@@ -121,8 +121,6 @@ std::optional<double> InsertionPrices::price(const Insertion& where) const {
   const auto z = trial_.inputs(where.left, where.interval, where.item.own, where.item.length);
   const auto is_held = trial_.held(where.item.modes);
   const int first = kernel.element.variables() - layout.size;
-  auto& element = kernel.element;
-  const auto* parameters = made_.local_parameters.data();
 
   linalg::Vector slopes = linalg::Vector::zero(layout.size);
   if (kernel.running.has_objective()) add_slopes(kernel.running, z.data(), {}, first, slopes);
@@ -134,20 +132,12 @@ std::optional<double> InsertionPrices::price(const Insertion& where) const {
   if (kernel.depends_on_time) add_at(layout.end_time.first, kernel.states, 1);
   add_at(layout.lambda.at(layout.lambda.count - 1), behind.size() - layout.lambda.size, layout.lambda.size);
 
-  const auto& pattern = element.jacobian_pattern();
-  std::vector<double> entries(at(pattern.entries()));
-  element.jacobian(z.data(), parameters, entries.data());
-  linalg::Matrix transposed = linalg::Matrix::zero(layout.size, element.equations());
-  linalg::Vector of_length = linalg::Vector::zero(element.equations());
-  for (int e = 0; e < pattern.entries(); ++e) {
-    const int row = pattern.row[at(e)], local = pattern.column[at(e)] - first;
-    if (row >= element.equations() || local < 0) continue;
-    if (local == layout.h) of_length[row] += entries[at(e)];
-    if (!is_held[at(local)]) transposed(local, row) += entries[at(e)];
-  }
-  linalg::Vector right = -slopes;
+  const linalg::Matrix jacobian = trial_.jacobian(z);
+  const linalg::Matrix transposed = ElementTrial::columns_of_free(jacobian, is_held).transpose();
+  linalg::Vector right(transposed.rows());
+  linalg::Index next = 0;
   for (int local = 0; local < layout.size; ++local) {
-    if (is_held[at(local)]) right[local] = 0.0;
+    if (!is_held[at(local)]) right[next++] = -slopes[local];
   }
   const linalg::Vector own = linalg::least_squares(transposed, right);
   const linalg::Vector error = linalg::Vector(transposed * own) - right;
@@ -155,9 +145,9 @@ std::optional<double> InsertionPrices::price(const Insertion& where) const {
   const auto boundary = trial_.left_of(where.before);
   double of_jump = 0.0;
   for (int i = 0; i < kernel.states; ++i) of_jump += behind[i] * (where.left[at(i)] - boundary[at(i)]);
-  const auto& shared = kernel.shared;
-  const int speed = made_.interval[where.interval].shared[at(shared.controls + shared.parameters + shared.held + 1)];
-  const double of_share = value_at(speed, w_, made_.constants) * (slopes[layout.h] + of_length.dot(own)) + *of_sum;
+  const int speed = made_.interval[where.interval].shared[at(kernel.shared.speed())];
+  const double of_length = slopes[layout.h] + jacobian.col(layout.h).dot(own);
+  const double of_share = value_at(speed, w_, made_.constants) * of_length + *of_sum;
   return of_jump + where.item.length * of_share;
 }
 

@@ -194,19 +194,23 @@ class Insertions {
   void replace(const Node& node, const Modes& modes, Moves& moves) const {
     Items items = items_.of_interval(node.interval);
     if (node.place == std::ssize(items)) return;
+    ElementSides::Sides sides = modes_.all();
     for (auto item = items.begin() + node.place; item != items.end(); ++item) {
       for (std::size_t s = 0; s < states_.count(); ++s) {
         const bool differs = states_.of(item->modes, s) != states_.of(modes, s);
         if (differs && !states_.is_held(item->element, s, w_)) return;
       }
       item->modes = modes;
+      modes_.write(modes, item->element, sides);
       const bool is_end = std::next(item) == items.end() || std::next(item)->modes != modes_.modes(item->element);
       if (is_end) break;
     }
+    std::optional<double> price;
+    if (multipliers_ != nullptr) price = price_of_freed(modes_.all(), sides, *multipliers_);
+    if (is_dear(price)) return;
     const auto count = moves.size();
     items_.add_solved(node.interval, items, moves);
-    if (moves.size() > count && prices_)
-      moves.back().price = price_of_freed(modes_.all(), moves.back().sides, *multipliers_);
+    if (moves.size() > count) moves.back().price = price;
   }
 
   /// Several surfaces that are crossed at once are crossed one by one.

@@ -22,7 +22,8 @@ struct ConstraintRow {
 /// samples.
 struct SharedSizes {
   int controls = 0, parameters = 0, held = 0, samples = 0;
-  [[nodiscard]] int size() const { return controls + parameters + held + 2 + samples; }
+  [[nodiscard]] int speed() const { return controls + parameters + held + 1; }  ///< where s stands
+  [[nodiscard]] int size() const { return speed() + 1 + samples; }
 };
 
 /// Holds pairs that say of an element whether a contact without restitution is open or closed, and that it closes.

@@ -1,28 +1,9 @@
-#include <algorithm>
-#include <limits>
-
 #include "saltus/base/at.hpp"
 #include "saltus/pipeline/mpcc/presolved_internal.hpp"
+#include "saltus/solver/multipliers.hpp"
 #include "saltus/solver/sparse.hpp"
 
 namespace saltus::pipeline {
-namespace {
-
-/// Moves what bounds of variables bear to the side that holds them there, as far as signs allow.
-void take_from_bounds(const solver::RowMatrix& jacobian, int row, solver::MpccMultipliers& of, double& multiplier) {
-  double share = std::numeric_limits<double>::infinity();
-  for (const linalg::Entry entry : jacobian.along(row)) {
-    if (entry.value != 0.0) share = std::min(share, (of.lower[entry.inner] - of.upper[entry.inner]) / entry.value);
-  }
-  for (const linalg::Entry entry : jacobian.along(row)) {
-    const double pressure = of.lower[entry.inner] - of.upper[entry.inner] - share * entry.value;
-    of.lower[entry.inner] = std::max(pressure, 0.0);
-    of.upper[entry.inner] = std::max(-pressure, 0.0);
-  }
-  multiplier += share;
-}
-
-}  // namespace
 
 Presolved::Presolved(foreign::Problem& problem)
     : whole_(problem), found_(mpcc::presolve(problem, problem.row_ranges())) {
@@ -43,8 +24,8 @@ solver::MpccMultipliers Presolved::multipliers_of_whole(const solver::Solution& 
   if (!smaller_ || of.rows.size() != smaller_->constraints()) return of;
   const int n_g = whole_.constraints(), pairs = whole_.pairs();
   solver::MpccMultipliers whole{.rows = linalg::Vector::zero(n_g),
-                                .lower = of.lower,
-                                .upper = of.upper,
+                                .lower = {},
+                                .upper = {},
                                 .G = linalg::Vector::zero(pairs),
                                 .H = linalg::Vector::zero(pairs)};
   const auto side = [&](int row) -> double& {
@@ -63,9 +44,13 @@ solver::MpccMultipliers Presolved::multipliers_of_whole(const solver::Solution& 
     whole.H[found_.kept_pairs[at(pair)]] = of.H[pair];
   }
   const auto jacobian = solver::jacobian_matrix(whole_, solution.w);
+  linalg::Vector pressure = of.lower - of.upper;
   for (const int row : found_.zero_sides) {
-    if (whole_.signs()[at(row - n_g)] == mpcc::Sign::implied) take_from_bounds(jacobian, row, whole, side(row));
+    if (whole_.signs()[at(row - n_g)] != mpcc::Sign::implied) continue;
+    solver::take_from_bounds(jacobian, row, pressure, side(row));
   }
+  whole.lower = pressure.at_least(0.0);
+  whole.upper = (-pressure).at_least(0.0);
   return whole;
 }
 

@@ -111,6 +111,14 @@ ActiveGradients gradients_of(const ActiveConstraints& active, const crossover::R
   return result;
 }
 
+bool has_saddle_inertia(const crossover::Symmetric& system, int rows) {
+  linalg::BlockLdl factors;
+  factors.analyse(system.size, system.rows, system.columns,
+                  linalg::blocks_by_minimum_degree(system.size, rows, system.rows, system.columns));
+  const int positive = static_cast<int>(system.size) - rows;
+  return factors.factorise(system.values) == linalg::Inertia{.positive = positive, .negative = rows, .zero = 0};
+}
+
 bool are_independent(const ActiveGradients& gradients) {
   constexpr double least = 1e-6;
   const int n = gradients.variables();
@@ -124,10 +132,7 @@ bool are_independent(const ActiveGradients& gradients) {
     for (const linalg::Entry entry : gradients.matrix.along(j)) system.add(n + j, entry.inner, entry.value);
     system.add(n + j, n + j, least * least);
   }
-  linalg::BlockLdl factors;
-  factors.analyse(system.size, system.rows, system.columns,
-                  linalg::blocks_by_minimum_degree(system.size, rows, system.rows, system.columns));
-  return factors.factorise(system.values) == linalg::Inertia{.positive = n, .negative = rows, .zero = 0};
+  return has_saddle_inertia(system, rows);
 }
 
 }  // namespace saltus::solver::certificate

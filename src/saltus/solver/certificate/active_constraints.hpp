@@ -7,6 +7,10 @@
 #include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/solver/crossover/branch.hpp"
 
+namespace saltus::solver::crossover {
+struct Symmetric;
+}
+
 namespace saltus::solver::certificate {
 
 /// Says which bound is reached; `both`: they are equal.
@@ -45,6 +49,10 @@ struct ActiveGradients {
 ///   [I J'; J d^2 I],  d = 1e-6,
 /// has as many negative eigenvalues as J rows. Cost: one sparse factorisation.
 [[nodiscard]] bool are_independent(const ActiveGradients& gradients);
+
+/// Returns whether a symmetric matrix has the inertia (size - rows, rows, 0); its last `rows` lines are constraints.
+/// Cost: one sparse factorisation.
+[[nodiscard]] bool has_saddle_inertia(const crossover::Symmetric& system, int rows);
 
 /// Gradients of length 1 that are nearer than this to a combination of others depend on them.
 inline constexpr double dependence = 1e-8;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "saltus/base/at.hpp"
 
@@ -48,8 +49,8 @@ bool MultiplierRange::is_unique() const {
   return is_limited && upper - lower <= small_width * std::max({1.0, std::abs(lower), std::abs(upper)});
 }
 
-MultiplierSet::MultiplierSet(mpcc::Problem& problem, crossover::Branch& branch, double tolerance)
-    : active_(find_active(problem, branch, tolerance)) {
+MultiplierSet::MultiplierSet(mpcc::Problem& problem, crossover::Branch& branch, ActiveConstraints active)
+    : active_(std::move(active)) {
   const auto& reduction = branch.problem->reduction();
   const RowMatrix jacobian = jacobian_matrix(problem, branch.problem->full(branch.point.w));
   vectors_ = vectors_of(gradients_of(active_, reduction, jacobian));

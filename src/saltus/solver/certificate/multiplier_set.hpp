@@ -22,8 +22,9 @@ struct MultiplierRange {
 /// has no solution in that direction.
 class MultiplierSet {
  public:
-  /// Cost: one sparse QR factorisation of the active gradients.
-  MultiplierSet(mpcc::Problem& problem, crossover::Branch& branch, double tolerance);
+  /// Cost: one sparse factorisation of the active gradients, and a QR one where they may depend on each other.
+  /// @param active  of find_active
+  MultiplierSet(mpcc::Problem& problem, crossover::Branch& branch, ActiveConstraints active);
 
   [[nodiscard]] const ActiveConstraints& active() const { return active_; }
   /// Whether they are a single point.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "saltus/base/at.hpp"
 
@@ -12,17 +11,6 @@ namespace {
 using crossover::Hold;
 using mpcc::ActiveSide;
 using mpcc::Sign;
-
-/// Moves multipliers of bounds, `pressure` = lower - upper, to one implied side, as far as their signs allow.
-void take_from_bounds(const RowMatrix& jacobian, int row, linalg::Vector& pressure, double& multiplier) {
-  double share = std::numeric_limits<double>::infinity();
-  for (const linalg::Entry entry : jacobian.along(row)) {
-    if (entry.value != 0.0) share = std::min(share, pressure[entry.inner] / entry.value);
-  }
-  if (!std::isfinite(share)) return;
-  for (const linalg::Entry entry : jacobian.along(row)) pressure[entry.inner] -= share * entry.value;
-  multiplier += share;
-}
 
 MpccMultipliers with_sides(mpcc::Problem& problem, const RowMatrix& jacobian, const linalg::Vector& y,
                            linalg::Vector pressure, const PairStates& states) {

@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "saltus/base/at.hpp"
-#include "saltus/linalg/block_ldl.hpp"
-#include "saltus/linalg/block_order.hpp"
 #include "saltus/solver/crossover/corrector_internal.hpp"
 
 namespace saltus::solver::certificate {
@@ -40,10 +38,7 @@ bool is_positive(crossover::Branch& branch, const ActiveConstraints& active, con
     if (line[j] < 0) continue;
     for (const linalg::Entry entry : gradients.matrix.along(index(j))) system.add(line[j], entry.inner, entry.value);
   }
-  linalg::BlockLdl factors;
-  factors.analyse(system.size, system.rows, system.columns,
-                  linalg::blocks_by_minimum_degree(system.size, rows, system.rows, system.columns));
-  return factors.factorise(system.values) == linalg::Inertia{.positive = n, .negative = rows, .zero = 0};
+  return has_saddle_inertia(system, rows);
 }
 
 }  // namespace
