@@ -10,7 +10,6 @@ Files are AMPL .nl text and JSON of NOSBENCH. mpecss reads the latter only, and 
 
 import argparse
 import csv
-import datetime
 import json
 import math
 import os
@@ -19,6 +18,9 @@ import resource
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "compare"))
+import contenders as contenders_of_runs  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPECSS = ROOT / "build" / "benchmarks" / "mpecss-venv" / "bin" / "python3"
@@ -125,7 +127,7 @@ def write(rows, contenders, limit, output):
         table.writeheader()
         table.writerows(rows)
     lines = ["# Foreign MPCCs", "",
-             f"{len({row['file'] for row in rows})} files, at most {limit:g} s each, {datetime.date.today()}. Written by benchmarks/mpcc/run.py; "
+             f"{len({row['file'] for row in rows})} files, at most {limit:g} s each, on {contenders_of_runs.machine()}. Written by benchmarks/mpcc/run.py; "
              "how to read it: [benchmarks/README.md](../README.md).", "", *summary(rows, contenders), "",
              "| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
     lines += ["| " + " | ".join(cell(row, key) for key in COLUMNS) + " |" for row in rows if row["status"] != "not read"]

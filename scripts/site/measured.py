@@ -21,6 +21,7 @@ FILES = {
     "optimal_control": "How long does an optimisation take, beside nosnoc and a plain homotopy?",
     "contacts": "Which problems of optimal control with contacts are solved?",
     "monoped": "How far does the one-legged robot get?",
+    "mpcc": "How many MPCCs of other programs are solved, beside a plain homotopy and mpecss?",
     "large": "How do time and memory grow with the number of states?",
 }
 NARROW = ("compare", "events", "fesd", "optimal_control", "large")  # tables of numbers, without sentences in their cells

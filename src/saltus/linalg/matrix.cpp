@@ -6,6 +6,7 @@
 
 #include "saltus/base/contracts.hpp"
 #include "saltus/linalg/eigen_internal.hpp"
+#include "saltus/linalg/loops_internal.hpp"
 
 namespace saltus::linalg {
 
@@ -202,7 +203,10 @@ void multiply(ConstView a, ConstView b, View out) {
   for (Index j = 0; j < b.cols(); ++j) {
     double* const column = out.data() + j * out.column_step();
     if (by_rows) {
-      for (Index i = 0; i < a.rows(); ++i) column[i * out.row_step()] = a.row(i).dot(b.col(j));
+      const double* const own = b.data() + j * b.column_step();
+      for (Index i = 0; i < a.rows(); ++i) {
+        column[i * out.row_step()] = dot_of(a.cols(), a.data() + i * a.row_step(), 1, own, b.row_step());
+      }
       continue;
     }
     for (Index i = 0; i < a.rows(); ++i) column[i * out.row_step()] = 0.0;

@@ -13,18 +13,6 @@
 namespace saltus::linalg {
 namespace {
 
-/// Sum of term(k) for k below n; four sums at a time, so that one need not wait for the last.
-template <class Term>
-double sum_of(Index n, const Term& term) {
-  double part[4] = {0.0, 0.0, 0.0, 0.0};
-  Index i = 0;
-  for (; i + 4 <= n; i += 4) {
-    for (Index k = 0; k < 4; ++k) part[k] += term(i + k);
-  }
-  for (; i < n; ++i) part[0] += term(i);
-  return (part[0] + part[1]) + (part[2] + part[3]);
-}
-
 /// Sum of term(entry of a, entry of b).
 template <class Term>
 double sum_over(ConstView a, ConstView b, const Term& term) {
@@ -48,14 +36,19 @@ double sum_over(ConstView a, ConstView b, const Term& term) {
 template <class Value>
 double largest_of(ConstView a, const Value& value) {
   if (a.empty()) return 0.0;
-  double largest = value(a(0, 0));
-  bool is_number = true;
-  for_each_entry(a, [&](double entry) {
-    const double own = value(entry);
-    largest = own > largest ? own : largest;
-    is_number = is_number && own == own;
-  });
-  return is_number ? largest : std::numeric_limits<double>::quiet_NaN();
+  const bool flat = a.is_contiguous();
+  const Index rows = flat ? a.size() : a.rows(), columns = flat ? 1 : a.cols(), step = flat ? 1 : a.row_step();
+  double largest = value(*a.data());
+  for (Index j = 0; j < columns; ++j) {
+    const double* const p = a.data() + j * a.column_step();
+    for (Index i = 0; i < rows; ++i) {
+      const double own = value(p[i * step]);
+      if (own <= largest) continue;
+      largest = own;
+      if (own != own) return own;
+    }
+  }
+  return largest;
 }
 
 template <class Change>
@@ -122,11 +115,7 @@ double ConstView::dot(ConstView other) const {
   SALTUS_ASSERT(size() == other.size());
   const bool are_vectors = (rows_ == 1 || columns_ == 1) && (other.rows_ == 1 || other.columns_ == 1);
   if (!are_vectors) return sum_over(*this, other, [](double own, double factor) { return own * factor; });
-  const double* const p = data_;
-  const double* const q = other.data_;
-  const Index n = size(), own = step(), step = other.step();
-  if (own == 1 && step == 1) return sum_of(n, [&](Index i) { return p[i] * q[i]; });
-  return sum_of(n, [&](Index i) { return p[i * own] * q[i * step]; });
+  return dot_of(size(), data_, step(), other.data_, other.step());
 }
 
 double ConstView::sum() const {
@@ -172,12 +161,9 @@ Index ConstView::index_of_min() const {
 }
 
 bool ConstView::all_finite() const {
-  for (Index j = 0; j < columns_; ++j) {
-    for (Index i = 0; i < rows_; ++i) {
-      if (!std::isfinite((*this)(i, j))) return false;
-    }
-  }
-  return true;
+  double zero = 0.0;  // 0 times what is not finite is NaN
+  for_each_entry(*this, [&](double entry) { zero += 0.0 * entry; });
+  return zero == 0.0;
 }
 
 Index ConstView::nonzeros() const {

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "saltus/result/table.hpp"
+
 namespace saltus::result {
 
 /// Says how a selection is written with complementarities.
@@ -29,8 +31,8 @@ struct Elements {
   std::size_t points = 0;
   std::vector<ElementSelection> selections;
   std::vector<double> t;
-  std::vector<std::vector<double>> lambda;     ///< step: psi, so lambda_p = max(psi, 0) and lambda_n = max(-psi, 0)
-  std::vector<std::vector<double>> selection;  ///< alpha or theta; at the ends those of the projected field
+  Table<double> lambda;     ///< step: psi, so lambda_p = max(psi, 0) and lambda_n = max(-psi, 0)
+  Table<double> selection;  ///< alpha or theta; at the ends those of the projected field
 };
 
 }  // namespace saltus::result

@@ -17,6 +17,17 @@ using linalg::Index;
 /// Width of central differences, a power of two relative to 1 + |x|: truncation and rounding are both about 1e-11.
 double width_at(double x) { return std::ldexp(std::exp2(std::ceil(std::log2(std::abs(x) + 1.0))), -17); }
 
+/// The column of the one entry that is not zero; -1 where there is none or another one.
+Index only_nonzero(linalg::ConstView row) {
+  Index only = -1;
+  for (Index j = 0; j < row.size(); ++j) {
+    if (row[j] == 0.0) continue;
+    if (only >= 0) return -1;
+    only = j;
+  }
+  return only;
+}
+
 }  // namespace
 
 HeldFunctions::HeldFunctions(const evaluation::ModelKernel& kernel)
@@ -33,7 +44,7 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
   alpha_ = std::move(alpha);
   const auto m = index(functions_.size());
   rows_.set_zero(m, kernel_.states());
-  basis_.set_zero(m, kernel_.states());
+  basis_.set_zero(kernel_.states(), m);
   rates_.set_zero(m);
   parts_.set_zero(m);
   step_.set_zero(kernel_.states());
@@ -84,8 +95,8 @@ bool HeldFunctions::tangent_direction(std::size_t state, std::size_t lower, std:
   std::fill(direction.begin(), direction.end(), 0.0);
   direction[state] = 1.0;
   for (std::size_t k = 0; k < lower; ++k) {
-    const double part = basis_(index(k), index(state));
-    for (std::size_t i = 0; i < direction.size(); ++i) direction[i] -= part * basis_(index(k), index(i));
+    const double part = basis_(index(state), index(k));
+    for (std::size_t i = 0; i < direction.size(); ++i) direction[i] -= part * basis_(index(i), index(k));
   }
   double square = 0.0;
   for (const double d : direction) square += d * d;
@@ -99,9 +110,9 @@ void HeldFunctions::find_drift(std::size_t lower) {
   for (std::size_t k = 0; k < lower; ++k) {
     double missing = -rates_[index(k)];
     for (std::size_t s = 0; s < direction_.size(); ++s) missing -= rows_(index(k), index(s)) * direction_[s];
-    const double along = rows_.row(index(k)).dot(basis_.row(index(k)));
+    const double along = rows_.row(index(k)).dot(basis_.col(index(k)));
     if (missing == 0.0 || along == 0.0) continue;
-    for (std::size_t s = 0; s < direction_.size(); ++s) direction_[s] += missing / along * basis_(index(k), index(s));
+    for (std::size_t s = 0; s < direction_.size(); ++s) direction_[s] += missing / along * basis_(index(s), index(k));
   }
 }
 
@@ -114,19 +125,21 @@ double HeldFunctions::value_along(std::size_t i, double t, const double* x, doub
 /// Gradient i, less what the ones before span, normed.
 void HeldFunctions::extend_basis(std::size_t i) {
   const auto row = rows_.row(index(i));
-  basis_.row(index(i)) = row;
+  basis_.col(index(i)) = row;
   Index from = 0, to = row.size();
   while (from < to && row(from) == 0.0) ++from;
   while (to > from && row(to - 1) == 0.0) --to;
+  bool is_orthogonal = true;  // to those before it
   for (std::size_t k = 0; k < i; ++k) {
     // Of many surfaces most have no states in common: their product is 0 without forming it.
-    if (basis_.row(index(k)).segment(from, to - from).is_zero()) continue;
-    basis_.row(index(i)) -= rows_.row(index(i)).dot(basis_.row(index(k))) * basis_.row(index(k));
+    if (basis_.col(index(k)).segment(from, to - from).is_zero()) continue;
+    basis_.col(index(i)).add_scaled(-row.dot(basis_.col(index(k))), basis_.col(index(k)));
+    is_orthogonal = false;
   }
-  const double size = basis_.row(index(i)).norm();
-  const double whole = rows_.row(index(i)).norm();
+  const double whole = row.norm();
+  const double size = is_orthogonal ? whole : basis_.col(index(i)).norm();
   parts_[index(i)] = whole == 0.0 ? 0.0 : size / whole;
-  if (size > 0.0) basis_.row(index(i)) /= size;
+  if (size > 0.0) basis_.col(index(i)) /= size;
 }
 
 void HeldFunctions::differentiate(double t, const double* x) {
@@ -197,8 +210,8 @@ void HeldFunctions::remove_normal_part(std::vector<double>& f) {
   for (std::size_t k = 0; k < f.size(); ++k) f[k] -= step_[index(k)];
   // A function of one state fixes its rate: a coordinate stays exactly where it is.
   for (Index r = 0; r < rows_.rows(); ++r) {
-    if (rows_.row(r).nonzeros() != 1) continue;
-    const Index only = rows_.row(r).abs().index_of_max();
+    const Index only = only_nonzero(rows_.row(r));
+    if (only < 0) continue;
     double& rate = f[at(only)];
     if (std::isfinite(rate)) rate = rates_[r] == 0.0 ? 0.0 : -rates_[r] / rows_(r, only);
   }

@@ -72,7 +72,7 @@ class HeldFunctions {
   std::vector<bool> beside_root_;
   bool rooted_ = false;  ///< whether f has a root of one of the surfaces' functions
   mutable std::vector<double> values_;
-  linalg::Matrix rows_, basis_;  ///< gradients; an orthonormal basis of their span, row by row
+  linalg::Matrix rows_, basis_;  ///< gradients, row by row; an orthonormal basis of their span, column by column
   linalg::Vector rates_, parts_, step_;
   /// Of the first functions, the switching functions themselves, and of all: J J^T and what it is solved for.
   struct Normal {

@@ -39,7 +39,8 @@ void ElementRecorder::point(double t, const double* x, const double* selections,
   }
   elements_.t.push_back(t);
   elements_.lambda.push_back(indicators_);
-  auto& row = elements_.selection.emplace_back(selections, selections + indicators_.size());
+  const auto row = elements_.selection.emplace_back(indicators_.size());
+  std::copy_n(selections, row.size(), row.begin());
   for (const int j : undetermined_) row[at(j)] = std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -17,15 +17,14 @@ ModeView Recorder::view(const ActiveSet& set, const std::vector<double>& selecti
   view.mode.resize(facts_.n_functions);
   // A function slides if its selection is neither 0 nor 1 with everything that slides in the middle.
   std::vector<double> unknown(set.sliding().size(), 0.5), middle(selections.size());
-  std::vector<double> weights(selections.size(), 0.0);
   for (const Part& part : facts_.parts) {
-    if (!part.simplex) continue;
-    int active = 0;
-    for (int j = part.first; j < part.first + part.count; ++j) active += set.modes()[at(j)] == 0 ? 1 : 0;
-    for (int j = part.first; j < part.first + part.count; ++j) weights[at(j)] = 1.0 / active;
-  }
-  for (std::size_t k = 0; k < unknown.size(); ++k) {
-    if (set.sliding()[k].reference >= 0) unknown[k] = weights[at(set.sliding()[k].selection)];
+    if (!part.simplex || unknown.empty()) continue;
+    const auto modes = set.modes().begin() + part.first;
+    const double weight = 1.0 / static_cast<double>(std::count(modes, modes + part.count, 0));
+    for (std::size_t k = 0; k < unknown.size(); ++k) {
+      const int own = set.sliding()[k].selection - part.first;
+      if (set.sliding()[k].reference >= 0 && own >= 0 && own < part.count) unknown[k] = weight;
+    }
   }
   set.selections(unknown.data(), middle.data());
   functions_.alpha(middle.data(), held, view.alpha.data());
