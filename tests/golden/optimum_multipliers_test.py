@@ -25,19 +25,24 @@ class OptimumMultipliers(tool.ToolTest):
         return result["objective"], found, result["certificate"]
 
     def test_one_that_is_not_unique_is_the_slope_to_one_side(self):
-        # v = 0 lies on the surface of sign(v): the branch, with v > 0 before, can only end at v >= 0.
+        # v = 0 lies on the surface of sign(v): the branch can only end at v >= 0, or, with an element of length zero
+        # behind v > 0, at v <= 0.
         for intervals in (10, 20, 30):
             objective, found, certificate = self.solve(intervals)
             (end,) = found["v == 0"]
             self.assertIsNone(end["value"])
             lower, upper = end["range"]
-            self.assertIsNone(upper)
-            faster = self.solve(intervals, v=str(STEP))[0]
-            self.assertAlmostEqual((faster - objective) / STEP, -lower, delta=1e-3)
+            self.assertEqual((lower, upper).count(None), 1)
+            slope, to = (-upper, -STEP) if lower is None else (lower, STEP)
+            beside = self.solve(intervals, v=str(to))[0]
+            self.assertAlmostEqual((beside - objective) / STEP, -slope, delta=2e-3)
             self.assertIs(certificate["unique_multipliers"], False)
             self.assertIs(certificate["licq"], False)
-            self.assertEqual(certificate["dependent_rows"], 1)
-            self.assertIn("terminal constraint 'v == 0'", certificate["dependent"])
+            if upper is None:
+                self.assertEqual(certificate["dependent_rows"], 1)
+                self.assertIn("terminal constraint 'v == 0'", certificate["dependent"])
+            else:  # equations of the element, too
+                self.assertGreater(certificate["dependent_rows"], 1)
             # That of the distance is not touched by it.
             (distance,) = found["q == 1"]
             self.assertNotIn("range", distance)

@@ -80,6 +80,7 @@ struct BranchMove {
 struct NamedStart {
   std::string name;
   linalg::Vector w;
+  std::vector<ActiveSide> sides{};  ///< where they are known: its branch needs no relaxed problem
 };
 
 /// States min f(w)   subject to   lower_w <= w <= upper_w,   lower_g <= g(w) <= upper_g,   0 <= G(w) _|_ H(w) >= 0.
@@ -120,6 +121,12 @@ class Problem {
   [[nodiscard]] virtual linalg::Vector start() const;
   /// Returns other points to begin at, n_w each: where they lead to may be compared. By default none.
   [[nodiscard]] virtual std::vector<NamedStart> other_starts() const { return {}; }
+  /// Returns the motion of the controls at w of a dynamical system, with its sides; nothing where there is none, as by
+  /// default.
+  [[nodiscard]] virtual std::optional<NamedStart> motion(ConstVectorView w) {
+    static_cast<void>(w);
+    return std::nullopt;
+  }
   [[nodiscard]] virtual std::string name(int variable) const;  ///< by default "w[3]"
   /// Returns the name of a row of (g, G, H); by default "g[0]", "G[5]", "H[5]".
   [[nodiscard]] virtual std::string row_name(int row) const;

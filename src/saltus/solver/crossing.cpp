@@ -24,6 +24,8 @@ constexpr double retry_factor = 0.011;
 /// Iterations of a branch problem that the next sigma may make easier, and of one that it may not.
 constexpr int trial_limit = 60;
 constexpr int whole_limit = 500;
+/// Of one of a motion: where its modes can serve, that shows soon.
+constexpr int motion_limit = 30;
 /// Relaxed points are better than any feasible one.
 constexpr double objective_slack = 1e-3;
 constexpr double rounding = 1.0001;
@@ -42,7 +44,7 @@ bool Crossing::is_worth_trying(const RelaxedPoint& point, const linalg::Vector& 
 bool Crossing::cross(const RelaxedPoint& point) {
   linalg::Vector c(run_.problem.rows());
   run_.problem.functions(point.w, c);
-  if (!is_worth_trying(point, c)) return false;
+  if (!is_worth_trying(point, c)) return point.sigma <= rounding * crossover_sigma && try_motion(point.w, &point.w);
   const auto sides = crossover::smaller_sides(run_.problem, run_.groups, c);
   // The same sides have the same solution: what was refused for its objective needs no second solution, what was
   // infeasible deserves one from much nearer only.
@@ -53,24 +55,38 @@ bool Crossing::cross(const RelaxedPoint& point) {
   return solve(point, sides);
 }
 
+bool Crossing::is_solved(const crossover::Branch& branch, const linalg::Vector& w) const {
+  const bool is_near = branch.w.max_abs() <= far_away * std::max(1.0, w.max_abs());
+  return branch.is_feasible(run_.options.tolerance) && std::isfinite(branch.objective) && is_near &&
+         branch.optimality_error <= stationary;
+}
+
 bool Crossing::solve(const RelaxedPoint& point, const std::vector<mpcc::ActiveSide>& sides) {
   crossover::Branch branch = run_.solve_branch(sides, point.w, point.is_last ? whole_limit : trial_limit);
-  const bool is_near = branch.w.max_abs() <= far_away * std::max(1.0, point.w.max_abs());
-  const bool is_feasible = branch.is_feasible(run_.options.tolerance) && std::isfinite(branch.objective) && is_near &&
-                           branch.optimality_error <= stationary;
-  auto& step = run_.solution.homotopy.back();
-  if (!is_feasible) {
-    infeasible_sides_ = sides;
-    infeasible_sigma_ = point.sigma;
-    const std::string rows = certificate::worst_rows(run_.problem, branch.w, run_.options.tolerance);
-    step.message = fmt::format("refused: {}", !is_near ? "it lies at infinity" : rows.empty() ? "not solved" : rows);
-    return false;
-  }
-  if (is_good(branch, point.w)) {
+  if (is_solved(branch, point.w)) return take(std::move(branch), &point.w);
+  infeasible_sides_ = sides;
+  infeasible_sigma_ = point.sigma;
+  const std::string rows = certificate::worst_rows(run_.problem, branch.w, run_.options.tolerance);
+  run_.solution.homotopy.back().message = fmt::format("refused: {}", rows.empty() ? "not solved" : rows);
+  // Smaller sides may be those of no motion.
+  return try_motion(point.w, &point.w);
+}
+
+bool Crossing::try_motion(mpcc::ConstVectorView controls, const linalg::Vector* relaxed) {
+  const auto motion = run_.problem.motion(controls);
+  if (!motion || run_.is_over()) return false;
+  auto branch = run_.solve_branch(motion->sides, motion->w, motion_limit, "the motion of these controls");
+  return is_solved(branch, relaxed != nullptr ? *relaxed : motion->w) && take(std::move(branch), relaxed);
+}
+
+bool Crossing::take(crossover::Branch branch, const linalg::Vector* relaxed) {
+  if (relaxed != nullptr && is_good(branch, *relaxed)) {
     run_.branch = std::move(branch);
     return true;
   }
-  step.message = fmt::format("refused: the relaxed objective is {:.6g}", run_.problem.objective(point.w));
+  run_.solution.homotopy.back().message =
+      relaxed != nullptr ? fmt::format("refused: the relaxed objective is {:.6g}", run_.problem.objective(*relaxed))
+                         : "kept: no relaxed problem is solved";
   if (!run_.refused || branch.objective < run_.refused->objective) run_.refused = std::move(branch);
   return false;
 }

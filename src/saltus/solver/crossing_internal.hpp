@@ -23,12 +23,17 @@ class Crossing {
 
   /// True if the branch is good enough: run.branch is it then. Else it is run.refused, if it is feasible.
   bool cross(const RelaxedPoint& point);
+  /// Tries the branch of the motion of controls in the same way.
+  /// @param relaxed  point that it is compared with; null: there is none, and it is only kept as run.refused
+  bool try_motion(mpcc::ConstVectorView controls, const linalg::Vector* relaxed);
   /// Returns how many points in a row had the sides of run.refused.
   [[nodiscard]] int same_refused() const { return same_refused_; }
   [[nodiscard]] static double slack(double objective);  ///< how much worse than the relaxed point a branch may be
 
  private:
   [[nodiscard]] bool is_worth_trying(const RelaxedPoint& point, const linalg::Vector& c) const;
+  [[nodiscard]] bool is_solved(const crossover::Branch& branch, const linalg::Vector& w) const;
+  bool take(crossover::Branch branch, const linalg::Vector* relaxed);
   [[nodiscard]] bool is_good(const crossover::Branch& branch, const linalg::Vector& w);
   bool accept_refused(const linalg::Vector& w);
   bool solve(const RelaxedPoint& point, const std::vector<mpcc::ActiveSide>& sides);

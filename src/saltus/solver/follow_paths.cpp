@@ -137,6 +137,8 @@ PathEnd follow_paths(Run& run, const Start& start, const std::vector<mpcc::Named
     if (end != PathEnd::failed) return end;
     attempt.w = loops.best_start();
     solved = loops.last_solved();
+    const bool may_cross = run.options.crossover;
+    if (may_cross && Crossing(run).try_motion(start.w, solved ? &solved->w : nullptr)) return PathEnd::crossed_over;
   }
   if (follow()) return end;
   attempt.sigma_initial = run.schedule.next(run.schedule.sigma_initial);

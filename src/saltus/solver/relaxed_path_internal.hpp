@@ -84,8 +84,9 @@ class RelaxedPath {
 ///
 /// Compared are two first sigmas, from the given start and from others. Others count where they cost less, or where no
 /// path from the given one is solved down to the compared sigma. The path of the lowest objective there goes on, the
-/// next one where it fails. If all do: from the start of the best one, one problem after the other; the same from a
-/// smaller sigma; and elastic problems, from the last one that it solved.
+/// next one where it fails. If all do: the motion of the first controls, if it is as good as the last relaxed point;
+/// from the start of the best one, one problem after the other; the same from a smaller sigma; and elastic problems,
+/// from the last one that it solved.
 [[nodiscard]] PathEnd follow_paths(Run& run, const Start& start, const std::vector<mpcc::NamedStart>& others);
 
 }  // namespace saltus::solver

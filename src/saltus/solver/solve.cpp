@@ -144,6 +144,7 @@ Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver
   const auto others = start ? std::vector<mpcc::NamedStart>() : problem.other_starts();
   const PathEnd end = is_on_branch ? PathEnd::crossed_over : follow_paths(run, from, others);
   if (options.crossover && end != PathEnd::crossed_over && end != PathEnd::stopped) rescue(run);
+  if (!run.branch) run.branch = std::move(run.refused);
   Solution& solution = run.solution;
   if (run.branch) {
     descend(run);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -114,6 +115,9 @@ class OcpProblem final : public mpcc::Problem {
 
   [[nodiscard]] linalg::Vector start() const override;
   [[nodiscard]] std::vector<mpcc::NamedStart> other_starts() const override;
+  /// Gives elements that end where the motion switches; nothing where an interval has fewer elements than modes, or no
+  /// mode goes on.
+  [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w) override;
   [[nodiscard]] std::string name(int variable) const override;
   [[nodiscard]] std::string row_name(int row) const override;
   [[nodiscard]] const mpcc::Chain* chain() const override;

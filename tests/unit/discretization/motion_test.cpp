@@ -1,0 +1,110 @@
+// The motion of controls on the elements of a problem: its equations hold, and elements end where it switches.
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/io/toml/toml_model.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/pipeline/optimal_control/ocp_problem.hpp"
+#include "saltus/solver/certificate/classify.hpp"
+#include "saltus/solver/crossover/branch.hpp"
+
+namespace saltus::discretization {
+namespace {
+
+pipeline::StatedProblem stated_problem(const std::string& text) {
+  auto file = io::parse_model(text, "motion.toml");
+  EXPECT_TRUE(file) << (file ? "" : to_text(file.error()));
+  auto ocp = model::build_ocp(file->description);
+  EXPECT_TRUE(ocp) << (ocp ? "" : to_text(ocp.error()));
+  auto stated = pipeline::state_problem(*ocp, *file->optimize);
+  EXPECT_TRUE(stated) << (stated ? "" : to_text(stated.error()));
+  return std::move(*stated);
+}
+
+std::string sliding_block(int elements) {
+  return R"toml(
+[model]
+name = "block"
+[states]
+q = 0
+v = 1
+[controls]
+u = { lower = -8, upper = 8, initial = 0 }
+[dynamics]
+q = "v"
+v = "u - sign(v)"
+[optimize]
+horizon = 2.4
+control_intervals = 4
+running_cost = "u^2"
+elements = )toml" +
+         std::to_string(elements) + "\n";
+}
+
+constexpr const char* bouncing_ball = R"toml(
+[model]
+name = "ball"
+[states]
+z = 0.8
+vz = 0
+[controls]
+u = { lower = -1, upper = 1, initial = 0 }
+[mechanics]
+positions = ["z"]
+velocities = ["vz"]
+force = { vz = "u - 9.81" }
+[[contacts]]
+name = "ground"
+gap = "z"
+restitution = 0.75
+[time_freezing]
+a_n = 30
+[optimize]
+horizon = 1
+control_intervals = 5
+elements = 5
+stages = 2
+running_cost = "u^2"
+)toml";
+
+void expect_feasible(OcpProblem& problem, const linalg::Vector& w) {
+  EXPECT_LE(solver::certificate::scaled_infeasibility(problem, w), 1e-8);
+  EXPECT_LE(solver::certificate::complementarity(problem, w), 1e-8);
+}
+
+/// Friction stops the block at t = 1 and q = 1/2, within an interval; Radau's method is exact there.
+TEST(Motion, ABlockThatStopsWithinAnIntervalStays) {
+  const auto stated = stated_problem(sliding_block(2));
+  auto& problem = *stated.problem;
+  const auto motion = problem.motion(problem.start());
+  ASSERT_TRUE(motion);
+  expect_feasible(problem, motion->w);
+  const auto solution = problem.read(motion->w);
+  EXPECT_NEAR(solution.elements.back().back().end[0], 0.5, 1e-9);
+  EXPECT_NEAR(solution.elements[1].front().h, 0.4, 1e-7);
+}
+
+TEST(Motion, NeedsAnElementForEachMode) {
+  const auto stated = stated_problem(sliding_block(1));
+  EXPECT_FALSE(stated.problem->motion(stated.problem->start()));
+}
+
+/// Its branch has the motion for a solution: without a control nothing is cheaper.
+TEST(Motion, ABallThatBouncesBySimulationIsABranch) {
+  const auto stated = stated_problem(bouncing_ball);
+  auto& problem = *stated.problem;
+  const auto motion = problem.motion(problem.start());
+  ASSERT_TRUE(motion);
+  expect_feasible(problem, motion->w);
+  adapters::IpoptSolver ipopt(adapters::LinearSolver::block_ldl);
+  const auto branch = solver::crossover::solve_branch(problem, motion->sides, motion->w, ipopt, {});
+  EXPECT_TRUE(branch.is_feasible(1e-8));
+  EXPECT_NEAR(branch.objective, 0.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace saltus::discretization
