@@ -37,6 +37,7 @@ def scripts(build, output):
         [HERE / "compare/fesd.py", "--program", compare / "compare_fesd", "--keep-nosnoc", "--output", output],
         [HERE / "compare/optimal_control.py", "--tool", tool, "--rounds", "1", "--problems", "turbo car", "--output", output],
         [HERE / "mpcc/run.py", HERE.parent / "examples/mpcc", "--tool", tool, "--limit", "1", "--contenders", "Saltus", "--output", output],
+        [HERE / "random_optima/run.py", "--tool", tool, "--switches", "1", "--contacts", "0", "--limit", "5", "--output", output],
         [HERE / "large/run.py", tool, "--sizes", "10", "--limit", "10", "-o", output / "large.md"],
         [HERE / "large/fesd.py", tool, "--sizes", "5", "--steps", "10", "--repeats", "1"],
         [HERE / "monoped/run.py", tool, "--intervals", "5", "--seconds", "1"],

@@ -22,6 +22,7 @@ FILES = {
     "contacts": "Which problems of optimal control with contacts are solved?",
     "monoped": "How far does the one-legged robot get?",
     "mpcc": "How many MPCCs of other programs are solved, beside a plain homotopy and mpecss?",
+    "random_optima": "How many random problems of optimal control come to the best that is known?",
     "large": "How do time and memory grow with the number of states?",
 }
 NARROW = ("compare", "events", "fesd", "optimal_control", "large")  # tables of numbers, without sentences in their cells
