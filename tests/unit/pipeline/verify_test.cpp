@@ -234,6 +234,25 @@ TEST(VerifyTest, TheModeOfTheSolutionWhereThereAreSeveral) {
   EXPECT_LT(verified(ocp, staying).interval_defect, exact);
 }
 
+/// x' = sign(x) may stay at 0 as long as it wants.
+TEST(VerifyTest, ExitsOfTheSolutionFromASurfaceThatRepels) {
+  Builder model("unstable");
+  const SX x = model.state("x", {0.0});
+  model.dynamics("x", model.sign(x));
+  const Ocp ocp = problem_of(model, 2.0);
+  for (const int mode : {-1, 1}) {
+    auto path = path_of(2.0, {{0.0}, {0.25 * mode}, {1.25 * mode}}, {{}, {}});
+    result::Event start;
+    start.mode_after = result::Mode{0};
+    path.events = {start, crossing(0.75, 0, mode)};
+    const auto found = verified(ocp, path);
+    EXPECT_LT(found.interval_defect, exact) << mode << found.message;
+    EXPECT_LT(found.open_loop.end_state_error, exact) << mode;
+    EXPECT_LT(found.switch_time_error, exact);
+    EXPECT_EQ(found.switches_missed + found.switches_extra, 0);
+  }
+}
+
 TEST(VerifyTest, NodesBesideASurfaceOnWhichTheSolutionSlides) {
   // x' = 1/2 - sign(x) from 1/4: on the surface from t = 1/2 on.
   Builder model("sliding");

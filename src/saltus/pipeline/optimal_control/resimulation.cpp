@@ -43,6 +43,69 @@ std::optional<result::Mode> mode_at_start(const OptimizedPath& path, std::size_t
   return mode;
 }
 
+/// The mode of a run before a time; nullopt if no event says it.
+std::optional<result::Mode> mode_before(const Integration& run, double t) {
+  std::optional<result::Mode> mode;
+  for (const auto& event : run.events) {
+    if (event.t >= t) return mode ? mode : event.mode_before;
+    if (event.mode_after) mode = event.mode_after;
+  }
+  return mode;
+}
+
+/// Whether a function that is held at zero is left.
+bool leaves_sliding(const result::Event& event) {
+  if (!event.mode_before || !event.mode_after) return false;
+  const auto &before = *event.mode_before, &after = *event.mode_after;
+  for (std::size_t c = 0; c < before.size(); ++c) {
+    if (before[c] == 0 && after[c] != 0) return true;
+  }
+  return false;
+}
+
+/// Whether another solution branches off before a time: on a surface that is held though it repels, say.
+bool has_other_solutions(const Integration& run, double t) {
+  return std::any_of(run.events.begin(), run.events.end(),
+                     [t](const auto& event) { return event.t < t && event.unique == false; });
+}
+
+bool starts_in(const Integration& run, const result::Mode& mode) {
+  return !run.events.empty() && run.events.front().kind == result::EventKind::start &&
+         run.events.front().mode_after == mode;
+}
+
+bool is_complete(const Integration& run, const IntegrationOptions& options) {
+  // What happens at the end itself, where controls jump, belongs to the next interval, and so do its failures.
+  return run.status.termination != Termination::stopped_by_user && run.status.time_reached >= options.until &&
+         std::all_of(run.final.x.begin(), run.final.x.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// The options of the part of a run that ends, or begins, at a time.
+IntegrationOptions part_of(IntegrationOptions options, double from, double until) {
+  std::erase_if(options.output.times, [&](double t) { return t <= from || t >= until; });
+  options.output.times.insert(options.output.times.begin(), from);
+  options.output.times.push_back(until);
+  options.from = from;
+  options.until = until;
+  return options;
+}
+
+/// One run behind the other; the start of the second one becomes a switch.
+Integration joined(Integration first, Integration second) {
+  bool is_first = true;
+  for (result::Event event : second.events) {
+    if (std::exchange(is_first, false)) {
+      event.mode_before = first.final.mode;
+      if (event.regions_after) event.regions_before = first.final.regions;
+    }
+    first.events.push_back(std::move(event));
+  }
+  for (std::size_t row = 0; row < second.trajectory.t.size(); ++row) first.trajectory.append(second.trajectory, row);
+  first.final = std::move(second.final);
+  first.status = std::move(second.status);
+  return first;
+}
+
 /// n + 1 times of equal distance.
 std::vector<double> equal_times(double from, double until, std::size_t n) {
   std::vector<double> times;
@@ -94,10 +157,10 @@ Integration Resimulation::run(const IntegrationOptions& options, const std::func
   return event_integrator::integrate(kernel_, stiff, observer);
 }
 
-std::vector<std::pair<int, int>> Resimulation::wanted_mode(const Integration& run, std::size_t k) const {
+std::vector<std::pair<int, int>> Resimulation::forced_mode(const Integration& run,
+                                                           const std::optional<result::Mode>& wanted) const {
   if (run.events.empty() || run.events.front().kind != result::EventKind::start) return {};
   const auto& start = run.events.front();
-  const auto wanted = mode_at_start(*path_, k);
   if (!wanted || !start.mode_after || *wanted == *start.mode_after) return {};
   const bool is_offered = std::any_of(start.alternatives.begin(), start.alternatives.end(),
                                       [&](const auto& alternative) { return alternative.mode == *wanted; });
@@ -112,21 +175,45 @@ std::vector<std::pair<int, int>> Resimulation::wanted_mode(const Integration& ru
   return forced;
 }
 
-Resimulation::Segment Resimulation::from_node(std::size_t k, IntegrationOptions options,
-                                              const std::function<bool()>& is_interrupted) {
-  kernel_.set_initial_state(path_->nodes[k]);
-  const auto is_complete = [&](const Integration& run) {
-    // What happens at the end itself, where controls jump, belongs to the next interval, and so do its failures.
-    return run.status.termination != Termination::stopped_by_user && run.status.time_reached >= options.until &&
-           std::all_of(run.final.x.begin(), run.final.x.end(), [](double value) { return std::isfinite(value); });
-  };
-  Segment segment{run(options, is_interrupted), false, false};
-  segment.is_complete = is_complete(segment.run);
-  options.initial_mode = wanted_mode(segment.run, k);
-  if (options.initial_mode.empty()) return segment;
+Resimulation::Piece Resimulation::piece(std::vector<double> start, IntegrationOptions options,
+                                        const std::optional<result::Mode>& wanted,
+                                        const std::function<bool()>& is_interrupted) {
+  kernel_.set_initial_state(start);
+  Piece piece{std::move(start), options, {run(options, is_interrupted), false, false}};
+  piece.segment.is_complete = is_complete(piece.segment.run, options);
+  options.initial_mode = forced_mode(piece.segment.run, wanted);
+  if (options.initial_mode.empty()) return piece;
   auto other = run(options, is_interrupted);
-  if (is_complete(other)) segment = {std::move(other), true, true};
-  return segment;
+  if (is_complete(other, options)) {
+    piece.segment = {std::move(other), true, true};
+    piece.options = std::move(options);
+  }
+  return piece;
+}
+
+Resimulation::Segment Resimulation::from_node(std::size_t k, const IntegrationOptions& options,
+                                              const std::function<bool()>& is_interrupted) {
+  const double rounding = at_start * (path_->times[k + 1] - path_->times[k]);
+  Piece last = piece(path_->nodes[k], options, mode_at_start(*path_, k), is_interrupted);
+  std::optional<Integration> before;
+  for (const auto& event : path_->events) {
+    const bool is_inside = event.t > last.options.from + rounding && event.t < options.until - rounding;
+    if (!is_inside || !leaves_sliding(event) || !has_other_solutions(last.segment.run, event.t)) continue;
+    if (mode_before(last.segment.run, event.t) != event.mode_before) continue;
+    // A solution may stay on a surface that repels, and leave it whenever it wants.
+    const auto until_there = part_of(last.options, last.options.from, event.t);
+    kernel_.set_initial_state(last.start);
+    Integration there = run(until_there, is_interrupted);
+    if (!is_complete(there, until_there)) continue;
+    auto start = there.final.x;
+    start.resize(system_.state_names.size(), 0.0);
+    Piece next = piece(std::move(start), part_of(options, event.t, options.until), event.mode_after, is_interrupted);
+    if (!next.segment.is_complete || !starts_in(next.segment.run, *event.mode_after)) continue;
+    before = before ? joined(std::move(*before), std::move(there)) : std::move(there);
+    last = std::move(next);
+  }
+  if (!before) return std::move(last.segment);
+  return {joined(std::move(*before), std::move(last.segment.run)), last.segment.is_complete, true};
 }
 
 Resimulation::Segment Resimulation::interval(std::size_t k, const std::function<bool()>& is_interrupted) {

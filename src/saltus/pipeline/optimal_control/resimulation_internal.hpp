@@ -2,7 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -22,10 +24,11 @@ class Resimulation {
   struct Segment {
     event_integrator::Integration run;
     bool is_complete = false;  ///< it came to its end
-    bool was_chosen = false;   ///< the mode at the node is that of the solution, and not what the engine takes
+    bool was_chosen = false;   ///< the mode somewhere is that of the solution, and not what the engine takes
   };
   /// Simulates from node k with the controls of interval k to its end. The solution from there may not be unique. Then
-  /// the mode that the optimised trajectory has is taken if it is one of those that are possible.
+  /// the mode that the optimised trajectory has is taken if it is one of those that are possible. So it is where the
+  /// optimised trajectory leaves a surface that it has been on, though it could stay.
   [[nodiscard]] Segment interval(std::size_t k, const std::function<bool()>& is_interrupted);
   /// Simulates from the first node over the whole horizon, likewise.
   [[nodiscard]] Segment open_loop(const std::function<bool()>& is_interrupted);
@@ -36,15 +39,24 @@ class Resimulation {
 
  private:
   Resimulation(model::System system, evaluation::ModelKernel kernel, const OptimizedPath& path);
-  [[nodiscard]] Segment from_node(std::size_t k, event_integrator::IntegrationOptions options,
+  /// A run, and what it began with.
+  struct Piece {
+    std::vector<double> start;
+    event_integrator::IntegrationOptions options;
+    Segment segment;
+  };
+  [[nodiscard]] Segment from_node(std::size_t k, const event_integrator::IntegrationOptions& options,
                                   const std::function<bool()>& is_interrupted);
+  /// In the wanted mode if that is one of those that are possible.
+  [[nodiscard]] Piece piece(std::vector<double> start, event_integrator::IntegrationOptions options,
+                            const std::optional<result::Mode>& wanted, const std::function<bool()>& is_interrupted);
   [[nodiscard]] event_integrator::Integration run(const event_integrator::IntegrationOptions& options,
                                                   const std::function<bool()>& is_interrupted);
   /// NaN if the run from `start` does not come to the end of interval k.
   [[nodiscard]] linalg::Vector end_of(std::size_t k, std::vector<double> start,
                                       const std::function<bool()>& is_interrupted);
-  [[nodiscard]] std::vector<std::pair<int, int>> wanted_mode(const event_integrator::Integration& run,
-                                                             std::size_t k) const;
+  [[nodiscard]] std::vector<std::pair<int, int>> forced_mode(const event_integrator::Integration& run,
+                                                             const std::optional<result::Mode>& wanted) const;
 
   model::System system_;
   evaluation::ModelKernel kernel_;

@@ -157,9 +157,7 @@ class IntervalChecks {
     verification_.switches_extra = switches.extra;
     if (failures_ > 1) verification_.message += fmt::format(" ({} intervals cannot be simulated)", failures_);
     if (chosen_.empty()) return;
-    add(
-        fmt::format("the solution is not unique from the start of interval{} {}: the mode of the optimised trajectory "
-                    "is compared",
+    add(fmt::format("the solution is not unique in interval{} {}: the mode of the optimised trajectory is compared",
                     chosen_.size() == 1 ? "" : "s", fmt::join(chosen_, ", ")));
   }
 
