@@ -47,7 +47,8 @@ PathEnd RelaxedPath::follow_from(double sigma) {
 
 PathEnd RelaxedPath::loop(double until) {
   if (!level_) {
-    const bool is_solved = solve(attempt_.sigma_initial, attempt_.iteration_limit);
+    const bool is_solved =
+        solve(attempt_.sigma_initial, homotopy::first_tolerance(attempt_.sigma_initial), attempt_.iteration_limit);
     if (run_.is_over()) return PathEnd::stopped;
     // The next problems of the loop go on from a feasible point as they would within one problem.
     const bool is_usable = has_point_ && state_.report.termination == Termination::iteration_limit;
@@ -190,11 +191,11 @@ void RelaxedPath::move_back() {
   state_.problem->set_sigma(state_.sigma);
 }
 
-/// Solves the problem of one sigma; false if it failed.
-bool RelaxedPath::solve(double sigma, int iteration_limit) {
+/// Solves the problem of one sigma, to 1e-4 sigma if nothing else is wanted; false if it failed.
+bool RelaxedPath::solve(double sigma, std::optional<double> tolerance, int iteration_limit) {
   move_to(sigma);
   NlpOptions options = run_.nlp_options(iteration_limit);
-  options.tolerance = std::clamp(1e-4 * sigma, options.tolerance, 1e-6);
+  options.tolerance = std::max(tolerance.value_or(std::min(1e-4 * sigma, 1e-6)), options.tolerance);
   NlpPoint point = start(options);
   const NlpReport report = run_.nlp.solve(*state_.problem, point, options);
   move_back();

@@ -60,7 +60,7 @@ class RelaxedPath {
   void set_level(const homotopy::Level& level);
   void move_to(double sigma);
   void move_back();
-  bool solve(double sigma, int iteration_limit = 500);
+  bool solve(double sigma, std::optional<double> tolerance = std::nullopt, int iteration_limit = 500);
   bool take(const NlpPoint& point, const NlpReport& report);
   PathEnd run_loop(double until);
   PathEnd follow_from(double sigma);

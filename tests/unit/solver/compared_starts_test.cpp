@@ -43,6 +43,37 @@ bool has_compared(const Solution& solution) {
                      [](const auto& step) { return step.message == "begins at the other one"; });
 }
 
+/// Ipopt, and the tolerances that it was asked for.
+class NotedTolerances final : public NlpSolver {
+ public:
+  [[nodiscard]] NlpReport solve(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options) override {
+    asked.push_back(options.tolerance);
+    return ipopt_.solve(nlp, point, options);
+  }
+  [[nodiscard]] NlpReport follow(mpcc::Problem& nlp, NlpPoint& point, const NlpOptions& options, double first,
+                                 int longest, const AskNextBarrier& next) override {
+    return ipopt_.follow(nlp, point, options, first, longest, next);
+  }
+  [[nodiscard]] const char* name() const override { return "noted"; }
+
+  std::vector<double> asked;
+
+ private:
+  adapters::IpoptSolver ipopt_;
+};
+
+TEST(ComparedStarts, TheirFirstProblemsAreSolvedAsFarAsTheNextOnesNeed) {
+  Begun problem = two_valleys(1.2, -1.2);
+  NotedTolerances noted;
+  adapters::HighsLpcc highs;
+  const auto found = solve(problem, noted, highs, {}, std::nullopt);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->termination, result::Termination::completed);
+  ASSERT_GE(noted.asked.size(), 4u);
+  const double expected[] = {1e-3, 1e-4, 1e-3, 1e-4};  // sigma = 100 and 0.1 from both starts
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_DOUBLE_EQ(noted.asked[k], expected[k]);
+}
+
 TEST(ComparedStarts, TheLowerRelaxedObjectiveGoesOn) {
   const auto found = solved(two_valleys(1.2, -1.2));
   ASSERT_TRUE(found.has_value());

@@ -46,5 +46,11 @@ TEST(LeadingSigma, AtTheLastSigmaMuFallsAlone) {
       next_level({.sigma_initial = 1.0, .sigma_factor = 0.1, .sigma_final = 1e-2}, {.sigma = 1e-2, .mu = 1e-11}));
 }
 
+TEST(LeadingSigma, TheFirstProblemIsSolvedToATenthOfItsBarrier) {
+  EXPECT_DOUBLE_EQ(first_tolerance(0.1), 1e-4);
+  EXPECT_DOUBLE_EQ(first_tolerance(1e-8), 1e-11);
+  EXPECT_DOUBLE_EQ(first_tolerance(100.0), 1e-3);  // residuals do not grow with sigma
+}
+
 }  // namespace
 }  // namespace saltus::solver::homotopy

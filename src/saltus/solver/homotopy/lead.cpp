@@ -9,6 +9,8 @@ namespace {
 constexpr double last_mu = 1e-11;
 /// mu of a relaxed problem over its sigma.
 constexpr double share = 1e-2;
+/// Error of the first problem over its mu.
+constexpr double first_error = 0.1;
 /// The monotone strategy of [waechter2006], section 2.1.
 constexpr double linear = 0.2;
 constexpr double superlinear = 1.5;
@@ -25,5 +27,7 @@ std::optional<Level> next_level(const Schedule& schedule, const Level& solved) {
   if (solved.mu > last_mu) return Level{last, std::max(last_mu, smaller)};
   return std::nullopt;
 }
+
+double first_tolerance(double sigma) { return first_error * share * std::min(1.0, sigma); }
 
 }  // namespace saltus::solver::homotopy

@@ -18,4 +18,10 @@ struct Level {
 /// smaller iterations double. At the last sigma mu falls alone.
 [[nodiscard]] std::optional<Level> next_level(const Schedule& schedule, const Level& solved);
 
+/// Returns to which error the first problem of a loop is solved: a tenth of the barrier parameter that belongs to its
+/// sigma, and 1e-3 for any sigma > 1. Digits behind are lost at the next sigma, and cost the most where an optimum of
+/// large sigma is flat; with errors that are ten times larger some control
+/// problems end in bad optima.
+[[nodiscard]] double first_tolerance(double sigma);
+
 }  // namespace saltus::solver::homotopy
