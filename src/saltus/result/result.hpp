@@ -162,16 +162,17 @@ struct Family {
   std::optional<double> lap_ratio;  ///< of a spiral: from one cycle to the next; the phase is the part of it, 0 to 1
 };
 
+/// Describes a member of a family: number in the families of the parent, and its time, or its phase.
+struct FamilyMember {
+  std::size_t family = 0;
+  double parameter = 0.0;
+};
+
 /// Says where a branch leaves its parent: at an event, or as a member of a family.
 struct Departure {
   std::size_t event = 0;        ///< number in the events of the parent, from 0
   std::size_t alternative = 0;  ///< number in the alternatives of that event, from 0
-  /// Describes a member of a family: number in the families of the parent, and its time, or its phase.
-  struct Member {
-    std::size_t family = 0;
-    double parameter = 0.0;
-  };
-  std::optional<Member> member{};
+  std::optional<FamilyMember> member{};
 };
 
 /// Says, of rows and events that were passed on while they were computed: what is known without them.

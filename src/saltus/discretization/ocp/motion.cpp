@@ -1,8 +1,7 @@
-#include "saltus/discretization/ocp/motion_internal.hpp"
-
 #include <algorithm>
 #include <utility>
 
+#include "saltus/discretization/ocp/motion_internal.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
 
 namespace saltus::discretization {

@@ -32,7 +32,7 @@ void find_members(const Followed& trajectory, const Path& path, std::size_t numb
       }
       Path longer = path;
       longer.push_back(choice);
-      waiting.push_back({std::move(longer), number, {family.event, 0, result::Departure::Member{f, parameter}}});
+      waiting.push_back({std::move(longer), number, {family.event, 0, result::FamilyMember{f, parameter}}});
     }
   }
 }
