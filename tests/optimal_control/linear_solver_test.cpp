@@ -51,7 +51,8 @@ TEST(OcpLinearSolver, FindsTheOptimumOfAStartThatIsFree) {
 
 TEST(OcpLinearSolver, FindsTheOptimumAlongASlidingMode) { expect_one_optimum(of_catalogue("slide-and-hide")); }
 
-TEST(OcpLinearSolver, FindsTheOptimumOfACartPole) { expect_one_optimum(of_catalogue("cart-pole")); }
+/// The cart-pole has so many optima that rounding decides between them.
+TEST(OcpLinearSolver, FindsTheOptimumOfAMotor) { expect_one_optimum(of_catalogue("voice-coil")); }
 
 }  // namespace
 }  // namespace saltus::ocp_tests

@@ -36,7 +36,7 @@ struct Continuous::Implementation {
 };
 
 Continuous::Continuous(Trajectory rows, std::unique_ptr<Interior> interior)
-    : implementation_(std::make_unique<Implementation>(std::move(rows), std::move(interior))) {}
+    : implementation_(new Implementation{.rows = std::move(rows), .interior = std::move(interior)}) {}
 Continuous::~Continuous() = default;
 
 double moved_to_end(double t, double from, double until) {

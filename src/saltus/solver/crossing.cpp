@@ -26,6 +26,8 @@ constexpr int trial_limit = 60;
 constexpr int whole_limit = 500;
 /// Of one of a motion: where its modes can serve, that shows soon.
 constexpr int motion_limit = 30;
+/// Where it has come so near, it goes on.
+constexpr double feasible_but_for_digits = 1e-4;
 /// Relaxed points are better than any feasible one.
 constexpr double objective_slack = 1e-3;
 constexpr double rounding = 1.0001;
@@ -76,7 +78,13 @@ bool Crossing::try_motion(mpcc::ConstVectorView controls, const linalg::Vector* 
   const auto motion = run_.problem.motion(controls);
   if (!motion || run_.is_over()) return false;
   auto branch = run_.solve_branch(motion->sides, motion->w, motion_limit, "the motion of these controls");
-  return is_solved(branch, relaxed != nullptr ? *relaxed : motion->w) && take(std::move(branch), relaxed);
+  const bool is_unfinished = branch.report.termination == result::Termination::iteration_limit;
+  if (is_unfinished && branch.primal_infeasibility <= feasible_but_for_digits) {
+    branch = run_.solve_branch(motion->sides, branch.w, trial_limit, "the motion of these controls");
+  }
+  if (!branch.is_feasible(run_.options.tolerance) || !std::isfinite(branch.objective)) return false;
+  const bool is_comparable = relaxed != nullptr && is_solved(branch, *relaxed);
+  return take(std::move(branch), is_comparable ? relaxed : nullptr);
 }
 
 bool Crossing::take(crossover::Branch branch, const linalg::Vector* relaxed) {
@@ -86,7 +94,7 @@ bool Crossing::take(crossover::Branch branch, const linalg::Vector* relaxed) {
   }
   run_.solution.homotopy.back().message =
       relaxed != nullptr ? fmt::format("refused: the relaxed objective is {:.6g}", run_.problem.objective(*relaxed))
-                         : "kept: no relaxed problem is solved";
+                         : "kept for the case that nothing else is found";
   if (!run_.refused || branch.objective < run_.refused->objective) run_.refused = std::move(branch);
   return false;
 }

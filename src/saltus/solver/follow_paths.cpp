@@ -140,9 +140,11 @@ PathEnd follow_paths(Run& run, const Start& start, const std::vector<mpcc::Named
     const bool may_cross = run.options.crossover;
     if (may_cross && Crossing(run).try_motion(start.w, solved ? &solved->w : nullptr)) return PathEnd::crossed_over;
   }
-  if (follow()) return end;
+  // Where a feasible branch is known, half of all iterations belong to what is better beside it.
+  const auto is_enough = [&] { return run.refused && run.solution.iterations > run.options.iteration_limit / 2; };
+  if (is_enough() || follow() || is_enough()) return end;
   attempt.sigma_initial = run.schedule.next(run.schedule.sigma_initial);
-  if (follow() || run.options.steering == Steering::l1) return end;
+  if (follow() || is_enough() || run.options.steering == Steering::l1) return end;
   attempt.sigma_initial = solved ? solved->sigma : run.schedule.sigma_initial;
   if (solved) attempt.w = std::move(solved->w);
   attempt.steering = Steering::l1;

@@ -205,7 +205,8 @@ Expected<ModelFile> parse_model(std::string_view text, const std::string& file, 
 
 Diagnosis diagnose_model(std::string_view text, const std::string& file) {
   Diagnosis diagnosis;
-  auto& [model, errors] = diagnosis;
+  auto& model = diagnosis.model;
+  auto& errors = diagnosis.errors;  // no structured binding: clang 14 takes none into a lambda
   model.description.file = file;
   model.sha256 = sha256(text);
   const auto document = parse_in_parts(std::string(text), file, errors);

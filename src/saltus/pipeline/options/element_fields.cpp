@@ -51,8 +51,10 @@ constexpr OptionField error_limit_field() {
   return field;
 }
 
+constexpr double most_factors = 64.0;  // of products that are not lifted
+
 template <auto part>
-constexpr std::array fields_of{
+const std::array fields_of{
     choice_field<option_of<part, &ElementOptions::scheme>, schemes>("scheme", "Runge-Kutta method of the elements."),
     number_field<option_of<part, &ElementOptions::stages>>(
         "stages", counting_number,
@@ -82,7 +84,7 @@ constexpr std::array fields_of{
         is_fesd<part> ? "Lengths where nothing switches: the first two are exact, the others slow, for studies."
                       : "Lengths are fixed: all mean the same."),
     number_or_none_field<option_of<part, &ElementOptions::lifting>, off_word>(
-        "lifting", Numbers{.whole = true, .from = 2.0, .up_to = 64.0},
+        "lifting", Numbers{.whole = true, .from = 2.0, .up_to = most_factors},
         "Most factors in products of selections, longer ones are lifted; the solutions are the same."),
     truth_field<option_of<part, &ElementOptions::sensitivities>>(
         "sensitivities",
