@@ -28,6 +28,9 @@ PathEnd shown(RelaxedPath& path, PathEnd end) {
   return end;
 }
 
+/// Where a feasible branch is known, half of all iterations belong to what is better beside it.
+bool is_enough(const Run& run) { return run.refused && run.solution.iterations > run.options.iteration_limit / 2; }
+
 bool has_ended(PathEnd end) { return end != PathEnd::paused && end != PathEnd::failed; }
 
 /// The loops that can be compared at one sigma.
@@ -105,6 +108,11 @@ class ComparedLoops {
     for (auto& candidate : candidates_) {
       const PathEnd end = candidate.path->loop();
       if (end != PathEnd::failed) return shown(*candidate.path, end);
+      const auto solved = candidate.path->last_solved();
+      if (run_.options.crossover && solved && Crossing(run_).try_motion(solved->w, &solved->w)) {
+        return PathEnd::crossed_over;
+      }
+      if (is_enough(run_)) break;
     }
     return PathEnd::failed;
   }
@@ -140,11 +148,9 @@ PathEnd follow_paths(Run& run, const Start& start, const std::vector<mpcc::Named
     const bool may_cross = run.options.crossover;
     if (may_cross && Crossing(run).try_motion(start.w, solved ? &solved->w : nullptr)) return PathEnd::crossed_over;
   }
-  // Where a feasible branch is known, half of all iterations belong to what is better beside it.
-  const auto is_enough = [&] { return run.refused && run.solution.iterations > run.options.iteration_limit / 2; };
-  if (is_enough() || follow() || is_enough()) return end;
+  if (is_enough(run) || follow() || is_enough(run)) return end;
   attempt.sigma_initial = run.schedule.next(run.schedule.sigma_initial);
-  if (follow() || is_enough() || run.options.steering == Steering::l1) return end;
+  if (follow() || is_enough(run) || run.options.steering == Steering::l1) return end;
   attempt.sigma_initial = solved ? solved->sigma : run.schedule.sigma_initial;
   if (solved) attempt.w = std::move(solved->w);
   attempt.steering = Steering::l1;
