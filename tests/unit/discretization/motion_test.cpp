@@ -1,29 +1,15 @@
 // The motion of controls on the elements of a problem: its equations hold, and elements end where it switches.
-#include <memory>
 #include <string>
-#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
-#include "saltus/io/toml/toml_model.hpp"
-#include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 #include "saltus/solver/certificate/classify.hpp"
 #include "saltus/solver/crossover/branch.hpp"
+#include "stated_problem.hpp"
 
 namespace saltus::discretization {
 namespace {
-
-pipeline::StatedProblem stated_problem(const std::string& text) {
-  auto file = io::parse_model(text, "motion.toml");
-  EXPECT_TRUE(file) << (file ? "" : to_text(file.error()));
-  auto ocp = model::build_ocp(file->description);
-  EXPECT_TRUE(ocp) << (ocp ? "" : to_text(ocp.error()));
-  auto stated = pipeline::state_problem(*ocp, *file->optimize);
-  EXPECT_TRUE(stated) << (stated ? "" : to_text(stated.error()));
-  return std::move(*stated);
-}
 
 std::string sliding_block(int elements) {
   return R"toml(

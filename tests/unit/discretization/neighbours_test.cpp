@@ -11,13 +11,11 @@
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
 #include "saltus/discretization/ocp/insertion_prices_internal.hpp"
 #include "saltus/discretization/ocp/neighbours_internal.hpp"
-#include "saltus/io/toml/toml_model.hpp"
-#include "saltus/model/ocp.hpp"
-#include "saltus/pipeline/optimal_control/ocp_problem.hpp"
 #include "saltus/solver/certificate/classify.hpp"
 #include "saltus/solver/certificate/multipliers.hpp"
 #include "saltus/solver/crossover/branch.hpp"
 #include "saltus/solver/crossover/sides.hpp"
+#include "stated_problem.hpp"
 
 namespace saltus::discretization {
 namespace {
@@ -85,13 +83,8 @@ struct Solved {
 };
 
 Solved solved_at_start(const std::string& text) {
-  auto file = io::parse_model(text, "block.toml");
-  EXPECT_TRUE(file) << (file ? "" : to_text(file.error()));
-  auto ocp = model::build_ocp(file->description);
-  EXPECT_TRUE(ocp) << (ocp ? "" : to_text(ocp.error()));
-  auto stated = pipeline::state_problem(*ocp, *file->optimize);
-  EXPECT_TRUE(stated) << (stated ? "" : to_text(stated.error()));
-  Solved solved{std::move(*stated), std::make_unique<adapters::IpoptSolver>(adapters::LinearSolver::block_ldl), {}, {}};
+  Solved solved{
+      stated_problem(text), std::make_unique<adapters::IpoptSolver>(adapters::LinearSolver::block_ldl), {}, {}};
   auto& problem = *solved.stated.problem;
   linalg::Vector c(problem.rows());
   problem.functions(problem.start(), c);
