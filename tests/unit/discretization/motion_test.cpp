@@ -79,6 +79,21 @@ TEST(Motion, NeedsAnElementForEachMode) {
   EXPECT_FALSE(stated.problem->motion(stated.problem->start()));
 }
 
+/// Ten blocks at rest: 3^10 modes are not tried.
+TEST(Motion, OfManySurfacesReachedAtOnceThereIsNone) {
+  std::string states, dynamics;
+  for (int i = 0; i < 10; ++i) {
+    const auto v = "v" + std::to_string(i);
+    states += v + " = 0\n";
+    dynamics += v + " = \"u - sign(" + v + ")\"\n";
+  }
+  const auto stated =
+      stated_problem("[model]\nname = \"blocks\"\n[states]\n" + states +
+                     "[controls]\nu = { lower = -8, upper = 8, initial = 0.5 }\n[dynamics]\n" + dynamics +
+                     "[optimize]\nhorizon = 1\ncontrol_intervals = 2\nrunning_cost = \"u^2\"\n");
+  EXPECT_FALSE(stated.problem->motion(stated.problem->start()));
+}
+
 /// Its branch has the motion for a solution: without a control nothing is cheaper.
 TEST(Motion, ABallThatBouncesBySimulationIsABranch) {
   const auto stated = stated_problem(bouncing_ball);

@@ -12,6 +12,8 @@ using Modes = ElementSides::Sides;
 
 /// Of an interval: so long a mode must go on to be one. What is left at the end of an interval is not missed.
 constexpr double short_share = 1e-4;
+/// Surfaces that may be reached at once: there are three modes for each.
+constexpr std::size_t most_reached = 5;
 /// A switch is found by bisection: to rounding.
 constexpr int bisections = 45;
 
@@ -60,13 +62,17 @@ bool write(const OcpStructure& made, std::size_t k, const std::vector<MotionPiec
 
 }  // namespace
 
-/// What goes on first, then what differs at the surfaces that are reached: 0 is to slide.
+/// What goes on first, then what differs at the surfaces that are reached: 0 is to slide. None where these are many.
 std::vector<Modes> Motion::candidates(const std::vector<double>& lambda) const {
   Modes here(lambda.size());
   for (std::size_t k = 0; k < lambda.size(); ++k) here[k] = lambda[k] > on_surface ? ActiveSide::G : ActiveSide::H;
-  std::vector<Modes> list{here};
+  std::vector<std::size_t> reached;
   for (std::size_t s = 0; s < states_.count(); ++s) {
-    if (!states_.is_on(s, lambda)) continue;
+    if (states_.is_on(s, lambda)) reached.push_back(s);
+  }
+  if (reached.size() > most_reached) return {};
+  std::vector<Modes> list{here};
+  for (const std::size_t s : reached) {
     const std::size_t count = list.size();
     for (std::size_t i = 0; i < count; ++i) {
       for (const int state : {-1, 1}) list.push_back(states_.with(list[i], s, state));
