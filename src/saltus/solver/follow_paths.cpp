@@ -2,7 +2,10 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "saltus/solver/relaxed_path_internal.hpp"
 
@@ -13,6 +16,11 @@ using homotopy::Steering;
 
 /// Iterations of the first problem of a path that is compared with one to come: a hard one is not worth more.
 constexpr int compared_iterations = 250;
+/// Relaxed objectives are compared where the paths begin, and here.
+constexpr double second_sigma = 1e-2;
+/// Relative difference of objectives of the same relaxed solution.
+constexpr double same_objective = 1e-3;
+constexpr double above_rounding = 1.01;
 
 /// Whether only values of functions depend on sigma: bounds stay while a loop runs. That of an elastic problem is a
 /// price.
@@ -29,11 +37,13 @@ PathEnd shown(RelaxedPath& path, PathEnd end) {
 }
 
 /// Where a feasible branch is known, half of all iterations belong to what is better beside it.
-bool is_enough(const Run& run) { return run.refused && run.solution.iterations > run.options.iteration_limit / 2; }
+bool is_enough(const Run& run) { return run.refused && run.solution.iterations > run.iteration_limit / 2; }
 
 bool has_ended(PathEnd end) { return end != PathEnd::paused && end != PathEnd::failed; }
 
-/// The loops that can be compared at one sigma.
+/// Paths from several starts and first sigmas, the most promising first.
+///
+/// Relaxed objectives rise while sigma falls: a path whose objective is above that of a branch leads to no better one.
 class ComparedLoops {
  public:
   explicit ComparedLoops(Run& run) : run_(run) {
@@ -49,23 +59,30 @@ class ComparedLoops {
     const auto cheaper = [&](const mpcc::NamedStart& other) { return has_lower_cost(other.w, first.w); };
     if (std::any_of(others.begin(), others.end(), cheaper)) compared_ = std::min(compared_, small());
     best_start_ = first.w;
+    const int random_starts = run_.options.compared_starts.value_or(0);
+    // Many starts are worth more than a large first sigma.
+    if (random_starts > 0) sigmas_ = {sigmas_.back()};
     if (const PathEnd end = add(first); has_ended(end)) return end;
     for (const auto& other : others) {
-      if (!cheaper(other) && !(candidates_.empty() && is_defined(other.w))) continue;
-      Attempt attempt = first;
-      attempt.w = other.w;
-      attempt.name = "begins at " + other.name;
-      attempt.iteration_limit = compared_iterations;
-      if (const PathEnd end = add(attempt); has_ended(end)) return end;
+      const bool is_compared = random_starts > 0 || candidates_.empty();
+      if (!cheaper(other) && !(is_compared && is_defined(other.w))) continue;
+      const PathEnd end = add(beside(first, other.w, other.name));
+      if (has_ended(end)) return end;
     }
+    const int before = run_.solution.iterations;
+    for (int seed = 1; seed <= random_starts; ++seed) {
+      const linalg::Vector w = start_of_seed(run_.problem, first.w, seed);
+      if (!is_defined(w)) continue;
+      const PathEnd end = add(beside(first, w, fmt::format("the random start of seed {}", seed)));
+      if (has_ended(end)) return end;
+    }
+    // The limit is that of one start.
+    run_.iteration_limit += run_.solution.iterations - before;
     return follow_best();
   }
 
   [[nodiscard]] const linalg::Vector& best_start() const { return best_start_; }
-  [[nodiscard]] std::optional<SolvedPoint> last_solved() const {
-    if (candidates_.empty()) return std::nullopt;
-    return candidates_.front().path->last_solved();
-  }
+  [[nodiscard]] const std::optional<SolvedPoint>& last_solved() const { return last_solved_; }
 
  private:
   struct Candidate {
@@ -83,8 +100,15 @@ class ComparedLoops {
   [[nodiscard]] bool has_lower_cost(const linalg::Vector& a, const linalg::Vector& b) const {
     return is_defined(a) && run_.problem.objective(a) < run_.problem.objective(b);
   }
+  static Attempt beside(const Attempt& first, const linalg::Vector& w, const std::string& name) {
+    Attempt attempt = first;
+    attempt.w = w;
+    attempt.name = "begins at " + name;
+    attempt.iteration_limit = compared_iterations;
+    return attempt;
+  }
 
-  /// Both first sigmas from one start.
+  /// The first sigmas from one start.
   PathEnd add(Attempt attempt) {
     const std::string name = attempt.name;
     const int last_limit = attempt.iteration_limit;
@@ -101,20 +125,65 @@ class ComparedLoops {
     return PathEnd::failed;
   }
 
+  /// Always the path of the lowest objective, until none can lead to a better branch than the best one.
   PathEnd follow_best() {
-    std::stable_sort(candidates_.begin(), candidates_.end(),
-                     [](const auto& a, const auto& b) { return a.objective < b.objective; });
+    drop_twins();
     if (!candidates_.empty()) best_start_ = candidates_.front().start;
-    for (auto& candidate : candidates_) {
-      const PathEnd end = candidate.path->loop();
-      if (end != PathEnd::failed) return shown(*candidate.path, end);
-      const auto solved = candidate.path->last_solved();
-      if (run_.options.crossover && solved && Crossing(run_).try_motion(solved->w, &solved->w)) {
-        return PathEnd::crossed_over;
+    const int most = run_.solution.iterations + (run_.iteration_limit - run_.solution.iterations) / 3;
+    PathEnd end = PathEnd::failed;
+    while (!candidates_.empty() && !is_enough(run_) && !(best_ && run_.solution.iterations > most)) {
+      const auto next = std::min_element(candidates_.begin(), candidates_.end(), has_lower_objective);
+      if (best_ && next->objective >= best_->objective) break;
+      const PathEnd of_path = advance(*next);
+      if (of_path == PathEnd::paused) {
+        next->objective = next->path->objective();
+        continue;
       }
-      if (is_enough(run_)) break;
+      if (of_path == PathEnd::failed) {
+        leave_motion(*next);
+      } else if (!best_) {
+        next->path->show();
+        end = of_path;
+      }
+      keep_branch();
+      if (of_path == PathEnd::stopped) break;
+      candidates_.erase(next);
     }
-    return PathEnd::failed;
+    if (!best_) return end;
+    run_.branch = std::move(best_);
+    return PathEnd::crossed_over;
+  }
+
+  static bool has_lower_objective(const Candidate& a, const Candidate& b) { return a.objective < b.objective; }
+
+  /// One of those that have come to the same solution is enough.
+  void drop_twins() {
+    std::stable_sort(candidates_.begin(), candidates_.end(), has_lower_objective);
+    const auto are_twins = [](const Candidate& a, const Candidate& b) {
+      return std::abs(a.objective - b.objective) <= same_objective * std::max(1.0, std::abs(a.objective));
+    };
+    candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), are_twins), candidates_.end());
+  }
+
+  /// To the next sigma at which paths are compared. The last one goes on to its end.
+  PathEnd advance(Candidate& candidate) {
+    auto& path = *candidate.path;
+    const bool is_compared = candidates_.size() > 1 && path.last_solved()->sigma > above_rounding * second_sigma;
+    const double until = is_compared ? second_sigma : 0.0;
+    const PathEnd end = path.loop(until);
+    return end == PathEnd::failed && is_compared ? path.follow(until) : end;
+  }
+
+  /// What a failed path has come to may be that of a motion.
+  void leave_motion(const Candidate& candidate) {
+    const auto& solved = candidate.path->last_solved();
+    if (!last_solved_) last_solved_ = solved;
+    if (run_.options.crossover && solved) static_cast<void>(Crossing(run_).try_motion(solved->w, &solved->w));
+  }
+
+  void keep_branch() {
+    if (run_.branch && !(best_ && best_->objective <= run_.branch->objective)) best_ = std::move(run_.branch);
+    run_.branch.reset();
   }
 
   Run& run_;
@@ -122,6 +191,8 @@ class ComparedLoops {
   double compared_ = 0.0;       ///< where objectives are compared
   std::vector<Candidate> candidates_;
   linalg::Vector best_start_;
+  std::optional<crossover::Branch> best_;
+  std::optional<SolvedPoint> last_solved_;  ///< of the first path that failed
 };
 
 }  // namespace

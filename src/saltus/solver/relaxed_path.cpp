@@ -27,11 +27,11 @@ RelaxedPath::RelaxedPath(Run& run, Attempt attempt)
   infeasibility_ = infeasibility_of(w_);
 }
 
-PathEnd RelaxedPath::follow() {
-  return follow_from(level_ ? run_.schedule.next(level_->sigma) : attempt_.sigma_initial);
+PathEnd RelaxedPath::follow(double until) {
+  return follow_from(level_ ? run_.schedule.next(level_->sigma) : attempt_.sigma_initial, until);
 }
 
-PathEnd RelaxedPath::follow_from(double sigma) {
+PathEnd RelaxedPath::follow_from(double sigma, double until) {
   const auto& schedule = run_.schedule;
   int failures = 0;
   // Behind the last one, too, where only digits are missing.
@@ -42,6 +42,7 @@ PathEnd RelaxedPath::follow_from(double sigma) {
     failures = solve(sigma) ? 0 : failures + 1;
     if (run_.is_over()) return PathEnd::stopped;
     if (const auto end = end_at(is_last, failures)) return *end;
+    if (failures == 0 && sigma <= until) return PathEnd::paused;
   }
 }
 
@@ -94,7 +95,7 @@ PathEnd RelaxedPath::run_loop(double until) {
     move_to(level.sigma);
     return NextBarrier{.mu = level.mu, .is_changed = true};
   };
-  const NlpOptions options = run_.nlp_options(run_.options.iteration_limit);
+  const NlpOptions options = run_.nlp_options(run_.iteration_limit);
   NlpReport report = run_.nlp.follow(*state_.problem, point, options, level.mu, longest_barrier, next);
   run_.count_evaluation(std::exchange(report.evaluation_seconds, 0.0));
   is_in_loop_ = false;

@@ -40,8 +40,8 @@ class RelaxedPath {
  public:
   RelaxedPath(Run& run, Attempt attempt);
 
-  /// Solves one problem after the other, each with barriers of the solver's choice.
-  PathEnd follow();
+  /// Solves one problem after the other, each with barriers of the solver's choice, down to sigma = `until`.
+  PathEnd follow(double until = 0.0);
   /// Solves the first problem so, those behind it in one loop of the solver, down to sigma = `until`. May be called
   /// again, to go on. A problem that the loop cannot solve is solved, like those behind it, by itself.
   PathEnd loop(double until = 0.0);
@@ -63,7 +63,7 @@ class RelaxedPath {
   bool solve(double sigma, std::optional<double> tolerance = std::nullopt, int iteration_limit = 500);
   bool take(const NlpPoint& point, const NlpReport& report);
   PathEnd run_loop(double until);
-  PathEnd follow_from(double sigma);
+  PathEnd follow_from(double sigma, double until = 0.0);
 
   Run& run_;
   Attempt attempt_;
@@ -82,11 +82,11 @@ class RelaxedPath {
 
 /// Follows the paths of relaxed problems that can be compared, then others where those fail, until one ends.
 ///
-/// Compared are two first sigmas, from the given start and from others. Others count where they cost less, or where no
-/// path from the given one is solved down to the compared sigma. The path of the lowest objective there goes on, the
-/// next one where it fails. If all do: the motion of the first controls, if it is as good as the last relaxed point;
-/// from the start of the best one, one problem after the other; the same from a smaller sigma; and elastic problems,
-/// from the last one that it solved.
+/// Compared are two first sigmas, from the given start and from others, and random starts where the options want them.
+/// Without those, others count where they cost less, or where no path from the given one is solved down to the compared
+/// sigma. The path of the lowest objective goes on, until none is below the best branch. If all fail: the motion of the
+/// first controls, if it is as good as the last relaxed point; from the start of the best one, one problem after the
+/// other; the same from a smaller sigma; and elastic problems, from the last one that it solved.
 [[nodiscard]] PathEnd follow_paths(Run& run, const Start& start, const std::vector<mpcc::NamedStart>& others);
 
 }  // namespace saltus::solver

@@ -22,6 +22,7 @@ Run::Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpc
       lpcc(lpcc_solver),
       options(wanted),
       schedule(wanted.schedule),
+      iteration_limit(wanted.iteration_limit),
       groups(crossover::groups_of(problem_to_solve)) {
   schedule.sigma_initial = wanted.sigma_initial.value_or(schedule.sigma_initial);
 }
@@ -32,16 +33,16 @@ bool Run::is_over() {
     stopped = Termination::stopped_by_user;
   } else if (options.time_limit && seconds() >= *options.time_limit) {
     stopped = Termination::time_limit;
-  } else if (solution.iterations >= options.iteration_limit) {
+  } else if (solution.iterations >= iteration_limit) {
     stopped = Termination::iteration_limit;
   }
   return stopped.has_value();
 }
 
-NlpOptions Run::nlp_options(int iteration_limit) const {
+NlpOptions Run::nlp_options(int most_iterations) const {
   NlpOptions result;
   result.tolerance = problem_tolerance;
-  result.iteration_limit = std::max(0, std::min(iteration_limit, options.iteration_limit - solution.iterations));
+  result.iteration_limit = std::max(0, std::min(most_iterations, iteration_limit - solution.iterations));
   if (options.time_limit) result.time_limit = std::max(0.0, *options.time_limit - seconds());
   result.is_interrupted = options.is_interrupted;
   return result;
@@ -62,10 +63,10 @@ void Run::record(result::HomotopyStep step, const NlpReport* report, double star
   if (options.on_step) options.on_step(solution.homotopy.back());
 }
 
-crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, int iteration_limit,
+crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, int most_iterations,
                                     std::string message, std::optional<double> cutoff, const std::vector<int>& kept) {
   const double started = seconds();
-  NlpOptions limited = nlp_options(iteration_limit);
+  NlpOptions limited = nlp_options(most_iterations);
   limited.objective_cutoff = cutoff;
   crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, limited, kept);
   result::HomotopyStep step;

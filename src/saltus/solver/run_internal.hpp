@@ -28,7 +28,7 @@ class Run {
   /// Returns whether a limit has been reached or the user wants an end; `stopped` says which.
   [[nodiscard]] bool is_over();
   /// Returns the limits of the next problem. A relaxed one that needs more iterations is better off with another sigma.
-  [[nodiscard]] NlpOptions nlp_options(int iteration_limit = 500) const;
+  [[nodiscard]] NlpOptions nlp_options(int most_iterations = 500) const;
   void record(result::HomotopyStep step, const NlpReport* report, double started);
   /// Seconds of a problem that is recorded in parts.
   void count_evaluation(double seconds) {
@@ -37,7 +37,7 @@ class Run {
   }
   /// Solves a branch problem, counts and records it. It may be given up where its objective is above `cutoff`.
   [[nodiscard]] crossover::Branch solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
-                                               int iteration_limit, std::string message = {},
+                                               int most_iterations, std::string message = {},
                                                std::optional<double> cutoff = std::nullopt,
                                                const std::vector<int>& kept = {});
 
@@ -46,6 +46,7 @@ class Run {
   LpccSolver& lpcc;
   const SolveOptions& options;
   homotopy::Schedule schedule;
+  int iteration_limit;  ///< that of the options, and behind it what the comparison of random starts has needed
   std::vector<std::vector<int>> groups;
   Solution solution;
   RelaxedState relaxed;                      ///< the last relaxed problem that left a point

@@ -36,7 +36,10 @@ struct SolveOptions {
   homotopy::WarmStart warm_start = homotopy::WarmStart::primal;
   FirstProblem first = FirstProblem::relaxed;
   bool crossover = true;
-  int starts = 1;                      ///< the start itself, and others by seeds 1, 2, ...
+  int starts = 1;  ///< the start itself, and others by seeds 1, 2, ...
+  /// Random starts by seeds 1, 2, ... of which the first relaxed problem alone is solved, and compared: the path of the
+  /// lowest objective goes on. Nothing is 0.
+  std::optional<int> compared_starts{};
   double tolerance = 1e-8;             ///< of the three residuals
   int iteration_limit = 3000;          ///< of all relaxed and branch problems of a start together
   std::optional<double> time_limit{};  ///< seconds

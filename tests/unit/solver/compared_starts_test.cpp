@@ -32,10 +32,11 @@ Begun two_valleys(double start, double other) {
   return {stated, linalg::Vector{0.0, 0.0, start}, linalg::Vector{0.0, 0.0, other}};
 }
 
-Expected<Solution> solved(Begun problem, const std::optional<Start>& start = std::nullopt) {
+Expected<Solution> solved(Begun problem, const std::optional<Start>& start = std::nullopt,
+                          const SolveOptions& options = {}) {
   adapters::IpoptSolver ipopt;
   adapters::HighsLpcc highs;
-  return solve(problem, ipopt, highs, {}, start);
+  return solve(problem, ipopt, highs, options, start);
 }
 
 bool has_compared(const Solution& solution) {
@@ -87,6 +88,31 @@ TEST(ComparedStarts, AStartThatCostsMoreIsNotTried) {
   ASSERT_TRUE(found.has_value());
   EXPECT_NEAR(found->objective, -0.3054, 1e-3);
   EXPECT_FALSE(has_compared(*found));
+}
+
+/// From 0.3 on the steepest way is that to w2 = 1; random starts within 0.5 of it are on either side of the hill.
+TEST(ComparedStarts, RandomStartsFindTheOtherValley) {
+  SolveOptions options;
+  const auto alone = solved(two_valleys(0.3, 0.3), std::nullopt, options);
+  options.compared_starts = 4;
+  const auto compared = solved(two_valleys(0.3, 0.3), std::nullopt, options);
+  ASSERT_TRUE(alone.has_value() && compared.has_value());
+  EXPECT_NEAR(compared->objective, -0.3054, 1e-3);
+  const auto is_random = [](const auto& step) { return step.message.starts_with("begins at the random start"); };
+  EXPECT_EQ(std::count_if(alone->homotopy.begin(), alone->homotopy.end(), is_random), 0);
+  EXPECT_EQ(std::count_if(compared->homotopy.begin(), compared->homotopy.end(), is_random), 4);
+}
+
+/// The limit is that of one start: random ones need no share of it.
+TEST(ComparedStarts, RandomStartsTakeNoIterationsFromTheOthers) {
+  SolveOptions options;
+  const auto alone = solved(two_valleys(-1.2, 1.2), std::nullopt, options);
+  ASSERT_TRUE(alone.has_value());
+  options.compared_starts = 4;
+  options.iteration_limit = alone->iterations + 10;
+  const auto compared = solved(two_valleys(-1.2, 1.2), std::nullopt, options);
+  ASSERT_TRUE(compared.has_value());
+  EXPECT_EQ(compared->termination, result::Termination::completed) << compared->message;
 }
 
 TEST(ComparedStarts, AStartThatIsGivenIsTheOnlyOne) {

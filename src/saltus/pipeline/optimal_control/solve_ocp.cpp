@@ -16,6 +16,8 @@ using result::Termination;
 
 /// Times that intervals may get an element more.
 constexpr int most_rounds = 3;
+/// Motions with contacts differ in their collisions, and each order of them has optima of its own.
+constexpr int compared_starts_with_contacts = 4;
 /// Of the objective: by less an element more is not worth it.
 constexpr double worth_an_element = 1e-4;
 
@@ -51,6 +53,7 @@ class MoreElements {
       : ocp_(ocp), options_(std::move(options)), most_iterations_(options_.iteration_limit), solved_(solved) {
     options_.first = solver::FirstProblem::branch;
     options_.starts = 1;
+    options_.compared_starts = 0;
   }
 
   /// @return whether there are intervals that are better with an element more; they have it
@@ -104,6 +107,8 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
   solver::SolveOptions wanted = options.mpcc;
   wanted.is_interrupted = observers.is_interrupted;
   wanted.on_step = observers.on_step;
+  const bool has_start = options.start_from != nullptr;
+  if (!wanted.compared_starts && ocp.physical && !has_start) wanted.compared_starts = compared_starts_with_contacts;
   adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
   adapters::HighsLpcc highs;
   auto& problem = *solved.stated.problem;

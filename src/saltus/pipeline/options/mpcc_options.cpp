@@ -25,6 +25,7 @@ constexpr auto strategy_of = [](auto& o) -> auto& { return o.strategy; };
 constexpr auto sigma_initial_of = [](auto& o) -> auto& { return o.sigma_initial; };
 constexpr auto sigma_factor_of = [](auto& o) -> auto& { return o.schedule.sigma_factor; };
 constexpr auto sigma_final_of = [](auto& o) -> auto& { return o.schedule.sigma_final; };
+constexpr auto compared_starts_of = [](auto& o) -> auto& { return o.compared_starts; };
 constexpr auto relaxation_of = [](auto& o) -> auto& { return o.relaxation; };
 constexpr auto crossover_of = [](auto& o) -> auto& { return o.crossover; };
 constexpr auto iteration_limit_of = [](auto& o) -> auto& { return o.iteration_limit; };
@@ -56,6 +57,10 @@ const std::array fields_of_mpcc{
     number_field<starts_of, SolveOptions>(
         "starts", Numbers{.whole = true, .from = 1.0, .up_to = most_starts},
         "The problem is solved from its start and from random ones beside it (seeds 1, 2, …); the best is the answer."),
+    number_or_none_field<compared_starts_of, auto_word, SolveOptions>(
+        "compared_starts", Numbers{.whole = true, .from = 0.0, .up_to = most_starts},
+        "Random starts beside the start whose relaxed problems are compared; the path of the lowest objective goes on "
+        "first. auto: 4 with contacts, else 0."),
     choice_field<relaxation_of, relaxations, SolveOptions>("method", "How complementarities are relaxed by sigma."),
     choice_field<steering_of, steerings, SolveOptions>(
         "steering", "What makes sigma small: its bound alone, or a price on the sum or the largest of the products."),
