@@ -73,7 +73,7 @@ struct BranchMove {
   /// Slope of the objective along the move, by the multipliers of the branch; nothing where they do not say it.
   std::optional<double> price{};
   std::vector<int> appearing{};  ///< variables that may not come back to 0 before the branch is known to be better
-  bool is_elsewhere = false;     ///< not the same point: it may be far from the solution of its branch
+  std::string name{};            ///< what it does
 };
 
 /// Holds a point to begin at.

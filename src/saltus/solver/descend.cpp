@@ -3,6 +3,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -29,6 +30,8 @@ constexpr int branch_iterations = 500;
 constexpr int move_iterations = 25;
 /// Of the objective: a fall that is worth more iterations, or a point that is not solved yet.
 constexpr double worth = 1e-3;
+/// Of the objective, relative: what falls by less is not worth another point.
+constexpr double worth_leaving = 1e-6;
 /// Flips tried one by one before the linear program decides.
 constexpr int flips_tried = 5;
 /// Moves tried one by one of those that promise a fall.
@@ -131,7 +134,7 @@ class Descent {
   }
 
   /// Takes the branch with the group on its other side if that is better.
-  bool take(const mpcc::BranchMove& move, const char* message, int iterations = branch_iterations) {
+  bool take(const mpcc::BranchMove& move, const std::string& message, int iterations = branch_iterations) {
     const auto& sides = move.sides;
     const auto& appearing = move.appearing;
     if (!visited_.insert(sides).second) return false;
@@ -149,8 +152,8 @@ class Descent {
     if (next.report.termination == Termination::iteration_limit) visited_.erase(sides);
     if (!next.is_feasible(tolerance()) || !falls(branch().objective, next.objective)) return false;
     // A certified point is not given up for digits of its objective.
-    const double least = tolerance() * std::max(1.0, std::abs(branch().objective));
     if (is_certified()) {
+      const double least = std::max(worth_leaving * std::abs(branch().objective), tolerance());
       if (branch().objective - next.objective < least) return false;
       certified_ = {std::move(branch()), run_.solution.certificate};
     }
@@ -200,13 +203,12 @@ class Descent {
   }
 
   bool take_move(const mpcc::BranchMove& move) {
-    return move.is_elsewhere ? take(move, "another point with other modes")
-                             : take(move, "another mode sequence", move_iterations);
+    return take(move, "another mode sequence: " + move.name, move_iterations);
   }
 
   /// Moves in one, the best first: each that changes nothing that one before it changes.
   [[nodiscard]] mpcc::BranchMove together(const std::vector<mpcc::BranchMove>& moves) {
-    mpcc::BranchMove all{branch().sides, branch().w};
+    mpcc::BranchMove all{.sides = branch().sides, .start = branch().w, .name = "several moves"};
     for (const auto& move : moves) {
       bool is_apart = true;
       for (std::size_t i = 0; i < all.sides.size(); ++i) {

@@ -79,19 +79,26 @@ TEST(Motion, NeedsAnElementForEachMode) {
   EXPECT_FALSE(stated.problem->motion(stated.problem->start()));
 }
 
-/// Ten blocks at rest: 3^10 modes are not tried.
-TEST(Motion, OfManySurfacesReachedAtOnceThereIsNone) {
+/// Ten blocks at rest that are pushed together.
+std::string pushed_blocks(double force) {
   std::string states, dynamics;
   for (int i = 0; i < 10; ++i) {
     const auto v = "v" + std::to_string(i);
     states += v + " = 0\n";
     dynamics += v + " = \"u - sign(" + v + ")\"\n";
   }
-  const auto stated =
-      stated_problem("[model]\nname = \"blocks\"\n[states]\n" + states +
-                     "[controls]\nu = { lower = -8, upper = 8, initial = 0.5 }\n[dynamics]\n" + dynamics +
-                     "[optimize]\nhorizon = 1\ncontrol_intervals = 2\nrunning_cost = \"u^2\"\n");
-  EXPECT_FALSE(stated.problem->motion(stated.problem->start()));
+  return "[model]\nname = \"blocks\"\n[states]\n" + states +
+         "[controls]\nu = { lower = -8, upper = 8, initial = " + std::to_string(force) + " }\n[dynamics]\n" + dynamics +
+         "[optimize]\nhorizon = 1\ncontrol_intervals = 2\nrunning_cost = \"u^2\"\n";
+}
+
+/// Of 3^10 modes those that differ least are tried: all stick, or one or two do not.
+TEST(Motion, OfManySurfacesReachedAtOnceFewMayBeLeft) {
+  const auto held = stated_problem(pushed_blocks(0.5)), pushed = stated_problem(pushed_blocks(2.0));
+  const auto motion = held.problem->motion(held.problem->start());
+  ASSERT_TRUE(motion);
+  expect_feasible(*held.problem, motion->w);
+  EXPECT_FALSE(pushed.problem->motion(pushed.problem->start()));
 }
 
 /// Its branch has the motion for a solution: without a control nothing is cheaper.

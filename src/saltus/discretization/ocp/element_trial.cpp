@@ -69,6 +69,35 @@ std::vector<double> ElementTrial::right_of(const linalg::Vector& own) const {
   return values;
 }
 
+bool are_near(const std::vector<double>& a, const std::vector<double>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) { return std::abs(x - y) <= on_surface; });
+}
+
+double ElementTrial::length_of(std::size_t number) const {
+  const auto& element = made_.element[number];
+  const int speed = made_.interval[at(element.interval)].shared[at(made_.kernel.shared.speed())];
+  return value_at(element.length, w_, made_.constants) * value_at(speed, w_, made_.constants);
+}
+
+bool ElementTrial::is_at_edge(std::size_t number) const {
+  const auto& kernel = made_.kernel;
+  const auto& [multiplier, selection] = std::tie(kernel.layout.lambda, kernel.layout.selection);
+  const auto left = lambda(left_of(number));
+  for (std::size_t k = 0; k < kernel.pairs.size(); ++k) {
+    const auto& pair = kernel.pairs[k];
+    double largest = left[k];
+    for (int point = 0; point < multiplier.count; ++point) {
+      largest = std::max(largest, w_[made_.element[number].variable(multiplier.at(point, static_cast<int>(k)))]);
+    }
+    for (int m = 0; m < kernel.layout.stages; ++m) {
+      const double value = w_[made_.element[number].variable(selection.at(m, pair.selection))];
+      largest = std::max(largest, pair.complement ? 1.0 - value : value);
+    }
+    if (largest <= on_surface) return true;
+  }
+  return false;
+}
+
 std::vector<double> ElementTrial::lambda(const std::vector<double>& left) const {
   return {left.end() - made_.kernel.layout.lambda.size, left.end()};
 }
@@ -233,7 +262,7 @@ bool ElementTrial::stands_still(const std::vector<double>& left, const linalg::V
   const int clock = made_.kernel.clock;
   if (clock < 0) return false;
   const double length = value_at(made_.horizon, w_, made_.constants) / made_.intervals;
-  return right_of(own)[at(clock)] - left[at(clock)] <= vanished * small_share * length;
+  return right_of(own)[at(clock)] - left[at(clock)] <= vanished * length;
 }
 
 }  // namespace saltus::discretization

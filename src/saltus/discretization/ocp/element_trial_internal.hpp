@@ -16,6 +16,9 @@ struct HeldSelection {
 [[nodiscard]] std::vector<HeldSelection> held_while_closing(const OcpKernel::Implementation& kernel,
                                                             const ElementSides::Sides& modes);
 
+/// Returns whether ends of elements are the same but for what is left of zeros.
+[[nodiscard]] bool are_near(const std::vector<double>& a, const std::vector<double>& b);
+
 /// Solves elements one by one, with the controls and parameters of a point.
 class ElementTrial {
  public:
@@ -26,6 +29,14 @@ class ElementTrial {
   [[nodiscard]] std::vector<double> left_of(std::size_t number) const;
   /// Returns the same of what follows an element.
   [[nodiscard]] std::vector<double> right_of(const linalg::Vector& own) const;
+  /// Returns the variables of an element of the point but its length.
+  [[nodiscard]] linalg::Vector own_of(std::size_t number) const {
+    return w_.segment(made_.element[number].first, made_.kernel.layout.size - 1);
+  }
+  /// Returns its length, in parts of a control interval.
+  [[nodiscard]] double length_of(std::size_t number) const;
+  /// Returns whether both sides of a pair are zero in the whole of it.
+  [[nodiscard]] bool is_at_edge(std::size_t number) const;
   /// Returns multipliers at a left end.
   [[nodiscard]] std::vector<double> lambda(const std::vector<double>& left) const;
   /// Returns the variables of an element but its length, if its equations have a solution.

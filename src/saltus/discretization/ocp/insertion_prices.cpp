@@ -20,7 +20,7 @@ InsertionPrices::InsertionPrices(const SolvedBranch& branch)
     : made_(branch.made),
       modes_(branch.modes),
       w_(branch.w),
-      rows_(branch.multipliers->rows),
+      rows_(branch.multipliers.rows),
       trial_(made_, w_),
       within_(made_.element.size()),
       at_node_(made_.element.size()) {
@@ -118,8 +118,8 @@ std::optional<double> InsertionPrices::price(const Insertion& where) const {
   const auto of_sum = multiplier_of_sum(where.interval);
   // Slacks of kinks belong to elements that are there.
   if (!of_sum || kernel.running.variables() > kernel.element.variables()) return std::nullopt;
-  const auto z = trial_.inputs(where.left, where.interval, where.item.own, where.item.length);
-  const auto is_held = trial_.held(where.item.modes);
+  const auto z = trial_.inputs(where.left, where.interval, where.own, where.length);
+  const auto is_held = trial_.held(where.modes);
   const int first = kernel.element.variables() - layout.size;
 
   linalg::Vector slopes = linalg::Vector::zero(layout.size);
@@ -148,7 +148,7 @@ std::optional<double> InsertionPrices::price(const Insertion& where) const {
   const int speed = made_.interval[where.interval].shared[at(kernel.shared.speed())];
   const double of_length = slopes[layout.h] + jacobian.col(layout.h).dot(own);
   const double of_share = value_at(speed, w_, made_.constants) * of_length + *of_sum;
-  return of_jump + where.item.length * of_share;
+  return of_jump + where.length * of_share;
 }
 
 }  // namespace saltus::discretization

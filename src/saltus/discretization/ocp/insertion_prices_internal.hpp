@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "saltus/discretization/ocp/element_items_internal.hpp"
 #include "saltus/discretization/ocp/element_trial_internal.hpp"
 #include "saltus/discretization/ocp/neighbours_internal.hpp"
 
@@ -15,7 +14,9 @@ struct Insertion {
   std::size_t before = 0;           ///< the element that follows, or one behind the last
   std::size_t interval = 0;         ///< of that element or of the one before it
   const std::vector<double>& left;  ///< what is left of it: that of the boundary, or behind impacts there
-  const Item& item;                 ///< of a small length, solved
+  const ElementSides::Sides& modes;
+  linalg::Vector own;   ///< its variables, solved
+  double length = 0.0;  ///< small
 };
 
 /// Finds reduced costs of lengths of elements that are not there: dL/dh at h = 0+ with L = f + rows'g, the mode

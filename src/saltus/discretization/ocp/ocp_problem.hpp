@@ -128,9 +128,9 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] int pair_group(int pair) const override;
   [[nodiscard]] mpcc::BranchClosure close_branch(const std::vector<mpcc::ActiveSide>& sides) const override;
   void complete(mpcc::VectorView w) override;
-  /// Gives mode sequences that differ by an element, with mode insertion gradients as prices. It is inserted with
-  /// length zero where the motion can go on in other modes or in those of the next interval. It is removed where its
-  /// length is zero. It is divided where it is as long as it may be. What happens at impacts comes in one.
+  /// Gives mode sequences that differ by a move, with prices where multipliers say them. Insertion: elements of length
+  /// zero in modes that meet at a boundary. Removal of one of length zero. Shift of what happens at a control node to
+  /// one side of it. Split of what is as long as it may be. Flip of what is held on a surface to its sides.
   [[nodiscard]] std::vector<mpcc::BranchMove> neighbours(const std::vector<mpcc::ActiveSide>& sides,
                                                          mpcc::ConstVectorView w,
                                                          const mpcc::Multipliers& multipliers) override;

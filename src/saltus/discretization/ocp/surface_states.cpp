@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "saltus/discretization/ocp/surface_states_internal.hpp"
 
 namespace saltus::discretization {
@@ -13,6 +15,7 @@ SurfaceStates::SurfaceStates(const OcpStructure& made) : made_(made) {
     for (int column = 0; column < columns; ++column) {
       surfaces_.push_back({&part, column, is_step ? pair + 2 * column : pair});
     }
+    if (columns == 0) regions_.push_back({pair, part.count});
     pair += is_step ? 2 * part.count : part.count;
   }
 }
@@ -55,20 +58,73 @@ SurfaceStates::Modes SurfaceStates::with(Modes modes, std::size_t number, int st
   return modes;
 }
 
-void SurfaceStates::select(std::size_t element, std::size_t number, int state, mpcc::VectorView w) const {
-  const Surface& surface = surfaces_[number];
-  const auto& layout = made_.kernel.layout;
-  const auto selection = [&](int stage, int i) -> double& {
-    return w[made_.element[element].variable(layout.selection.at(stage, surface.part->first + i))];
-  };
-  for (int m = 0; m < layout.stages; ++m) {
-    if (is_step(surface)) selection(m, surface.column) = state > 0 ? 1.0 : 0.0;
-    for (int region = 0; region < surface.part->count && !is_step(surface); ++region) {
-      if (surface.part->signs(region, surface.column) == state) continue;
-      selection(m, mirrored(surface, region)) += selection(m, region);
-      selection(m, region) = 0.0;
+std::vector<SurfaceStates::Modes> SurfaceStates::others(std::size_t surface, const std::vector<double>& lambda,
+                                                        const Modes& from) const {
+  std::vector<Modes> list;
+  for (const int state : {0, -1, 1}) {
+    if (is_on(surface, lambda) && state != of(from, surface)) list.push_back(with(from, surface, state));
+  }
+  return list;
+}
+
+/// One of the regions that are reached, or the line between two.
+std::vector<SurfaceStates::Modes> SurfaceStates::others(const Regions& regions, const std::vector<double>& lambda,
+                                                        const Modes& from) {
+  std::vector<Modes> list;
+  for (int a = regions.first; a < regions.first + regions.count; ++a) {
+    for (int b = a; b < regions.first + regions.count; ++b) {
+      if (lambda[at(a)] > on_surface || lambda[at(b)] > on_surface) continue;
+      Modes modes = from;
+      std::fill_n(modes.begin() + regions.first, regions.count, ActiveSide::G);
+      modes[at(a)] = modes[at(b)] = ActiveSide::H;
+      if (modes != from) list.push_back(std::move(modes));
     }
   }
+  return list;
+}
+
+std::vector<SurfaceStates::Modes> SurfaceStates::candidates(const std::vector<double>& lambda,
+                                                            const Modes& from) const {
+  constexpr std::size_t most = 250;
+  struct Candidate {
+    Modes modes;
+    std::size_t next = 0;  ///< behind what differs last
+  };
+  std::vector<Candidate> level{{from, 0}};
+  std::vector<Modes> list{from};
+  const std::size_t parts = surfaces_.size() + regions_.size();
+  while (!level.empty()) {
+    std::vector<Candidate> longer;
+    for (const auto& [modes, next] : level) {
+      for (std::size_t part = next; part < parts && longer.size() + list.size() <= most; ++part) {
+        const auto more = part < surfaces_.size() ? others(part, lambda, modes)
+                                                  : others(regions_[part - surfaces_.size()], lambda, modes);
+        for (const auto& one : more) longer.push_back({one, part + 1});
+      }
+    }
+    if (longer.size() + list.size() > most) break;
+    for (const auto& one : longer) list.push_back(one.modes);
+    level = std::move(longer);
+  }
+  return list;
+}
+
+SurfaceStates::Modes SurfaceStates::on_all(const std::vector<double>& lambda) {
+  Modes modes;
+  for (const double value : lambda) modes.push_back(value > on_surface ? ActiveSide::G : ActiveSide::H);
+  return modes;
+}
+
+bool SurfaceStates::is_touched(const std::vector<double>& lambda, const Modes& modes) const {
+  for (std::size_t s = 0; s < count(); ++s) {
+    if (of(modes, s) != 0 && is_on(s, lambda)) return true;
+  }
+  return std::any_of(regions_.begin(), regions_.end(), [&](const Regions& regions) {
+    for (int i = regions.first; i < regions.first + regions.count; ++i) {
+      if (modes[at(i)] == ActiveSide::G && lambda[at(i)] <= on_surface) return true;
+    }
+    return false;
+  });
 }
 
 bool SurfaceStates::is_held(std::size_t element, std::size_t number, mpcc::ConstVectorView w) const {

@@ -10,7 +10,8 @@ namespace saltus::discretization {
 /// What is left of a multiplier, or of an equation, that is 0 in a certified point.
 inline constexpr double on_surface = 1e-7;
 
-/// Reads and writes the sides of surfaces in the modes of elements. Regions by indicators of the user have no surfaces.
+/// Reads and writes the sides of surfaces in the modes of elements, and lists the modes that meet at a point. Regions
+/// by indicators of the user have no surfaces.
 class SurfaceStates {
  public:
   using Modes = ElementSides::Sides;
@@ -20,8 +21,15 @@ class SurfaceStates {
   /// Returns -1 or 1, or 0 where the surface is slid on.
   [[nodiscard]] int of(const Modes& modes, std::size_t surface) const;
   [[nodiscard]] Modes with(Modes modes, std::size_t surface, int state) const;
-  /// Gives the selections of an element their values on one side of a surface.
-  void select(std::size_t element, std::size_t surface, int state, mpcc::VectorView w) const;
+  /// Returns modes with which a motion may go on from a point, these first: they differ from them at one surface that
+  /// is reached (or in the regions of one part of which several are), then at two, and so on. No more than some
+  /// hundred: where they are more, those that differ at fewer.
+  /// @param lambda  all multipliers there
+  [[nodiscard]] std::vector<Modes> candidates(const std::vector<double>& lambda, const Modes& from) const;
+  /// Returns modes that slide on all surfaces that are reached.
+  [[nodiscard]] static Modes on_all(const std::vector<double>& lambda);
+  /// Returns whether a surface is reached that these modes are on one side of, or a region that they leave out.
+  [[nodiscard]] bool is_touched(const std::vector<double>& lambda, const Modes& modes) const;
   /// Returns whether both sides of the surface are the same point.
   /// @param lambda  all multipliers there
   [[nodiscard]] bool is_on(std::size_t surface, const std::vector<double>& lambda) const;
@@ -37,9 +45,18 @@ class SurfaceStates {
   [[nodiscard]] static bool is_step(const Surface& surface) { return surface.part->form == reformulation::Form::step; }
   /// Returns the region on the other side of the surface.
   [[nodiscard]] static int mirrored(const Surface& surface, int region);
+  /// Regions by indicators: pairs of a part.
+  struct Regions {
+    int first = 0, count = 0;
+  };
+  [[nodiscard]] std::vector<Modes> others(std::size_t surface, const std::vector<double>& lambda,
+                                          const Modes& from) const;
+  [[nodiscard]] static std::vector<Modes> others(const Regions& regions, const std::vector<double>& lambda,
+                                                 const Modes& from);
 
   const OcpStructure& made_;
   std::vector<Surface> surfaces_;
+  std::vector<Regions> regions_;
 };
 
 }  // namespace saltus::discretization
