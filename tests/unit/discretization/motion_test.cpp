@@ -101,6 +101,35 @@ TEST(Motion, OfManySurfacesReachedAtOnceFewMayBeLeft) {
   EXPECT_FALSE(pushed.problem->motion(pushed.problem->start()));
 }
 
+/// Its input comes to the threshold within the first interval; regions by indicators have no surfaces.
+TEST(Motion, GoesThroughTheThresholdOfAHysteresis) {
+  const auto stated = stated_problem(R"toml(
+[model]
+name = "threshold"
+[states]
+x = 0.2
+[controls]
+u = { lower = -1.5, upper = 1.5, initial = 1 }
+[dynamics]
+x = "u + 0.5*hy"
+[[hysteresis]]
+name = "hy"
+input = "x"
+on = 0.5
+off = 0.1
+[optimize]
+horizon = 1
+control_intervals = 2
+elements = 5
+running_cost = "u^2"
+)toml");
+  auto& problem = *stated.problem;
+  const auto motion = problem.motion(problem.start());
+  ASSERT_TRUE(motion);
+  expect_feasible(problem, motion->w);
+  EXPECT_NEAR(problem.read(motion->w).elements.back().back().end[0], 0.5 + 1.5 * 0.7, 1e-6);
+}
+
 /// Its branch has the motion for a solution: without a control nothing is cheaper.
 TEST(Motion, ABallThatBouncesBySimulationIsABranch) {
   const auto stated = stated_problem(bouncing_ball);

@@ -41,21 +41,27 @@ bool shorten(Stretches& stretches) {
   return true;
 }
 
-bool fit(Stretches& stretches, int elements) {
+/// Elements are halved where time goes on, and where they would be longer than the bound: a share of all of them.
+bool fit(Stretches& stretches, int elements, double bound) {
   join(stretches);
-  const auto count = [&] {
-    int sum = 0;
-    for (const auto& stretch : stretches) sum += stretch.elements;
-    return sum;
+  int count = 0;
+  double sum = 0.0;
+  for (const auto& stretch : stretches) sum += stretch.length;
+  const auto weight = [&](const Stretch& s) {
+    return s.stands && s.of_element() <= bound * sum ? 0.0 : s.of_element();
   };
-  while (count() > elements) {
+  const auto recount = [&] {
+    count = 0;
+    for (const auto& stretch : stretches) count += stretch.elements;
+    return count;
+  };
+  while (recount() > elements) {
     if (!shorten(stretches)) return false;
   }
-  while (count() < elements) {
-    const auto longest = std::max_element(stretches.begin(), stretches.end(), [](const auto& a, const auto& b) {
-      return a.stands == b.stands ? a.of_element() < b.of_element() : a.stands;
-    });
-    ++longest->elements;
+  for (; count < elements; ++count) {
+    ++std::max_element(stretches.begin(), stretches.end(), [&](const auto& a, const auto& b) {
+        return weight(a) < weight(b);
+      })->elements;
   }
   return true;
 }
@@ -129,7 +135,9 @@ std::optional<Realisation> realise(const OcpStructure& made, const ElementSides&
                                    ModeSequence sequence) {
   Writer writer(made, modes, w);
   for (auto& [k, stretches] : sequence) {
-    if (!fit(stretches, made.interval[k].elements)) return std::nullopt;
+    const auto& interval = made.interval[k];
+    const double bound = interval.lengths.empty() ? 1.0 : made.w_bounds.upper[interval.lengths.front()];
+    if (!fit(stretches, interval.elements, bound)) return std::nullopt;
     writer.write(k, stretches);
   }
   return writer.take();
