@@ -95,8 +95,8 @@ class ContactOptima(time_freezing_test.FrozenTest):
 
     @tool.not_sanitized
     def test_an_impact_at_the_end_of_an_interval_is_moved_or_told(self):
-        """A body that falls brakes by friction, best without control: two elements have no room for that. One interval gets
-        a third, unless no iterations are left for it."""
+        """A body that falls brakes by friction, best without control: two elements have no room for that. The interval of
+        the impact gets a third, and the one behind it may, unless no iterations are left for it."""
         fall, _ = BALL.replace("z = 1\nvx = 4", "z = 0.5\nvx = 3").replace("friction = 0.3", "friction = 0.4").split("[simulate]")
         braked = fall.replace("[mechanics]", "[controls]\nf = { lower = -30, upper = 30 }\n[mechanics]").replace(
             'potential = "10*z"', 'potential = "10*z"\nforce = { vz = "f" }') + """[time_freezing]
@@ -110,7 +110,7 @@ terminal_constraints = ["vx == 0"]
 """
         file = self.write("m.toml", braked)
         _, err = self.run_tool("optimize", file, "--out", "r.json", code=0)
-        self.assertIn("elements = [2, 2, 3, 2, 2, 2, 2, 2]", err)
+        self.assertRegex(err, r"elements = \[2, 2, 3, [23], 2, 2, 2, 2\]")
         result = json.loads((self.folder / "r.json").read_text())
         self.assertAlmostEqual(result["objective"], 0.0, delta=1e-12)
         messages = [step.get("message") for step in result["homotopy"]]

@@ -162,6 +162,7 @@ void add_removals(const SolvedBranch& branch, Moves& moves) {
         fewer[neighbour].elements += fewer[i].elements;
         fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
         add_move(branch, {{k, std::move(fewer)}}, "removal", std::nullopt, moves);
+        moves.back().appearing.clear();  // fewer stretches always fit, and nothing appears
       }
     }
   }
