@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,8 +19,8 @@ using homotopy::Steering;
 constexpr int compared_iterations = 250;
 /// Relaxed objectives are compared where the paths begin, and here.
 constexpr double second_sigma = 1e-2;
-/// Relative difference of objectives of the same relaxed solution.
-constexpr double same_objective = 1e-3;
+/// Relative difference of points of the same relaxed solution.
+constexpr double same_point = 1e-2;
 constexpr double above_rounding = 1.01;
 
 /// Whether only values of functions depend on sigma: bounds stay while a loop runs. That of an elastic problem is a
@@ -60,9 +61,9 @@ class ComparedLoops {
     if (std::any_of(others.begin(), others.end(), cheaper)) compared_ = std::min(compared_, small());
     best_start_ = first.w;
     const int random_starts = run_.options.compared_starts.value_or(0);
-    // Many starts are worth more than a large first sigma.
-    if (random_starts > 0) sigmas_ = {sigmas_.back()};
     if (const PathEnd end = add(first); has_ended(end)) return end;
+    // Many starts are worth more than a second first sigma.
+    if (random_starts > 0) sigmas_ = {sigmas_.back()};
     for (const auto& other : others) {
       const bool is_compared = random_starts > 0 || candidates_.empty();
       if (!cheaper(other) && !(is_compared && is_defined(other.w))) continue;
@@ -128,12 +129,12 @@ class ComparedLoops {
   /// Always the path of the lowest objective, until none can lead to a better branch than the best one.
   PathEnd follow_best() {
     drop_twins();
-    if (!candidates_.empty()) best_start_ = candidates_.front().start;
+    if (!candidates_.empty()) best_start_ = candidates_[most_promising()].start;
     const int most = run_.solution.iterations + (run_.iteration_limit - run_.solution.iterations) / 3;
     PathEnd end = PathEnd::failed;
     while (!candidates_.empty() && !is_enough(run_) && !(best_ && run_.solution.iterations > most)) {
-      const auto next = std::min_element(candidates_.begin(), candidates_.end(), has_lower_objective);
-      if (best_ && next->objective >= best_->objective) break;
+      const auto next = candidates_.begin() + static_cast<std::ptrdiff_t>(most_promising());
+      if (best_ && next->objective >= best_->objective - Crossing::slack(best_->objective)) break;
       const PathEnd of_path = advance(*next);
       if (of_path == PathEnd::paused) {
         next->objective = next->path->objective();
@@ -150,19 +151,34 @@ class ComparedLoops {
       candidates_.erase(next);
     }
     if (!best_) return end;
-    run_.branch = std::move(best_);
+    // One that was refused, since its own relaxed objective is lower still, may be better than all that were accepted.
+    const bool is_refused_better = run_.refused && run_.refused->objective < best_->objective;
+    run_.branch = std::move(is_refused_better ? run_.refused : best_);
     return PathEnd::crossed_over;
   }
 
-  static bool has_lower_objective(const Candidate& a, const Candidate& b) { return a.objective < b.objective; }
+  /// The first of those whose objectives are the lowest: the given start comes before random ones.
+  [[nodiscard]] std::size_t most_promising() const {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const auto& candidate : candidates_) lowest = std::min(lowest, candidate.objective);
+    std::size_t k = 0;
+    while (!(candidates_[k].objective <= lowest + Crossing::slack(lowest)) && k + 1 < candidates_.size()) ++k;
+    return k;
+  }
 
   /// One of those that have come to the same solution is enough.
   void drop_twins() {
-    std::stable_sort(candidates_.begin(), candidates_.end(), has_lower_objective);
     const auto are_twins = [](const Candidate& a, const Candidate& b) {
-      return std::abs(a.objective - b.objective) <= same_objective * std::max(1.0, std::abs(a.objective));
+      if (std::abs(a.objective - b.objective) > Crossing::slack(a.objective)) return false;
+      const auto &of_a = a.path->last_solved()->w, &of_b = b.path->last_solved()->w;
+      return (of_a - of_b).max_abs() <= same_point * std::max(1.0, of_a.max_abs());
     };
-    candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), are_twins), candidates_.end());
+    std::vector<Candidate> kept;
+    for (auto& candidate : candidates_) {
+      const auto is_known = [&](const Candidate& other) { return are_twins(other, candidate); };
+      if (std::none_of(kept.begin(), kept.end(), is_known)) kept.push_back(std::move(candidate));
+    }
+    candidates_ = std::move(kept);
   }
 
   /// To the next sigma at which paths are compared. The last one goes on to its end.
