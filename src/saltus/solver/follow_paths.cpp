@@ -70,15 +70,16 @@ class ComparedLoops {
       const PathEnd end = add(beside(first, other.w, other.name));
       if (has_ended(end)) return end;
     }
-    const int before = run_.solution.iterations;
+    // The limit is that of one start.
+    const int limit = run_.iteration_limit, before = run_.solution.iterations;
+    run_.iteration_limit += random_starts * compared_iterations;
     for (int seed = 1; seed <= random_starts; ++seed) {
       const linalg::Vector w = start_of_seed(run_.problem, first.w, seed);
       if (!is_defined(w)) continue;
       const PathEnd end = add(beside(first, w, fmt::format("the random start of seed {}", seed)));
       if (has_ended(end)) return end;
     }
-    // The limit is that of one start.
-    run_.iteration_limit += run_.solution.iterations - before;
+    run_.iteration_limit = limit + run_.solution.iterations - before;
     return follow_best();
   }
 
