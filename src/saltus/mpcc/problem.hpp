@@ -70,7 +70,7 @@ struct BranchClosure {
 struct BranchMove {
   std::vector<ActiveSide> sides;
   linalg::Vector start;
-  /// Slope of the objective along the move, by the multipliers of the branch; nothing where they do not say it.
+  /// Change of the objective to first order, by the multipliers of the branch; nothing where they do not say it.
   std::optional<double> price{};
   std::vector<int> appearing{};  ///< variables that may not come back to 0 before the branch is known to be better
   std::string name{};            ///< what it does

@@ -17,11 +17,10 @@ using homotopy::Steering;
 
 /// Iterations of the first problem of a path that is compared with one to come: a hard one is not worth more.
 constexpr int compared_iterations = 250;
-/// Relaxed objectives are compared where the paths begin, and here.
+/// Relaxed objectives are compared where the paths begin, and at the first sigma that is not above this one.
 constexpr double second_sigma = 1e-2;
 /// Relative difference of points of the same relaxed solution.
 constexpr double same_point = 1e-2;
-constexpr double above_rounding = 1.01;
 
 /// Whether only values of functions depend on sigma: bounds stay while a loop runs. That of an elastic problem is a
 /// price.
@@ -185,7 +184,7 @@ class ComparedLoops {
   /// To the next sigma at which paths are compared. The last one goes on to its end.
   PathEnd advance(Candidate& candidate) {
     auto& path = *candidate.path;
-    const bool is_compared = candidates_.size() > 1 && path.last_solved()->sigma > above_rounding * second_sigma;
+    const bool is_compared = candidates_.size() > 1 && path.last_solved()->sigma > second_sigma;
     const double until = is_compared ? second_sigma : 0.0;
     const PathEnd end = path.loop(until);
     return end == PathEnd::failed && is_compared ? path.follow(until) : end;
