@@ -48,11 +48,11 @@ bool Crossing::cross(const RelaxedPoint& point) {
   run_.problem.functions(point.w, c);
   if (!is_worth_trying(point, c)) return point.sigma <= rounding * crossover_sigma && try_motion(point.w, &point.w);
   const auto sides = crossover::smaller_sides(run_.problem, run_.groups, c);
-  // The same sides have the same solution: what was refused for its objective needs no second solution, what was
-  // infeasible deserves one from much nearer only.
-  const bool is_refused = run_.refused && run_.refused->sides == sides;
-  same_refused_ = is_refused ? same_refused_ + 1 : 0;
-  if (is_refused) return accept_refused(point.w);
+  // The same sides have the same solution, whichever path leads to them: what was feasible needs no second one, what
+  // was infeasible deserves one from much nearer only.
+  const auto known = run_.known.find(sides);
+  same_refused_ = known != run_.known.end() ? same_refused_ + 1 : 0;
+  if (known != run_.known.end()) return accept_known(sides, known->second, point.w);
   if (sides == infeasible_sides_ && !point.is_last && point.sigma > retry_factor * infeasible_sigma_) return false;
   return solve(point, sides);
 }
@@ -88,7 +88,8 @@ bool Crossing::try_motion(mpcc::ConstVectorView controls, const linalg::Vector* 
 }
 
 bool Crossing::take(crossover::Branch branch, const linalg::Vector* relaxed) {
-  if (relaxed != nullptr && is_good(branch, *relaxed)) {
+  run_.known[branch.sides] = branch.objective;
+  if (relaxed != nullptr && is_good(branch.objective, *relaxed)) {
     run_.branch = std::move(branch);
     return true;
   }
@@ -99,13 +100,15 @@ bool Crossing::take(crossover::Branch branch, const linalg::Vector* relaxed) {
   return false;
 }
 
-bool Crossing::is_good(const crossover::Branch& branch, const linalg::Vector& w) {
+bool Crossing::is_good(double objective, const linalg::Vector& w) const {
   const double relaxed = run_.problem.objective(w);
-  return branch.objective <= relaxed + slack(relaxed);
+  return objective <= relaxed + slack(relaxed);
 }
 
-bool Crossing::accept_refused(const linalg::Vector& w) {
-  if (!is_good(*run_.refused, w)) return false;
+bool Crossing::accept_known(const std::vector<mpcc::ActiveSide>& sides, double objective, const linalg::Vector& w) {
+  refused_objective_ = objective;
+  if (!is_good(objective, w)) return false;
+  if (!run_.refused || run_.refused->sides != sides) return true;
   run_.branch = std::move(run_.refused);
   run_.refused.reset();
   return true;

@@ -21,25 +21,28 @@ class Crossing {
  public:
   explicit Crossing(Run& run) : run_(run) {}
 
-  /// True if the branch is good enough: run.branch is it then. Else it is run.refused, if it is feasible.
+  /// True if the branch is good enough: run.branch is it then, unless another path has found it. Else it is
+  /// run.refused, if it is feasible and the best of these.
   bool cross(const RelaxedPoint& point);
   /// Tries the branch of the motion of controls in the same way.
   /// @param relaxed  point that it is compared with; null: there is none, and it is only kept as run.refused
   bool try_motion(mpcc::ConstVectorView controls, const linalg::Vector* relaxed);
-  /// Returns how many points in a row had the sides of run.refused.
+  /// Returns how many points in a row had sides whose branch was refused.
   [[nodiscard]] int same_refused() const { return same_refused_; }
+  [[nodiscard]] double refused_objective() const { return refused_objective_; }  ///< of that branch
   [[nodiscard]] static double slack(double objective);  ///< how much worse than the relaxed point a branch may be
 
  private:
   [[nodiscard]] bool is_worth_trying(const RelaxedPoint& point, const linalg::Vector& c) const;
   [[nodiscard]] bool is_solved(const crossover::Branch& branch, const linalg::Vector& w) const;
   bool take(crossover::Branch branch, const linalg::Vector* relaxed);
-  [[nodiscard]] bool is_good(const crossover::Branch& branch, const linalg::Vector& w);
-  bool accept_refused(const linalg::Vector& w);
+  [[nodiscard]] bool is_good(double objective, const linalg::Vector& w) const;
+  bool accept_known(const std::vector<mpcc::ActiveSide>& sides, double objective, const linalg::Vector& w);
   bool solve(const RelaxedPoint& point, const std::vector<mpcc::ActiveSide>& sides);
 
   Run& run_;
   int same_refused_ = 0;
+  double refused_objective_ = 0.0;
   std::optional<std::vector<mpcc::ActiveSide>> infeasible_sides_;
   double infeasible_sigma_ = 0.0;
 };

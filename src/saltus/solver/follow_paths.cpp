@@ -17,7 +17,7 @@ using homotopy::Steering;
 
 /// Iterations of the first problem of a path that is compared with one to come: a hard one is not worth more.
 constexpr int compared_iterations = 250;
-/// Relaxed objectives are compared where the paths begin, and at the first sigma that is not above this one.
+/// Relaxed objectives are compared where the paths begin, and those of many at the first sigma that is not above this.
 constexpr double second_sigma = 1e-2;
 /// Relative difference of points of the same relaxed solution.
 constexpr double same_point = 1e-2;
@@ -181,10 +181,11 @@ class ComparedLoops {
     candidates_ = std::move(kept);
   }
 
-  /// To the next sigma at which paths are compared. The last one goes on to its end.
+  /// To the next sigma at which paths are compared, else to its end.
   PathEnd advance(Candidate& candidate) {
     auto& path = *candidate.path;
-    const bool is_compared = candidates_.size() > 1 && path.last_solved()->sigma > second_sigma;
+    const bool has_many = run_.options.compared_starts.value_or(0) > 0;
+    const bool is_compared = has_many && candidates_.size() > 1 && path.last_solved()->sigma > second_sigma;
     const double until = is_compared ? second_sigma : 0.0;
     const PathEnd end = path.loop(until);
     return end == PathEnd::failed && is_compared ? path.follow(until) : end;

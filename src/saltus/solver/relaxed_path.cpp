@@ -136,7 +136,7 @@ double RelaxedPath::infeasibility_of(const linalg::Vector& w) {
 bool RelaxedPath::has_settled() const {
   if (crossing_.same_refused() < settled_problems) return false;
   const double rise = std::abs(objective_ - last_objective_);
-  return objective_ + 2.0 * rise + Crossing::slack(objective_) < run_.refused->objective;
+  return objective_ + 2.0 * rise + Crossing::slack(objective_) < crossing_.refused_objective();
 }
 
 /// Where no branch was accepted, and the relaxed point itself is a solution but for a digit or two.

@@ -1,6 +1,7 @@
 // What the parts of one solution share: limits, log, and the branch that has been found.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -52,6 +53,7 @@ class Run {
   RelaxedState relaxed;                      ///< the last relaxed problem that left a point
   std::optional<crossover::Branch> branch;   ///< the best one accepted
   std::optional<crossover::Branch> refused;  ///< feasible, but its objective was too far above the relaxed one
+  std::map<std::vector<mpcc::ActiveSide>, double> known;  ///< objectives of feasible branches of relaxed points
   std::optional<result::Termination> stopped;
   std::string failure;         ///< why the last relaxed problem failed
   bool is_diverging = false;   ///< it failed since its iterates grow without bounds
