@@ -74,6 +74,7 @@ struct BranchMove {
   std::optional<double> price{};
   std::vector<int> appearing{};  ///< variables that may not come back to 0 before the branch is known to be better
   std::string name{};            ///< what it does
+  bool is_simpler = false;       ///< it leaves out variables that are 0: the same objective is as good
 };
 
 /// Holds a point to begin at.

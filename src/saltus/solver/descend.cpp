@@ -150,12 +150,11 @@ class Descent {
     }
     // From another start it may get there.
     if (next.report.termination == Termination::iteration_limit) visited_.erase(sides);
-    // What only leaves out variables that are 0 is worth the same objective: multipliers that are left say more.
-    const bool is_simpler = !move.name.empty() && !move.price && appearing.empty();
-    const bool is_as_good = is_simpler && is_equal(branch().objective, next.objective);
+    // Multipliers that are left say more.
+    const bool is_as_good = move.is_simpler && is_equal(branch().objective, next.objective);
     if (!next.is_feasible(tolerance()) || !(is_as_good || falls(branch().objective, next.objective))) return false;
     // A certified point is not given up for digits of its objective.
-    if (is_certified() && !is_simpler) {
+    if (is_certified() && !move.is_simpler) {
       const double least = std::max(worth_leaving * std::abs(branch().objective), tolerance());
       if (branch().objective - next.objective < least) return false;
       certified_ = {std::move(branch()), run_.solution.certificate};

@@ -139,7 +139,8 @@ bool add_move(const SolvedBranch& branch, const ModeSequence& sequence, const ch
   const auto& [made, modes, w, multipliers] = branch;
   auto realised = realise(made, modes, w, sequence);
   if (!realised) return false;
-  mpcc::BranchMove move{std::move(realised->sides), std::move(realised->w), price, {}, name};
+  mpcc::BranchMove move{
+      .sides = std::move(realised->sides), .start = std::move(realised->w), .price = price, .name = name};
   const ElementSides changed(made, move.sides);
   for (std::size_t e = 0; e < made.element.size(); ++e) {
     const int h = made.element[e].length;
@@ -161,8 +162,12 @@ void add_removals(const SolvedBranch& branch, Moves& moves) {
         Stretches fewer = stretches;
         fewer[neighbour].elements += fewer[i].elements;
         fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
-        add_move(branch, {{k, std::move(fewer)}}, "removal", std::nullopt, moves);
-        moves.back().appearing.clear();  // fewer stretches always fit, and nothing appears
+        auto realised = realise(branch.made, branch.modes, branch.w, {{k, std::move(fewer)}});
+        if (!realised) continue;
+        moves.push_back({.sides = std::move(realised->sides),
+                         .start = std::move(realised->w),
+                         .name = "removal",
+                         .is_simpler = true});
       }
     }
   }
