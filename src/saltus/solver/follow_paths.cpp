@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "saltus/solver/relaxed_path_internal.hpp"
+#include "saltus/solver/exploration_internal.hpp"
 
 namespace saltus::solver {
 namespace {
@@ -61,24 +61,15 @@ class ComparedLoops {
     best_start_ = first.w;
     const int random_starts = run_.options.compared_starts.value_or(0);
     if (const PathEnd end = add(first); has_ended(end)) return end;
-    // Many starts are worth more than a second first sigma.
-    if (random_starts > 0) sigmas_ = {sigmas_.back()};
+    if (random_starts > 0) {
+      add_all(starts_beside(first, others, random_starts));
+      return follow_best();
+    }
     for (const auto& other : others) {
-      const bool is_compared = random_starts > 0 || candidates_.empty();
-      if (!cheaper(other) && !(is_compared && is_defined(other.w))) continue;
+      if (!cheaper(other) && !(candidates_.empty() && is_defined(other.w))) continue;
       const PathEnd end = add(beside(first, other.w, other.name));
       if (has_ended(end)) return end;
     }
-    // The limit is that of one start.
-    const int limit = run_.iteration_limit, before = run_.solution.iterations;
-    run_.iteration_limit += random_starts * compared_iterations;
-    for (int seed = 1; seed <= random_starts; ++seed) {
-      const linalg::Vector w = start_of_seed(run_.problem, first.w, seed);
-      if (!is_defined(w)) continue;
-      const PathEnd end = add(beside(first, w, fmt::format("the random start of seed {}", seed)));
-      if (has_ended(end)) return end;
-    }
-    run_.iteration_limit = limit + run_.solution.iterations - before;
     return follow_best();
   }
 
@@ -124,6 +115,33 @@ class ComparedLoops {
       if (end == PathEnd::paused) candidates_.push_back({std::move(path), objective, attempt.w});
     }
     return PathEnd::failed;
+  }
+
+  /// From the small sigma only: many starts are worth more than a second one.
+  [[nodiscard]] std::vector<Attempt> starts_beside(const Attempt& first, const std::vector<mpcc::NamedStart>& others,
+                                                   int random_starts) const {
+    std::vector<Attempt> starts;
+    const auto add_start = [&](const linalg::Vector& w, const std::string& name) {
+      if (!is_defined(w)) return;
+      starts.push_back(beside(first, w, name));
+      starts.back().sigma_initial = sigmas_.back();
+    };
+    for (const auto& other : others) add_start(other.w, other.name);
+    for (int seed = 1; seed <= random_starts; ++seed) {
+      add_start(start_of_seed(run_.problem, first.w, seed), fmt::format("the random start of seed {}", seed));
+    }
+    return starts;
+  }
+
+  void add_all(const std::vector<Attempt>& starts) {
+    auto explored = explore(run_, starts, compared_);
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      auto& [end, progress] = explored[i];
+      if (end != PathEnd::paused) continue;
+      const double objective = progress.objective;
+      auto path = std::make_unique<RelaxedPath>(run_, starts[i], std::move(progress));
+      candidates_.push_back({std::move(path), objective, starts[i].w});
+    }
   }
 
   /// Always the path of the lowest objective, until none can lead to a better branch than the best one.

@@ -20,15 +20,24 @@ constexpr int longest_barrier = 100;
 
 }  // namespace
 
-RelaxedPath::RelaxedPath(Run& run, Attempt attempt)
-    : run_(run), attempt_(std::move(attempt)), crossing_(run), w_(attempt_.w) {
-  state_.problem = std::make_unique<homotopy::RelaxedProblem>(run.problem, run.options.relaxation, attempt_.steering);
-  state_.point.w = w_;
-  infeasibility_ = infeasibility_of(w_);
+RelaxedPath::RelaxedPath(Run& run, Attempt attempt) : RelaxedPath(run, std::move(attempt), PathProgress{}) {
+  at_.w = at_.point.w = attempt_.w;
+  at_.infeasibility = infeasibility_of(at_.w);
+}
+
+RelaxedPath::RelaxedPath(Run& run, Attempt attempt, PathProgress progress)
+    : run_(run),
+      attempt_(std::move(attempt)),
+      crossing_(run),
+      relaxed_(std::make_unique<homotopy::RelaxedProblem>(run.problem, run.options.relaxation, attempt_.steering)),
+      at_(std::move(progress)) {
+  if (!at_.level) return;
+  relaxed_->set_sigma(at_.sigma);
+  attempt_.name.clear();  // it is in the record
 }
 
 PathEnd RelaxedPath::follow(double until) {
-  return follow_from(level_ ? run_.schedule.next(level_->sigma) : attempt_.sigma_initial, until);
+  return follow_from(at_.level ? run_.schedule.next(at_.level->sigma) : attempt_.sigma_initial, until);
 }
 
 PathEnd RelaxedPath::follow_from(double sigma, double until) {
@@ -47,31 +56,31 @@ PathEnd RelaxedPath::follow_from(double sigma, double until) {
 }
 
 PathEnd RelaxedPath::loop(double until) {
-  if (!level_) {
+  if (!at_.level) {
     const bool is_solved =
         solve(attempt_.sigma_initial, homotopy::first_tolerance(attempt_.sigma_initial), attempt_.iteration_limit);
     if (run_.is_over()) return PathEnd::stopped;
     // The next problems of the loop go on from a feasible point as they would within one problem.
-    const bool is_usable = has_point_ && state_.report.termination == Termination::iteration_limit;
+    const bool is_usable = at_.has_point && at_.report.termination == Termination::iteration_limit;
     if (!is_solved && !is_usable) return PathEnd::failed;
     set_level({.sigma = attempt_.sigma_initial, .mu = 0.0});
     if (attempt_.sigma_initial <= until) return PathEnd::paused;
   }
-  if (!homotopy::next_level(run_.schedule, *level_)) return follow();
+  if (!homotopy::next_level(run_.schedule, *at_.level)) return follow();
   is_in_loop_ = true;
   const PathEnd end = run_loop(until);
   if (end != PathEnd::failed || run_.is_over()) return run_.is_over() ? PathEnd::stopped : end;
   // What is left undecided at the last relaxed problem that was solved may not matter.
   const bool may_cross = run_.options.crossover && until == 0.0;
-  if (may_cross && crossing_.cross({w_, level_->sigma, /*is_of_loop=*/false, /*is_last=*/false})) {
+  if (may_cross && crossing_.cross({at_.w, at_.level->sigma, /*is_of_loop=*/false, /*is_last=*/false})) {
     return PathEnd::crossed_over;
   }
   return until == 0.0 ? follow() : PathEnd::failed;
 }
 
 PathEnd RelaxedPath::run_loop(double until) {
-  homotopy::Level level = *homotopy::next_level(run_.schedule, *level_);
-  NlpPoint point = state_.point;
+  homotopy::Level level = *homotopy::next_level(run_.schedule, *at_.level);
+  NlpPoint point = at_.point;
   move_to(level.sigma);
   std::optional<PathEnd> end;
   int counted = 0;
@@ -96,7 +105,7 @@ PathEnd RelaxedPath::run_loop(double until) {
     return NextBarrier{.mu = level.mu, .is_changed = true};
   };
   const NlpOptions options = run_.nlp_options(run_.iteration_limit);
-  NlpReport report = run_.nlp.follow(*state_.problem, point, options, level.mu, longest_barrier, next);
+  NlpReport report = run_.nlp.follow(*relaxed_, point, options, level.mu, longest_barrier, next);
   run_.count_evaluation(std::exchange(report.evaluation_seconds, 0.0));
   is_in_loop_ = false;
   if (end) return *end;
@@ -111,16 +120,16 @@ PathEnd RelaxedPath::run_loop(double until) {
 /// Whether the path ends with the problem that was solved last; that many have failed in a row, 0: it was solved.
 std::optional<PathEnd> RelaxedPath::end_at(bool is_last, int failures) {
   const bool is_solved = failures == 0;
-  const double sigma = state_.sigma;
+  const double sigma = at_.sigma;
   // A solver that fails near a solution fails for its last digits only.
-  const bool is_usable = is_solved || has_point_;
-  if (is_usable && run_.options.crossover && crossing_.cross({w_, sigma, is_in_loop_, is_last})) {
+  const bool is_usable = is_solved || at_.has_point;
+  if (is_usable && run_.options.crossover && crossing_.cross({at_.w, sigma, is_in_loop_, is_last})) {
     return PathEnd::crossed_over;
   }
   if (is_solved && has_settled()) return PathEnd::finished;
   // Problems of larger sigma, and those of the loop, are not solved as sharply.
   const bool is_sharp =
-      is_solved && !is_in_loop_ && sigma <= sharp_sigma && infeasibility_ <= 0.1 * run_.options.tolerance;
+      is_solved && !is_in_loop_ && sigma <= sharp_sigma && at_.infeasibility <= 0.1 * run_.options.tolerance;
   if (is_sharp && !run_.options.crossover) return PathEnd::finished;
   if (failures >= failures_that_end) return PathEnd::failed;
   if (is_last && !(is_solved && is_nearly_done())) return is_solved ? PathEnd::finished : PathEnd::failed;
@@ -135,61 +144,61 @@ double RelaxedPath::infeasibility_of(const linalg::Vector& w) {
 /// to it: its own elements have lengths that no branch has.
 bool RelaxedPath::has_settled() const {
   if (crossing_.same_refused() < settled_problems) return false;
-  const double rise = std::abs(objective_ - last_objective_);
-  return objective_ + 2.0 * rise + Crossing::slack(objective_) < crossing_.refused_objective();
+  const double rise = std::abs(at_.objective - at_.last_objective);
+  return at_.objective + 2.0 * rise + Crossing::slack(at_.objective) < crossing_.refused_objective();
 }
 
 /// Where no branch was accepted, and the relaxed point itself is a solution but for a digit or two.
 bool RelaxedPath::is_nearly_done() const {
   const double tolerance = run_.options.tolerance;
-  return run_.options.crossover && infeasibility_ > tolerance && infeasibility_ <= 100.0 * tolerance &&
-         state_.sigma > 1e-3 * run_.schedule.sigma_final;
+  return run_.options.crossover && at_.infeasibility > tolerance && at_.infeasibility <= 100.0 * tolerance &&
+         at_.sigma > 1e-3 * run_.schedule.sigma_final;
 }
 
 /// With the multipliers of the problem before, where they are wanted and there.
 NlpPoint RelaxedPath::start(NlpOptions& options) {
-  auto& relaxed = *state_.problem;
-  NlpPoint point{.w = relaxed.with_elastic_variables(w_), .y = {}, .z_lower = {}, .z_upper = {}};
+  auto& relaxed = *relaxed_;
+  NlpPoint point{.w = relaxed.with_elastic_variables(at_.w), .y = {}, .z_lower = {}, .z_upper = {}};
   if (run_.options.warm_start != homotopy::WarmStart::primal_dual) return point;
-  if (has_multipliers_) {
-    point.y = state_.point.y;
-    point.z_lower = state_.point.z_lower;
-    point.z_upper = state_.point.z_upper;
+  if (at_.has_multipliers) {
+    point.y = at_.point.y;
+    point.z_lower = at_.point.z_lower;
+    point.z_upper = at_.point.z_upper;
   } else if (attempt_.multipliers.rows.size() == run_.problem.constraints() &&
-             attempt_.multipliers.lower.size() == w_.size() && attempt_.multipliers.upper.size() == w_.size()) {
+             attempt_.multipliers.lower.size() == at_.w.size() && attempt_.multipliers.upper.size() == at_.w.size()) {
     point.y = linalg::Vector::zero(relaxed.constraints());
     point.y.head(run_.problem.constraints()) = attempt_.multipliers.rows;
     point.z_lower = point.z_upper = linalg::Vector::ones(relaxed.variables());
-    point.z_lower.head(w_.size()) = attempt_.multipliers.lower;
-    point.z_upper.head(w_.size()) = attempt_.multipliers.upper;
+    point.z_lower.head(at_.w.size()) = attempt_.multipliers.lower;
+    point.z_upper.head(at_.w.size()) = attempt_.multipliers.upper;
   } else {
     return point;
   }
   // Products of pairs are of the order of sigma, and so are those of bounds and their multipliers.
-  options.warm_barrier_mu = std::clamp(std::pow(state_.sigma, 1.2), 1e-9, 0.1);
+  options.warm_barrier_mu = std::clamp(std::pow(at_.sigma, 1.2), 1e-9, 0.1);
   options.warm_push = std::clamp(*options.warm_barrier_mu, 1e-9, 1e-5);
   return point;
 }
 
 void RelaxedPath::set_level(const homotopy::Level& level) {
-  level_ = level;
-  solved_ = {.w = w_, .sigma = level.sigma};
+  at_.level = level;
+  at_.solved = {.w = at_.w, .sigma = level.sigma};
 }
 
 /// Makes the functions those of the relaxed problem of this sigma, with the method's terms for a start at w.
 void RelaxedPath::move_to(double sigma) {
-  state_.sigma = run_.relaxed.sigma = sigma;
+  at_.sigma = run_.relaxed.sigma = sigma;
   started_ = run_.seconds();
   run_.problem.relaxed_by(std::min(1.0, sigma / run_.schedule.sigma_initial));
-  state_.problem->set_sigma(sigma);
-  run_.problem.with_method_terms(w_);
+  relaxed_->set_sigma(sigma);
+  run_.problem.with_method_terms(at_.w);
 }
 
 /// Makes them those of the problem itself.
 void RelaxedPath::move_back() {
   run_.problem.without_method_terms();
   run_.problem.relaxed_by(0.0);
-  state_.problem->set_sigma(state_.sigma);
+  relaxed_->set_sigma(at_.sigma);
 }
 
 /// Solves the problem of one sigma, to 1e-4 sigma if nothing else is wanted; false if it failed.
@@ -198,7 +207,7 @@ bool RelaxedPath::solve(double sigma, std::optional<double> tolerance, int itera
   NlpOptions options = run_.nlp_options(iteration_limit);
   options.tolerance = std::max(tolerance.value_or(std::min(1e-4 * sigma, 1e-6)), options.tolerance);
   NlpPoint point = start(options);
-  const NlpReport report = run_.nlp.solve(*state_.problem, point, options);
+  const NlpReport report = run_.nlp.solve(*relaxed_, point, options);
   move_back();
   const bool is_solved = take(point, report);
   if (is_solved) set_level({.sigma = sigma, .mu = 0.0});
@@ -207,29 +216,29 @@ bool RelaxedPath::solve(double sigma, std::optional<double> tolerance, int itera
 
 /// Keeps the point of a relaxed problem if it is no worse than the one before; false if it is none.
 bool RelaxedPath::take(const NlpPoint& point, const NlpReport& report) {
-  const linalg::Vector w = point.w.head(w_.size());
+  const linalg::Vector w = point.w.head(at_.w.size());
   const double violation = certificate::scaled_infeasibility(run_.problem, w);
   const double complementarity = certificate::complementarity(run_.problem, w);
   const double infeasibility = point.w.all_finite() && !report.diverging ? std::max(violation, complementarity) : NAN;
   const bool stands_still =
       report.termination == Termination::step_size_too_small && violation <= run_.options.tolerance;
   const bool is_solved = report.termination == Termination::completed || stands_still;
-  has_point_ = false;
-  if (is_solved || infeasibility <= infeasibility_) {
-    has_point_ = violation <= nearly_feasible;
-    w_ = w;
-    infeasibility_ = infeasibility;
-    has_multipliers_ = is_solved;
-    state_.point = point;
-    state_.report = report;
+  at_.has_point = false;
+  if (is_solved || infeasibility <= at_.infeasibility) {
+    at_.has_point = violation <= nearly_feasible;
+    at_.w = w;
+    at_.infeasibility = infeasibility;
+    at_.has_multipliers = is_solved;
+    at_.point = point;
+    at_.report = report;
   }
-  last_objective_ = objective_;
-  objective_ = run_.problem.objective(w_);
+  at_.last_objective = at_.objective;
+  at_.objective = run_.problem.objective(at_.w);
   run_.is_diverging = report.diverging;
   run_.is_infeasible = run_.is_infeasible || report.termination == Termination::infeasible;
   run_.failure = is_solved ? "" : report.message;
   result::HomotopyStep step;
-  step.sigma = state_.sigma;
+  step.sigma = at_.sigma;
   step.objective = run_.problem.objective(w);
   step.primal_infeasibility = violation;
   step.complementarity_residual = complementarity;

@@ -34,22 +34,38 @@ struct SolvedPoint {
   double sigma = 1.0;
 };
 
+/// Says how far a path has come. Another path goes on from it, on another copy of the problem, too.
+struct PathProgress {
+  NlpPoint point{};  ///< of the last relaxed problem, in its variables
+  NlpReport report{};
+  double sigma = 0.0;  ///< of that problem
+  linalg::Vector w;
+  double infeasibility = 0.0;
+  bool has_multipliers = false;
+  bool has_point = false;  ///< of the last relaxed problem, near enough to feasible ones for a branch
+  double objective = 0.0, last_objective = 0.0;  ///< of the last two relaxed points
+  std::optional<SolvedPoint> solved{};           ///< of the level
+  std::optional<homotopy::Level> level{};        ///< solved last
+};
+
 /// Follows the relaxed problems for falling sigma, and tries to cross over behind each. What it comes to is
 /// run.relaxed only where it is shown.
 class RelaxedPath {
  public:
   RelaxedPath(Run& run, Attempt attempt);
+  RelaxedPath(Run& run, Attempt attempt, PathProgress progress);
 
   /// Solves one problem after the other, each with barriers of the solver's choice, down to sigma = `until`.
   PathEnd follow(double until = 0.0);
   /// Solves the first problem so, those behind it in one loop of the solver, down to sigma = `until`. May be called
   /// again, to go on. A problem that the loop cannot solve is solved, like those behind it, by itself.
   PathEnd loop(double until = 0.0);
-  void show() { run_.relaxed = std::move(state_); }
+  void show() { run_.relaxed = {std::move(relaxed_), std::move(at_.point), std::move(at_.report), at_.sigma}; }
 
   /// Null before the first one.
-  [[nodiscard]] const std::optional<SolvedPoint>& last_solved() const { return solved_; }
-  [[nodiscard]] double objective() const { return objective_; }  ///< of the last point, the user's
+  [[nodiscard]] const std::optional<SolvedPoint>& last_solved() const { return at_.solved; }
+  [[nodiscard]] double objective() const { return at_.objective; }  ///< of the last point, the user's
+  [[nodiscard]] const PathProgress& progress() const { return at_; }
 
  private:
   [[nodiscard]] std::optional<PathEnd> end_at(bool is_last, int failures);
@@ -68,15 +84,9 @@ class RelaxedPath {
   Run& run_;
   Attempt attempt_;
   Crossing crossing_;
-  RelaxedState state_;
-  linalg::Vector w_;
-  double infeasibility_ = 0.0;
-  bool has_multipliers_ = false;
-  bool has_point_ = false;  ///< of the last relaxed problem, near enough to feasible ones for a branch
-  double objective_ = 0.0, last_objective_ = 0.0;  ///< of the last two relaxed points
-  std::optional<SolvedPoint> solved_;              ///< of level_
-  std::optional<homotopy::Level> level_;           ///< solved last
-  double started_ = 0.0;                           ///< seconds of the run at the last move
+  std::unique_ptr<homotopy::RelaxedProblem> relaxed_;
+  PathProgress at_;
+  double started_ = 0.0;  ///< seconds of the run at the last move
   bool is_in_loop_ = false;
 };
 

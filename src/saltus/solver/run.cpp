@@ -63,6 +63,16 @@ void Run::record(result::HomotopyStep step, const NlpReport* report, double star
   if (options.on_step) options.on_step(solution.homotopy.back());
 }
 
+void Run::add(const Solution& done) {
+  solution.iterations += done.iterations;
+  solution.evaluation_seconds += done.evaluation_seconds;
+  solution.solver_seconds += done.solver_seconds;
+  for (const auto& step : done.homotopy) {
+    solution.homotopy.push_back(step);
+    if (options.on_step) options.on_step(step);
+  }
+}
+
 crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, int most_iterations,
                                     std::string message, std::optional<double> cutoff, const std::vector<int>& kept) {
   const double started = seconds();

@@ -31,6 +31,8 @@ class Run {
   /// Returns the limits of the next problem. A relaxed one that needs more iterations is better off with another sigma.
   [[nodiscard]] NlpOptions nlp_options(int most_iterations = 500) const;
   void record(result::HomotopyStep step, const NlpReport* report, double started);
+  /// Adds what another run has done.
+  void add(const Solution& done);
   /// Seconds of a problem that is recorded in parts.
   void count_evaluation(double seconds) {
     solution.evaluation_seconds += seconds;
@@ -47,7 +49,7 @@ class Run {
   LpccSolver& lpcc;
   const SolveOptions& options;
   homotopy::Schedule schedule;
-  int iteration_limit;  ///< that of the options, and behind it what the comparison of random starts has needed
+  int iteration_limit;  ///< that of the options, and what starts that are compared have needed
   std::vector<std::vector<int>> groups;
   Solution solution;
   RelaxedState relaxed;                      ///< the last relaxed problem that left a point
@@ -63,6 +65,8 @@ class Run {
   Stopwatch stopwatch_;
 };
 
+/// Returns the time limit of what begins after so many seconds.
+[[nodiscard]] std::optional<double> time_left(const SolveOptions& options, double seconds);
 /// Solves from one start, whatever SolveOptions::starts.
 [[nodiscard]] Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
                                             const SolveOptions& options, const std::optional<Start>& start);

@@ -1,12 +1,18 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/solver/run_internal.hpp"
+#include "saltus/solver/workplaces_internal.hpp"
 
 namespace saltus::solver {
 namespace {
@@ -16,8 +22,6 @@ using result::Termination;
 constexpr int most_starts = 1000;
 /// How far the way from the given start to a random point is gone.
 constexpr double way = 0.5;
-/// A time limit is > 0.
-constexpr double least_seconds = 1e-3;
 
 double worst_violation(const Solution& solution) {
   const auto& of = solution.certificate;
@@ -35,7 +39,43 @@ bool ends_all(const Solution& solution) {
   return solution.termination == Termination::time_limit || solution.termination == Termination::stopped_by_user;
 }
 
+/// What one start has come to; nothing where others have ended all before.
+struct Tried {
+  std::optional<Expected<Solution>> found;
+  double seconds = 0.0;
+};
+
+Expected<Solution> best_of(std::vector<Tried> all) {
+  if (!*all.front().found) return std::move(*all.front().found);
+  std::vector<result::StartOutcome> outcomes;
+  int iterations = 0;
+  std::size_t taken = 0;
+  for (std::size_t seed = 0; seed < all.size(); ++seed) {
+    const auto& [found, seconds] = all[seed];
+    if (!found || !*found) continue;  // a function is not finite there, or there was no time
+    const Solution& solution = **found;
+    iterations += solution.iterations;
+    outcomes.push_back({.seed = static_cast<int>(seed),
+                        .termination = solution.termination,
+                        .objective = solution.objective,
+                        .infeasibility = worst_violation(solution),
+                        .iterations = solution.iterations,
+                        .seconds = seconds});
+    if (is_better(solution, **all[taken].found)) taken = seed;
+  }
+  for (auto& outcome : outcomes) outcome.is_taken = outcome.seed == static_cast<int>(taken);
+  Solution best = std::move(**all[taken].found);
+  best.starts = std::move(outcomes);
+  best.iterations = iterations;
+  return best;
+}
+
 }  // namespace
+
+std::optional<double> time_left(const SolveOptions& options, double seconds) {
+  constexpr double least = 1e-3;  // a time limit is > 0
+  return options.time_limit ? std::optional(std::max(*options.time_limit - seconds, least)) : std::nullopt;
+}
 
 linalg::Vector start_of_seed(const mpcc::Problem& problem, ConstVectorView w, int seed) {
   linalg::Vector moved = w;
@@ -62,37 +102,25 @@ Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpc
     return tl::unexpected(std::move(error));
   }
   if (options.starts == 1) return solve_from(problem, nlp, lpcc, options, start);
-  const Stopwatch stopwatch;
   const linalg::Vector w = start ? start->w : problem.start();
-  std::optional<Solution> best;
-  std::vector<result::StartOutcome> outcomes;
-  int iterations = 0, taken = 0;
-  for (int seed = 0; seed < options.starts; ++seed) {
+  std::vector<Tried> all(at(options.starts));
+  const Stopwatch stopwatch;
+  std::atomic<bool> is_over = false;
+  const auto from_seed = [&](int seed, const Place& place) {
+    if (is_over) return;
     SolveOptions one = options;
-    if (options.time_limit) one.time_limit = std::max(*options.time_limit - stopwatch.seconds(), least_seconds);
-    const double began = stopwatch.seconds();
+    one.time_limit = time_left(options, stopwatch.seconds());
+    // Other threads do not report.
+    if (&place.problem != &problem) one.on_step = [](const result::HomotopyStep&) {};
+    const Stopwatch own;
     const Start moved{.w = start_of_seed(problem, w, seed), .multipliers = {}};
-    auto found = solve_from(problem, nlp, lpcc, one, seed == 0 ? start : std::optional(moved));
-    if (!found && seed == 0) return found;
-    if (!found) continue;  // a function is not finite there
-    iterations += found->iterations;
-    outcomes.push_back({.seed = seed,
-                        .termination = found->termination,
-                        .objective = found->objective,
-                        .infeasibility = worst_violation(*found),
-                        .iterations = found->iterations,
-                        .seconds = stopwatch.seconds() - began});
-    const bool is_end = ends_all(*found);
-    if (!best || is_better(*found, *best)) {
-      best = std::move(*found);
-      taken = seed;
-    }
-    if (is_end) break;
-  }
-  for (auto& outcome : outcomes) outcome.is_taken = outcome.seed == taken;
-  best->starts = std::move(outcomes);
-  best->iterations = iterations;
-  return std::move(*best);
+    auto& tried = all[at(seed)];
+    tried.found = solve_from(place.problem, place.nlp, place.lpcc, one, seed == 0 ? start : std::optional(moved));
+    tried.seconds = own.seconds();
+    if (*tried.found && ends_all(**tried.found)) is_over = true;
+  };
+  share_out({problem, nlp, lpcc}, options, options.starts, from_seed);
+  return best_of(std::move(all));
 }
 
 }  // namespace saltus::solver

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,13 @@ enum class FirstProblem {
   branch,   ///< that of the sides of the start, which are right where it is a solution of a similar problem
 };
 
+/// Holds what one thread solves with.
+struct Workplace {
+  std::unique_ptr<mpcc::Problem> problem;
+  std::unique_ptr<NlpSolver> nlp;
+  std::unique_ptr<LpccSolver> lpcc;
+};
+
 /// Holds [optimize.mpcc] (docs/options.md).
 struct SolveOptions {
   Strategy strategy = Strategy::structured;
@@ -40,10 +48,13 @@ struct SolveOptions {
   /// Random starts by seeds 1, 2, ... of which the first relaxed problem alone is solved, and compared: the path of the
   /// lowest objective goes on. Nothing is 0.
   std::optional<int> compared_starts{};
+  int threads = 1;  ///< for starts; results do not depend on it
+  /// Makes a copy of the problem for another thread, with solvers of its own. Empty: there are no other threads.
+  std::function<std::optional<Workplace>()> make_workplace{};
   double tolerance = 1e-8;             ///< of the three residuals
   int iteration_limit = 3000;          ///< of all relaxed and branch problems of a start together
   std::optional<double> time_limit{};  ///< seconds
-  /// Ends everything at the next iteration of the solver (stopped_by_user).
+  /// Ends everything at the next iteration of the solver (stopped_by_user). Called by all threads.
   std::function<bool()> is_interrupted = [] { return false; };
   /// Called after every problem.
   std::function<void(const result::HomotopyStep&)> on_step = [](const result::HomotopyStep&) {};

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -101,6 +102,29 @@ TEST(ComparedStarts, RandomStartsFindTheOtherValley) {
   const auto is_random = [](const auto& step) { return step.message.starts_with("begins at the random start"); };
   EXPECT_EQ(std::count_if(alone->homotopy.begin(), alone->homotopy.end(), is_random), 0);
   EXPECT_EQ(std::count_if(compared->homotopy.begin(), compared->homotopy.end(), is_random), 4);
+}
+
+TEST(ComparedStarts, GiveTheSameInThreads) {
+  SolveOptions options;
+  options.compared_starts = 6;
+  const auto alone = solved(two_valleys(0.1, 0.1), std::nullopt, options);
+  options.threads = 3;
+  int made = 0;
+  options.make_workplace = [&]() -> std::optional<Workplace> {
+    ++made;
+    return Workplace{std::unique_ptr<mpcc::Problem>(new Begun(two_valleys(0.1, 0.1))),
+                     std::make_unique<adapters::IpoptSolver>(), std::make_unique<adapters::HighsLpcc>()};
+  };
+  const auto in_threads = solved(two_valleys(0.1, 0.1), std::nullopt, options);
+  ASSERT_TRUE(alone.has_value() && in_threads.has_value());
+  EXPECT_EQ(made, 2);
+  EXPECT_EQ(in_threads->objective, alone->objective);
+  EXPECT_EQ(in_threads->iterations, alone->iterations);
+  ASSERT_EQ(in_threads->homotopy.size(), alone->homotopy.size());
+  for (std::size_t i = 0; i < alone->homotopy.size(); ++i) {
+    EXPECT_EQ(in_threads->homotopy[i].message, alone->homotopy[i].message);
+    EXPECT_EQ(in_threads->homotopy[i].objective, alone->homotopy[i].objective);
+  }
 }
 
 /// The limit is that of one start: random ones need no share of it.

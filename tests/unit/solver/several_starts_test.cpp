@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <limits>
+#include <memory>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -23,13 +25,30 @@ mpcc::PolynomialProblem two_valleys() {
   return mpcc::PolynomialProblem(statement);
 }
 
-Expected<Solution> solved_from(int starts) {
+Expected<Solution> solved_from(int starts, int threads = 1) {
   auto problem = two_valleys();
   adapters::IpoptSolver ipopt;
   adapters::HighsLpcc highs;
   SolveOptions options;
   options.starts = starts;
+  options.threads = threads;
+  options.make_workplace = []() -> std::optional<Workplace> {
+    return Workplace{std::unique_ptr<mpcc::Problem>(new mpcc::PolynomialProblem(two_valleys())),
+                     std::make_unique<adapters::IpoptSolver>(), std::make_unique<adapters::HighsLpcc>()};
+  };
   return solve(problem, ipopt, highs, options, Start{.w = linalg::Vector{1.0}, .multipliers = {}});
+}
+
+TEST(SeveralStarts, GiveTheSameInThreads) {
+  const auto alone = solved_from(8), in_threads = solved_from(8, 3);
+  ASSERT_TRUE(alone.has_value() && in_threads.has_value());
+  EXPECT_EQ(in_threads->objective, alone->objective);
+  EXPECT_EQ(in_threads->iterations, alone->iterations);
+  ASSERT_EQ(in_threads->starts.size(), alone->starts.size());
+  for (std::size_t i = 0; i < alone->starts.size(); ++i) {
+    EXPECT_EQ(in_threads->starts[i].objective, alone->starts[i].objective);
+    EXPECT_EQ(in_threads->starts[i].is_taken, alone->starts[i].is_taken);
+  }
 }
 
 TEST(SeveralStarts, FindTheLowerValley) {

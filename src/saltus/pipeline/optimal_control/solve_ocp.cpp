@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
@@ -34,6 +36,15 @@ std::optional<solver::Start> same_structure(const discretization::OcpProblem& pr
   start.multipliers.lower = vector_of(from.dual_lower);
   start.multipliers.upper = vector_of(from.dual_upper);
   return start;
+}
+
+/// The same problem in a kernel of its own: one thread at a time uses a kernel.
+std::optional<solver::Workplace> another_place(const model::Ocp& ocp, const OptimizeOptions& options) {
+  auto stated = state_problem(ocp, options);
+  if (!stated) return std::nullopt;
+  return solver::Workplace{std::move(stated->problem),
+                           std::make_unique<adapters::IpoptSolver>(adapters::linear_solver_of(options.mpcc.strategy)),
+                           std::make_unique<adapters::HighsLpcc>()};
 }
 
 /// The path of both, and the point of the second one.
@@ -107,6 +118,8 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
   solver::SolveOptions wanted = options.mpcc;
   wanted.is_interrupted = observers.is_interrupted;
   wanted.on_step = observers.on_step;
+  wanted.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  wanted.make_workplace = [&] { return another_place(ocp, options); };
   const bool has_start = options.start_from != nullptr;
   if (!wanted.compared_starts && ocp.physical && !has_start) wanted.compared_starts = compared_starts_with_contacts;
   adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));

@@ -1,0 +1,58 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "saltus/base/at.hpp"
+#include "saltus/solver/exploration_internal.hpp"
+#include "saltus/solver/workplaces_internal.hpp"
+
+namespace saltus::solver {
+namespace {
+
+/// What one start has done.
+struct Done {
+  Explored explored;
+  Solution solution;
+  std::optional<result::Termination> stopped;
+  bool is_infeasible = false;
+};
+
+SolveOptions options_of_one(const Run& run) {
+  SolveOptions options = run.options;
+  options.on_step = [](const result::HomotopyStep&) {};
+  options.time_limit = time_left(run.options, run.seconds());
+  return options;
+}
+
+Done one(const Place& place, const SolveOptions& options, const Attempt& start, double until) {
+  Run run(place.problem, place.nlp, place.lpcc, options);
+  place.problem.without_method_terms();
+  RelaxedPath path(run, start);
+  Done done;
+  done.explored.end = path.loop(until);
+  done.explored.progress = path.progress();
+  done.solution = std::move(run.solution);
+  done.stopped = run.stopped;
+  done.is_infeasible = run.is_infeasible;
+  return done;
+}
+
+}  // namespace
+
+std::vector<Explored> explore(Run& run, const std::vector<Attempt>& starts, double until) {
+  std::vector<Done> all(starts.size());
+  const SolveOptions options = options_of_one(run);
+  const auto task = [&](int i, const Place& place) { all[at(i)] = one(place, options, starts[at(i)], until); };
+  share_out({run.problem, run.nlp, run.lpcc}, options, static_cast<int>(starts.size()), task);
+  std::vector<Explored> explored;
+  for (auto& [end, solution, stopped, is_infeasible] : all) {
+    run.iteration_limit += solution.iterations;
+    run.add(solution);
+    run.is_infeasible = run.is_infeasible || is_infeasible;
+    if (stopped == result::Termination::stopped_by_user) run.stopped = stopped;
+    explored.push_back(std::move(end));
+  }
+  return explored;
+}
+
+}  // namespace saltus::solver
