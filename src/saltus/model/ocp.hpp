@@ -38,7 +38,7 @@ struct Ocp {
   std::vector<double> parameter_lower, parameter_upper;  ///< of free ones; else the value
   /// What initial(q) is in terminal costs and constraints: parameters that no result shows.
   std::vector<OcpInitialValue> initial_values;
-  std::vector<OcpGuess> guess;
+  OcpGuesses guess;
   std::optional<OcpClock> clock;
   /// With contacts or hysteresis `system` is frozen, and this is what it stands for, with the same outputs: the states
   /// that a result shows come first.

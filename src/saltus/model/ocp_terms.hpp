@@ -1,6 +1,7 @@
 // What an optimal control problem minimises and constrains, by numbers of the outputs of its system.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "saltus/model/ocp_description.hpp"
 
 namespace saltus::model {
+
+struct System;
 
 /// States lower <= y_output <= upper, y the outputs of Ocp::system; one of both may be infinite.
 struct OcpConstraint {
@@ -43,6 +46,12 @@ struct OcpGuess {
   Kind kind = Kind::state;
   int index = 0;
   int output = 0;  ///< of t and p
+};
+
+struct OcpGuesses {
+  std::vector<OcpGuess> list;
+  /// Whose outputs they are, since their kinks are no switches of the problem; null: the problem's system.
+  std::shared_ptr<const System> system;
 };
 
 struct OcpHorizon {

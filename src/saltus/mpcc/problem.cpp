@@ -22,6 +22,18 @@ BranchClosure Problem::close_branch(const std::vector<ActiveSide>& sides) const 
   return {};
 }
 
+std::vector<ActiveSide> Problem::freed(const std::vector<ActiveSide>& sides, ConstVectorView w, double paid) {
+  linalg::Vector c(rows());
+  functions(w, c);
+  std::vector<ActiveSide> changed = sides;
+  for (std::size_t pair = 0; pair < sides.size(); ++pair) {
+    const bool is_G = sides[pair] == ActiveSide::G;
+    const double value = c[constraints() + static_cast<int>(pair) + (is_G ? 0 : pairs())];
+    if (value > paid) changed[pair] = is_G ? ActiveSide::H : ActiveSide::G;
+  }
+  return changed;
+}
+
 std::vector<BranchMove> Problem::neighbours(const std::vector<ActiveSide>& sides, ConstVectorView w,
                                             const Multipliers& multipliers) {
   static_cast<void>(sides);

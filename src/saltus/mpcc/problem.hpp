@@ -155,6 +155,10 @@ class Problem {
   /// Gives variables that only the rows of a method ask for the values that these rows have at w, a solution of a
   /// branch problem. By default there are none.
   virtual void complete(VectorView w) { static_cast<void>(w); }
+  /// Returns sides of which none is zero that may not be: those of a branch, but where sides that are zero there are
+  /// more than `paid` at w. By default these are not zero, and the others of their pairs are.
+  [[nodiscard]] virtual std::vector<ActiveSide> freed(const std::vector<ActiveSide>& sides, ConstVectorView w,
+                                                      double paid);
   /// Returns other sides beside a solution of a branch, with which the objective may fall though no pair is biactive:
   /// what a closure keeps apart (an element of length zero has the modes of either neighbour). By default none.
   /// @param multipliers  of the problem at w, of which those of pairs bear what their sides are held by

@@ -116,10 +116,10 @@ class Descent {
     of.stationarity = certificate::stationarity(run_.problem, branch().w, multipliers, &branch().problem->reduction());
     of.biactive = static_cast<int>(std::count(states_.biactive.begin(), states_.biactive.end(), true));
     of.stationarity_type = certificate::stationarity_type(multipliers, states_.biactive, tolerance());
-    // Without a choice there is no other branch at this point.
-    const bool has_choice = contains(states_.is_open, true);
-    const bool is_decided = of.stationarity_type == StationarityType::S || !has_choice;
-    if (is_decided && of.stationarity <= tolerance()) of.b_stationary = true;
+    // Without a choice there is no other branch at this point. Where no choice has a negative multiplier, those of the
+    // branch are multipliers of all others, too.
+    const auto of_choices = certificate::stationarity_type(multipliers, states_.is_open, tolerance());
+    if (of_choices == StationarityType::S && of.stationarity <= tolerance()) of.b_stationary = true;
   }
 
   /// Whether it is where it began, and may need more iterations to leave.

@@ -29,6 +29,11 @@ struct NlpOptions {
   std::optional<double> time_limit = {};  ///< seconds, of the wall clock
   /// Barrier parameter to begin with where the start has multipliers; the solver's own choice if absent.
   std::optional<double> warm_barrier_mu = {};
+  /// The same where it has none. It is moved inside of its bounds by no more than this.
+  std::optional<double> first_barrier_mu = {};
+  /// Violation of the rows above which the Hessian is that of the objective alone: with multipliers that are far off,
+  /// the curvature of constraints would only have to be regularised away.
+  std::optional<double> curved_below = {};
   /// How far inside of its bounds a start with multipliers is moved.
   double warm_push = 1e-9;
   /// A solution with a larger objective is of no use: the solver may stop where it comes to one (not_converged).

@@ -74,10 +74,12 @@ void Run::add(const Solution& done) {
 }
 
 crossover::Branch Run::solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w, int most_iterations,
-                                    std::string message, std::optional<double> cutoff, const std::vector<int>& kept) {
+                                    std::string message, std::optional<double> cutoff, const std::vector<int>& kept,
+                                    std::optional<double> first_mu) {
   const double started = seconds();
   NlpOptions limited = nlp_options(most_iterations);
   limited.objective_cutoff = cutoff;
+  limited.first_barrier_mu = first_mu;
   crossover::Branch found = crossover::solve_branch(problem, sides, w, nlp, limited, kept);
   result::HomotopyStep step;
   step.phase = result::HomotopyPhase::branch;

@@ -42,7 +42,8 @@ class Run {
   [[nodiscard]] crossover::Branch solve_branch(const std::vector<mpcc::ActiveSide>& sides, ConstVectorView w,
                                                int most_iterations, std::string message = {},
                                                std::optional<double> cutoff = std::nullopt,
-                                               const std::vector<int>& kept = {});
+                                               const std::vector<int>& kept = {},
+                                               std::optional<double> first_mu = std::nullopt);
 
   mpcc::Problem& problem;
   NlpSolver& nlp;
@@ -71,6 +72,9 @@ class Run {
 [[nodiscard]] Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
                                             const SolveOptions& options, const std::optional<Start>& start);
 
+/// Solves the branch of the start's sides, or of others: what is paid for its zero sides where their price is large
+/// says which are changed. Leaves it in run.branch; false if there is none.
+[[nodiscard]] bool solve_modes(Run& run, const linalg::Vector& start);
 /// Goes from run.branch to better branches, until none is found: flips of biactive pairs with negative multipliers,
 /// then the linear program over them. Leaves certificate and multipliers in run.solution.
 void descend(Run& run);

@@ -140,7 +140,9 @@ Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver
 
   Run run(problem, nlp, lpcc, options);
   run.relaxed.point.w = from.w;
-  const bool is_on_branch = options.first == FirstProblem::branch && solve_first_branch(run, from.w);
+  const bool is_on_branch = options.first == FirstProblem::branch  ? solve_first_branch(run, from.w)
+                            : options.first == FirstProblem::modes ? solve_modes(run, from.w)
+                                                                   : false;
   const auto others = start ? std::vector<mpcc::NamedStart>() : problem.other_starts();
   const PathEnd end = is_on_branch ? PathEnd::crossed_over : follow_paths(run, from, others);
   if (options.crossover && end != PathEnd::crossed_over && end != PathEnd::stopped) rescue(run);

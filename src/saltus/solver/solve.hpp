@@ -23,6 +23,7 @@ namespace saltus::solver {
 enum class FirstProblem {
   relaxed,  ///< that of the first sigma
   branch,   ///< that of the sides of the start, which are right where it is a solution of a similar problem
+  modes,    ///< likewise, but sides that lead to no solution are changed: those of a motion that is only similar
 };
 
 /// Holds what one thread solves with.

@@ -42,7 +42,7 @@ TEST(OcpGuessTest, ExpressionsOfTime) {
   model.output("v_guess", model.if_(model::less(t, SX(4)), SX(1), SX(2)) + model.floor(t));
   model.output("u_guess", t - 1);
   Ocp ocp = problem_of(model, 10.0);
-  ocp.guess = {{OcpGuess::Kind::state, 0, 0}, {OcpGuess::Kind::state, 1, 1}, {OcpGuess::Kind::control, 0, 2}};
+  ocp.guess.list = {{OcpGuess::Kind::state, 0, 0}, {OcpGuess::Kind::state, 1, 1}, {OcpGuess::Kind::control, 0, 2}};
   const auto start = started(ocp, 5, {0.0, 0.25, 0.5, 1.0});
   EXPECT_EQ(start.horizon, 10.0);
   EXPECT_EQ(start.initial_state, (std::vector<double>{0.0, 0.0}));  // it is not free
@@ -61,7 +61,7 @@ TEST(OcpGuessTest, ClocksAreTheTime) {
   model.output("q_guess", 3 * clock);
   Ocp ocp = problem_of(model, 4.0);
   ocp.clock = model::OcpClock{.state = 2, .speed_lower = 1.0, .speed_upper = 2.0};
-  ocp.guess = {{OcpGuess::Kind::state, 0, 0}};
+  ocp.guess.list = {{OcpGuess::Kind::state, 0, 0}};
   const auto start = started(ocp, 2, {0.0, 0.5, 1.0});
   ASSERT_EQ(start.states.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(start.states[i][0], 6.0 * static_cast<double>(i));
@@ -143,9 +143,9 @@ TEST(OcpGuessTest, StatesThatCostsName) {
   expect(named(), {1.0, 3.0, 5.0});
   ocp.running_cost.reset();
   expect(named(), {1.0, 3.0, 5.0});
-  ocp.guess = {{OcpGuess::Kind::state, 0, 1}};  // what is stated stays
+  ocp.guess.list = {{OcpGuess::Kind::state, 0, 1}};  // what is stated stays
   EXPECT_EQ(named()[1], (std::vector<double>{16.0, 0.0}));
-  ocp.guess.push_back({OcpGuess::Kind::state, 1, 1});
+  ocp.guess.list.push_back({OcpGuess::Kind::state, 1, 1});
   EXPECT_TRUE(started(ocp, 4, fractions).others.empty());
 }
 
@@ -190,7 +190,7 @@ TEST(OcpGuessTest, FreeInitialStatesAndParameters) {
   ocp.free_parameters = {true, false};
   ocp.parameter_lower[0] = 0.0;
   ocp.parameter_upper[0] = 1.5;
-  ocp.guess = {{OcpGuess::Kind::state, 0, 0}, {OcpGuess::Kind::parameter, 0, 1}};
+  ocp.guess.list = {{OcpGuess::Kind::state, 0, 0}, {OcpGuess::Kind::parameter, 0, 1}};
   const auto start = started(ocp, 1, {0.0, 1.0});
   EXPECT_EQ(start.parameters, (std::vector<double>{1.5, 3.0}));
   EXPECT_EQ(start.initial_state, (std::vector<double>{0.75, 2.0}));
@@ -202,7 +202,7 @@ TEST(OcpGuessTest, GuessesThatAreNotFinite) {
   Builder model = geared_car();
   model.output("v_guess", log(1 - model.time()));
   Ocp ocp = problem_of(model, 2.0);
-  ocp.guess = {{OcpGuess::Kind::state, 1, 0}};
+  ocp.guess.list = {{OcpGuess::Kind::state, 1, 0}};
   const auto start = guess_start(ocp, 1, {0.0, 0.5, 1.0});
   ASSERT_FALSE(start.has_value());
   EXPECT_EQ(start.error().message, "the initial guess of 'v' is -inf at t = 1");

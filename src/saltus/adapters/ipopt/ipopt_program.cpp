@@ -71,6 +71,7 @@ void IpoptProgram::set(mpcc::Problem& problem, solver::NlpPoint& point, const so
   feasible_ = std::min(options.tolerance, feasible);
   cutoff_ = options.objective_cutoff.value_or(last_objective_);
   is_cut_off_ = is_near_ = false;
+  curved_below_ = options.curved_below;
   pace_ = {};
   find_rows();
 }
@@ -230,16 +231,18 @@ bool IpoptProgram::eval_h(Ipopt::Index n, const double* w, bool /*is_new*/, doub
   }
   const Timer timer(evaluation_seconds_);
   put(Input(y, m), rows_, y_);
+  if (curved_below_) y_.set_zero();
   problem_->hessian(Input(w, n), objective_factor, y_, Output(values, entries));
   return Input(values, entries).all_finite();
 }
 
-bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode /*mode*/, Ipopt::Index /*iteration*/, double objective,
+bool IpoptProgram::intermediate_callback(Ipopt::AlgorithmMode mode, Ipopt::Index /*iteration*/, double objective,
                                          double primal_infeasibility, double dual_infeasibility, double mu,
                                          double step_norm, double /*regularisation*/, double /*dual_step*/,
                                          double primal_step, Ipopt::Index /*trials*/, const Ipopt::IpoptData* data,
                                          Ipopt::IpoptCalculatedQuantities* quantities) {
   ++pace_.untaken;
+  if (mode == Ipopt::RegularMode && primal_infeasibility <= curved_below_.value_or(0.0)) curved_below_.reset();
   if (pace_.longest > 0) return !is_too_long() && !(is_interrupted_ && is_interrupted_());
   standing_ = primal_step * step_norm <= standstill ? standing_ + 1 : 0;
   watch(objective, primal_infeasibility, dual_infeasibility, mu, data, quantities);

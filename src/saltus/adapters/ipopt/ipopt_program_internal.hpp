@@ -81,6 +81,7 @@ class IpoptProgram final : public Ipopt::TNLP {
   double acceptable_ = 0.0, feasible_ = 0.0;
   double cutoff_ = 0.0;
   bool is_cut_off_ = false;
+  std::optional<double> curved_below_;  ///< NlpOptions, until it is reached
   struct Pace {
     int longest = 0;  ///< iterations between two iterates that are taken; 0: none is
     int untaken = 0;  ///< since the last one

@@ -107,6 +107,9 @@ bool has_multipliers(const mpcc::Problem& nlp, const solver::NlpPoint& point) {
          point.z_upper.size() == nlp.variables();
 }
 
+/// How far Ipopt moves a start without multipliers inside of its bounds, unless a barrier parameter is given.
+constexpr double cold_push = 0.01;
+
 /// How far a start with multipliers, or without them, is moved inside of its bounds.
 bool set_start(Ipopt::OptionsList& options, bool with_multipliers, double push) {
   bool are_set = options.SetStringValue("warm_start_init_point", with_multipliers ? "yes" : "no");
@@ -179,9 +182,13 @@ struct IpoptSolver::Implementation {
                    options->SetIntegerValue("max_iter", wanted.iteration_limit) && set_time_limit(*options, wanted) &&
                    set_start(*options, with_multipliers, wanted.warm_push);
     // Only the monotone strategy begins with a given parameter; the adaptive one chooses its own.
-    const bool begins_with_mu = with_multipliers && wanted.warm_barrier_mu;
-    are_set = are_set && options->SetStringValue("mu_strategy", begins_with_mu ? "monotone" : "adaptive") &&
-              options->SetNumericValue("mu_init", begins_with_mu ? *wanted.warm_barrier_mu : 0.1);
+    const auto first_mu = with_multipliers && wanted.warm_barrier_mu ? wanted.warm_barrier_mu : wanted.first_barrier_mu;
+    are_set = are_set && options->SetStringValue("mu_strategy", first_mu ? "monotone" : "adaptive") &&
+              options->SetNumericValue("mu_init", first_mu.value_or(0.1));
+    for (const char* name : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"}) {
+      are_set =
+          are_set && options->SetNumericValue(name, std::min(cold_push, wanted.first_barrier_mu.value_or(cold_push)));
+    }
     SALTUS_ASSERT(are_set);
   }
 };

@@ -57,6 +57,11 @@ class ElementSides {
   }
   [[nodiscard]] const Sides& all() const { return sides_; }
 
+  /// Returns the sum of numbers of pairs, over those of a selection in an element.
+  [[nodiscard]] double sum(mpcc::ConstVectorView of_pairs, std::size_t element, std::size_t selection) const {
+    return of_pairs.segment(static_cast<linalg::Index>(first(element, selection)), per_selection_).sum();
+  }
+
  private:
   [[nodiscard]] std::size_t first(std::size_t element, std::size_t selection) const {
     return static_cast<std::size_t>(made_.chain.elements[element].pairs.first) +

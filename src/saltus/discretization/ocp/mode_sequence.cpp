@@ -41,7 +41,8 @@ bool shorten(Stretches& stretches) {
   return true;
 }
 
-/// Elements are halved where time goes on, and where they would be longer than the bound: a share of all of them.
+}  // namespace
+
 bool fit(Stretches& stretches, int elements, double bound) {
   join(stretches);
   int count = 0;
@@ -65,6 +66,8 @@ bool fit(Stretches& stretches, int elements, double bound) {
   }
   return true;
 }
+
+namespace {
 
 class Writer {
  public:

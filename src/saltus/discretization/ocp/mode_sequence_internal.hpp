@@ -27,6 +27,10 @@ using ModeSequence = std::map<std::size_t, Stretches>;
 [[nodiscard]] Stretches stretches_of(const OcpStructure& made, const ElementSides& modes, mpcc::ConstVectorView w,
                                      std::size_t first, std::size_t end);
 
+/// Gives stretches as many elements as an interval has: elements are halved where time goes on, and where they would be
+/// longer than the bound, a share of all of them. False where stretches are more than elements.
+[[nodiscard]] bool fit(Stretches& stretches, int elements, double bound);
+
 /// Holds a point whose elements have the modes of a sequence.
 struct Realisation {
   ElementSides::Sides sides;

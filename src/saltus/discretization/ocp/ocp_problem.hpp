@@ -50,6 +50,8 @@ struct OcpGuessValues {
   std::vector<std::vector<double>> controls;  ///< row per interval
   std::vector<double> initial_state;
   std::vector<std::vector<double>> states;
+  /// Elements get the modes of these states: lengths, selections and multipliers, too.
+  bool has_modes = false;
   bool simulated = false;  ///< selections and multipliers by the signs of psi at these states, else neutral
 };
 
@@ -131,6 +133,9 @@ class OcpProblem final : public mpcc::Problem {
   /// Gives mode sequences that differ by a move, with prices where multipliers say them. Insertion: elements of length
   /// zero in modes that meet at a boundary. Removal of one of length zero. Shift of what happens at a control node to
   /// one side of it. Split of what is as long as it may be. Flip of what is held on a surface to its sides.
+  /// Surfaces that are slid on are left to the side that w is on, others are slid on or crossed.
+  [[nodiscard]] std::vector<mpcc::ActiveSide> freed(const std::vector<mpcc::ActiveSide>& sides, mpcc::ConstVectorView w,
+                                                    double paid) override;
   [[nodiscard]] std::vector<mpcc::BranchMove> neighbours(const std::vector<mpcc::ActiveSide>& sides,
                                                          mpcc::ConstVectorView w,
                                                          const mpcc::Multipliers& multipliers) override;

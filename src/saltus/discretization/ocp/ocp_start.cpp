@@ -5,6 +5,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/discretization/ocp/ocp_problem_internal.hpp"
+#include "saltus/discretization/ocp/stated_modes_internal.hpp"
 
 namespace saltus::discretization {
 namespace {
@@ -34,6 +35,13 @@ class StartWriter {
       set(interval.shared[at(kernel_.shared.controls + kernel_.shared.parameters + kernel_.shared.held + 1)], 1.0);
       for (const int h : interval.lengths) w_[h] = 1.0 / interval.elements;
       for (int n = 0; n < interval.elements; ++n) write_element(interval.first_element + n, row);
+    }
+    if (guess_.has_modes) {
+      const auto psi = [&](std::size_t k, double share, const linalg::Vector& x) {
+        const double t = made_.from + guess_.horizon * (static_cast<double>(k) + share) / made_.intervals;
+        return indicator(made_.element[at(made_.interval[k].first_element)], t, x);
+      };
+      StatedModes(made_, guess_, psi, w_).write();
     }
     w_ = w_.at_least(made_.w_bounds.lower).at_most(made_.w_bounds.upper);
   }

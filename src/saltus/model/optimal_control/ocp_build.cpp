@@ -44,7 +44,8 @@ class OcpBuild {
         stated_(*initials_.description().optimize),
         slacks_(initials_.description()),
         overrides_(initials_.overrides()),
-        quantities_(slacks_.description()) {}
+        quantities_(slacks_.description()),
+        guessed_(slacks_.description()) {}
 
   [[nodiscard]] Expected<Ocp> run() {
     if (initials_.error()) return tl::unexpected(*initials_.error());
@@ -97,8 +98,7 @@ class OcpBuild {
                                       quantities_.add(pair.second, "path_complementarities"));
     }
     for (const auto& term : stated_.least_squares) plan_least_squares(term);
-    for (const auto& guess : stated_.guess)
-      guesses_.push_back(quantities_.add(guess.expression, "initial_guess." + guess.name));
+    for (const auto& guess : stated_.guess) guessed_.add(guess.expression, "initial_guess." + guess.name);
     for (const auto& parameter : description().free_parameters) {
       parameter_bounds_.emplace_back(
           quantities_.add(parameter.lower, fmt::format("the lower bound of {}", parameter.name)),
@@ -308,28 +308,14 @@ class OcpBuild {
   }
 
   std::optional<Error> take_guess() {
-    for (std::size_t i = 0; i < stated_.guess.size(); ++i) {
-      const auto& stated = stated_.guess[i];
-      const auto find = [&](const std::vector<std::string>& names, std::size_t count) {
-        const auto end = names.begin() + static_cast<std::ptrdiff_t>(count);
-        const auto found = std::find(names.begin(), end, stated.name);
-        return found == end ? -1 : static_cast<int>(found - names.begin());
-      };
-      const auto& system = ocp_.system;
-      OcpGuess guess{.kind = OcpGuess::Kind::state, .output = quantities_.output(guesses_[i])};
-      guess.index = find(system.state_names, system.state_names.size());
-      if (guess.index < 0) {
-        guess.kind = OcpGuess::Kind::control;
-        guess.index = find(system.control_names, static_cast<std::size_t>(ocp_.user_controls));
-      }
-      if (guess.index < 0) {
-        guess.kind = OcpGuess::Kind::parameter;
-        guess.index = find(system.parameter_names, system.parameter_names.size());
-        if (guess.index >= 0 && !is_free(description(), stated.name)) guess.index = -1;
-      }
-      if (guess.index < 0) return unknown_guess(stated, ocp_);
-      if (auto error = check_guess(guess, stated, ocp_)) return error;
-      ocp_.guess.push_back(guess);
+    if (stated_.guess.empty()) return std::nullopt;
+    auto built = guessed_.build(overrides_);
+    if (!built) return built.error();
+    ocp_.guess.system = std::make_shared<const System>(std::move(*built));
+    for (int i = 0; i < guessed_.count(); ++i) {
+      auto guess = guess_of(stated_.guess[at(i)], ocp_, guessed_.output(i));
+      if (!guess) return guess.error();
+      ocp_.guess.list.push_back(*guess);
     }
     return std::nullopt;
   }
@@ -441,14 +427,13 @@ class OcpBuild {
   const OcpDescription& stated_;
   ControlSlacks slacks_;
   const std::vector<Override>& overrides_;
-  OcpQuantities quantities_;
+  OcpQuantities quantities_, guessed_;
   Ocp ocp_;
   int from_ = -1, horizon_ = -1, horizon_lower_ = -1, horizon_upper_ = -1, weight_ = -1, running_ = -1, terminal_ = -1;
   bool merged_ = false;  ///< both comparisons of the constraint planned last are one
   std::vector<PlannedConstraint> path_, terminals_;
   std::vector<std::pair<int, int>> complementarities_, parameter_bounds_;
   std::vector<PlannedSquares> squares_;
-  std::vector<int> guesses_;
   std::vector<std::pair<int, bool>> slack_rows_;  ///< quantity; whether at stages
   std::pair<int, int> speed_{-1, -1};
 };

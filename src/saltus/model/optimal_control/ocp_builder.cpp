@@ -128,20 +128,12 @@ struct OcpBuilder::Parts {
   }
 
   void take_guesses() {
-    using Kind = OcpGuess::Kind;
-    const auto& built = ocp.system;
     for (const auto& stated : guesses) {
-      OcpGuess guess{.kind = Kind::state, .index = place_of(built.state_names, stated.name), .output = stated.output};
-      if (guess.index < 0) guess = {Kind::control, place_of(built.control_names, stated.name), stated.output};
-      if (guess.index < 0) {
-        guess = {Kind::parameter, place_of(built.parameter_names, stated.name), stated.output};
-        if (guess.index >= 0 && !ocp.free_parameters[static_cast<std::size_t>(guess.index)]) guess.index = -1;
-      }
       GuessDescription description;
       description.name = stated.name;
-      if (guess.index < 0) return fail(unknown_guess(description, ocp));
-      fail(check_guess(guess, description, ocp));
-      ocp.guess.push_back(guess);
+      auto guess = guess_of(description, ocp, stated.output);
+      if (!guess) return fail(guess.error());
+      ocp.guess.list.push_back(*guess);
     }
   }
 
@@ -186,7 +178,7 @@ struct OcpBuilder::Parts {
     if (!error && !(ocp.horizon.value > 0.0)) fail(check_horizon(ocp.horizon, {}));
     if (error) return tl::unexpected(*error);
     if (auto mistake = take_system()) return tl::unexpected(*mistake);
-    ocp.guess.clear();
+    ocp.guess.list.clear();
     free_what_is_free();
     if (error) return tl::unexpected(*error);
     take_initial_values();

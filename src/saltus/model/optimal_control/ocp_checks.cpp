@@ -31,8 +31,7 @@ std::string control_in(const SX& expression, const System& system) {
 }
 
 /// States but a clock, which is the time, controls, and the selections and constants of cells that change with them.
-SX moving_symbols(const Ocp& ocp) {
-  const System& system = ocp.system;
+SX moving_symbols(const Ocp& ocp, const System& system) {
   SX moving = system.u;
   for (int i = 0; i < static_cast<int>(system.state_names.size()); ++i) {
     if (!ocp.clock || ocp.clock->state != i) moving = SX::vertcat({moving, system.x(i)});
@@ -190,6 +189,8 @@ std::optional<Error> check_least_squares(const OcpLeastSquares& term, const Leas
   return std::nullopt;
 }
 
+namespace {
+
 Error unknown_guess(const GuessDescription& stated, const Ocp& ocp) {
   std::vector<std::string> known = ocp.system.state_names;
   known.insert(known.end(), ocp.system.control_names.begin(), ocp.system.control_names.begin() + ocp.user_controls);
@@ -203,11 +204,32 @@ Error unknown_guess(const GuessDescription& stated, const Ocp& ocp) {
           {"in [optimize] initial_guess"}};
 }
 
-std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& stated, const Ocp& ocp) {
+int place_among(const std::vector<std::string>& names, std::size_t count, const std::string& name) {
+  const auto end = names.begin() + static_cast<std::ptrdiff_t>(count);
+  const auto found = std::find(names.begin(), end, name);
+  return found == end ? -1 : static_cast<int>(found - names.begin());
+}
+
+}  // namespace
+
+Expected<OcpGuess> guess_of(const GuessDescription& stated, const Ocp& ocp, int output) {
+  using Kind = OcpGuess::Kind;
   const auto& system = ocp.system;
-  if (!SX::depends_on(system.outputs(guess.output), moving_symbols(ocp))) return std::nullopt;
-  return mistake(fmt::format("the guess of '{}' depends on states or controls", stated.name),
-                 "a guess is an expression of t and parameters", stated.location);
+  const System& guessed = ocp.guess.system ? *ocp.guess.system : system;
+  OcpGuess guess{Kind::state, place_among(system.state_names, system.state_names.size(), stated.name), output};
+  if (guess.index < 0) {
+    guess.kind = Kind::control;
+    guess.index = place_among(system.control_names, at(ocp.user_controls), stated.name);
+  }
+  if (guess.index < 0) {
+    guess.kind = Kind::parameter;
+    guess.index = place_among(system.parameter_names, system.parameter_names.size(), stated.name);
+    if (guess.index >= 0 && !ocp.free_parameters[at(guess.index)]) guess.index = -1;
+  }
+  if (guess.index < 0) return tl::unexpected(unknown_guess(stated, ocp));
+  if (!SX::depends_on(guessed.outputs(output), moving_symbols(ocp, guessed))) return guess;
+  return tl::unexpected(mistake(fmt::format("the guess of '{}' depends on states or controls", stated.name),
+                                "a guess is an expression of t and parameters", stated.location));
 }
 
 std::optional<Error> check_initial_states(const Ocp& ocp, const Description& description) {

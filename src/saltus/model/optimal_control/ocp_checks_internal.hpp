@@ -21,9 +21,9 @@ namespace saltus::model {
                                                const Ocp& ocp);
 [[nodiscard]] std::optional<Error> check_least_squares(const OcpLeastSquares& term,
                                                        const LeastSquaresDescription& stated);
-[[nodiscard]] Error unknown_guess(const GuessDescription& stated, const Ocp& ocp);
-/// Checks that a guess speaks of t and parameters only.
-[[nodiscard]] std::optional<Error> check_guess(const OcpGuess& guess, const GuessDescription& stated, const Ocp& ocp);
+/// Returns whose guess it is, with its output; an error where nothing free has the name, and where it depends on more
+/// than t and parameters.
+[[nodiscard]] Expected<OcpGuess> guess_of(const GuessDescription& stated, const Ocp& ocp, int output);
 [[nodiscard]] std::optional<Error> check_initial_states(const Ocp& ocp, const Description& description);
 /// Returns the places of expressions by the names of the switching functions and cells that they make.
 [[nodiscard]] std::map<std::string, SourceLocation> switching_places(const Description& description);

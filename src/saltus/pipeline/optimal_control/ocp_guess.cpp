@@ -34,7 +34,7 @@ class StatedGuesses {
 
   /// Null if nothing is said of this quantity.
   [[nodiscard]] const OcpGuess* find(OcpGuess::Kind kind, std::size_t index) const {
-    for (const auto& guess : ocp_.guess) {
+    for (const auto& guess : ocp_.guess.list) {
       if (guess.kind == kind && at(guess.index) == index) return &guess;
     }
     return nullptr;
@@ -82,8 +82,8 @@ double on_line(const Place& from, const Place& to, double t) {
 
 class Guess {
  public:
-  Guess(const Ocp& ocp, PointValues& values, int intervals, const std::vector<double>& fractions)
-      : ocp_(ocp), values_(values), stated_(ocp, values), intervals_(intervals) {
+  Guess(const Ocp& ocp, PointValues& values, PointValues& guessed, int intervals, const std::vector<double>& fractions)
+      : ocp_(ocp), values_(values), stated_(ocp, guessed), intervals_(intervals) {
     start_.horizon = ocp.horizon.value;
     start_.parameters = ocp.system.parameter_values;
     for (int k = 0; k < intervals; ++k) starts_.push_back(time(static_cast<double>(k) / intervals));
@@ -293,7 +293,10 @@ class Guess {
 Expected<OcpStart> guess_start(const Ocp& ocp, int intervals, const std::vector<double>& fractions) {
   auto values = PointValues::make(ocp.system);
   if (!values) return tl::unexpected(values.error());
-  return Guess(ocp, *values, intervals, fractions).run();
+  if (!ocp.guess.system) return Guess(ocp, *values, *values, intervals, fractions).run();
+  auto guessed = PointValues::make(*ocp.guess.system);
+  if (!guessed) return tl::unexpected(guessed.error());
+  return Guess(ocp, *values, *guessed, intervals, fractions).run();
 }
 
 }  // namespace saltus::pipeline

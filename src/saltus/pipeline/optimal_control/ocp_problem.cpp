@@ -208,6 +208,7 @@ Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptio
                                        .controls = std::move(begin->controls),
                                        .initial_state = std::move(begin->initial_state),
                                        .states = std::move(begin->states),
+                                       .has_modes = options.mpcc.first == solver::FirstProblem::modes,
                                        .simulated = options.start == StartValues::simulated};
   if (options.start_from) {
     auto taken = take_result(ocp, *options.start_from, intervals, fractions, guess);

@@ -39,7 +39,8 @@ constexpr double most_iterations = std::numeric_limits<int>::max();
 
 constexpr Choices<Strategy, 2> strategies{{"structured", "ipopt"}, {Strategy::structured, Strategy::ipopt}};
 constexpr Choices<Steering, 3> steerings{{"direct", "l1", "linf"}, {Steering::direct, Steering::l1, Steering::linf}};
-constexpr Choices<FirstProblem, 2> first_problems{{"relaxed", "branch"}, {FirstProblem::relaxed, FirstProblem::branch}};
+constexpr Choices<FirstProblem, 3> first_problems{{"relaxed", "branch", "modes"},
+                                                  {FirstProblem::relaxed, FirstProblem::branch, FirstProblem::modes}};
 constexpr Choices<WarmStart, 2> warm_starts{{"primal", "primal_dual"}, {WarmStart::primal, WarmStart::primal_dual}};
 
 /// Their names stand beside the relaxations themselves.
@@ -74,8 +75,9 @@ const std::array fields_of_mpcc{
     choice_field<warm_start_of, warm_starts, SolveOptions>("warm_start", "What the next relaxed problem starts with."),
     choice_field<first_of, first_problems, SolveOptions>(
         "first",
-        "The problem that is solved first: the relaxed one of sigma_initial, or that of the sides of the start, for a "
-        "start at a result of a similar problem."),
+        "The problem that is solved first: the relaxed one of sigma_initial; that of the sides of the start, for a "
+        "start at a result of a similar problem; or that of the modes of the states that initial_guess states, with a "
+        "price on what they cannot do, which changes them."),
     truth_field<crossover_of, SolveOptions>(
         "crossover",
         "Problems with one side of every pair fixed behind the relaxed ones: exact zeros, and a certificate."),
