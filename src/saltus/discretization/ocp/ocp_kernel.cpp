@@ -25,7 +25,7 @@ Error no_roots() {
 /// Of a part with both of a contact's functions, numbers `gap` and `rate` of its surfaces. In the step form the pairs
 /// are those of both selections. Else they are of regions that only the gap tells apart, and that only the rate does.
 void take_closing_gap(const model::FrozenContact& contact, const reformulation::DcsPart& part, int gap, int rate,
-                      OcpKernel::Implementation& kernel) {
+                      int held, OcpKernel::Implementation& kernel) {
   const auto pair = [&](int selection, bool of_complement) {
     int k = 0;
     while (kernel.pairs[at(k)].selection != part.first + selection) ++k;
@@ -35,7 +35,8 @@ void take_closing_gap(const model::FrozenContact& contact, const reformulation::
     const bool is_opposite = contact.gap.orientation < 0;
     kernel.closing_gaps.push_back({.open = pair(gap, is_opposite),
                                    .closed = pair(gap, !is_opposite),
-                                   .closing = pair(rate, contact.normal.orientation < 0)});
+                                   .closing = pair(rate, contact.normal.orientation < 0),
+                                   .held = held < 0 ? -1 : pair(held, false)});
     return;
   }
   const auto other_side = [&](int region, int surface) {
@@ -59,13 +60,14 @@ void take_closing_gaps(const model::Ocp& ocp, const Dcs& dcs, OcpKernel::Impleme
   if (!ocp.system.freezing) return;
   for (const auto& contact : ocp.system.freezing->contacts) {
     for (const auto& part : dcs.parts) {
-      int gap = -1, rate = -1;
+      int gap = -1, rate = -1, held = -1;
       for (int j = 0; j < static_cast<int>(part.surfaces.size()); ++j) {
         const int function = dcs.surfaces[at(part.surfaces[at(j)])].function;
         if (function == contact.gap.function) gap = j;
         if (function == contact.normal.function) rate = j;
+        if (function >= 0 && ocp.system.switching[at(function)].name == contact.name + ".held") held = j;
       }
-      if (!contact.is_elastic && gap >= 0 && rate >= 0) take_closing_gap(contact, part, gap, rate, kernel);
+      if (!contact.is_elastic && gap >= 0 && rate >= 0) take_closing_gap(contact, part, gap, rate, held, kernel);
     }
   }
 }

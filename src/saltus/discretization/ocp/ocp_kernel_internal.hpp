@@ -35,6 +35,8 @@ struct ClosingGap {
   int open = 0;     ///< of a selection that is 0 where the gap is closed
   int closed = 0;   ///< of one that is 0 where it is open
   int closing = 0;  ///< of one that is 0 where the gap closes
+  /// First pair of a second selection of its rate (decision 26), in the step form; -1: there is none.
+  int held = -1;
 };
 
 struct OcpKernel::Implementation {

@@ -51,6 +51,7 @@ void StatedModes::add_collisions(const Modes& before, const Modes& behind, Stret
     for (Modes modes : {before, behind}) {
       modes[at(gap.open)] = modes[at(gap.closing)] = ActiveSide::G;
       modes[at(gap.closed)] = ActiveSide::H;
+      for (int k = gap.held; k >= 0 && k <= gap.held + 1; ++k) modes[at(k)] = before[at(k)];
       modes[at(gap.closing + (made_.kernel.pairs[at(gap.closing)].complement ? -1 : 1))] = ActiveSide::H;
       stretches.push_back({.modes = std::move(modes), .length = small_share, .stands = true});
     }
