@@ -84,6 +84,51 @@ until = 3
 max_steps = 20000
 """
 
+DOSES = """
+[model]
+name = "doses that are held while neutrophils are low"
+[parameters]
+Circ0 = 5
+MTT = 3.7
+gamma = 0.161
+slope = 8
+k = 0.5
+dose = 1
+[definitions]
+ktr = "4/MTT"
+E = "min(slope*A, 1)"
+[states]
+A = 0
+Prol = "Circ0"
+T1 = "Circ0"
+T2 = "Circ0"
+T3 = "Circ0"
+Circ = "Circ0"
+next = 0
+doses = 0
+held = 0
+[dynamics]
+A = "-k*A"
+Prol = "ktr*Prol*(1 - E)*(Circ0/Circ)^gamma - ktr*Prol"
+T1 = "ktr*(Prol - T1)"
+T2 = "ktr*(T1 - T2)"
+T3 = "ktr*(T2 - T3)"
+Circ = "ktr*(T3 - Circ)"
+next = 0
+doses = 0
+held = 0
+[[jumps]]
+name = "visit"
+at = [0, 7, 14, 21, 28, 35, 42, 49, 56, 63, 70, 77, 84, 91, 98, 105, 112, 119, 126]
+[jumps.set]
+A = "A + if(t >= next and Circ > 1, dose, 0)"
+next = "if(t >= next, t + if(Circ > 1, 21, 7), next)"
+doses = "doses + if(t >= next and Circ > 1, 1, 0)"
+held = "held + if(t >= next and Circ <= 1, 1, 0)"
+[simulate]
+until = 130
+"""
+
 RELAY = """
 [model]
 name = "relay"
@@ -207,6 +252,14 @@ class Tried(tool.ToolTest):
         self.assertEqual([event["name"] for event in result["events"]], ["off", "on", "off"])
         self.write("m.toml", RELAY.replace('name = "off"', 'name = "on"'))
         self.assertIn("on", self.run_tool("simulate", "m.toml", code=2)[1])
+
+    def test_a_dose_is_given_at_the_time_that_was_set_for_it(self):
+        for integrator in ("dopri5", "dop853", "radau5", "taylor"):
+            result, _, _ = self.simulated(DOSES, "--integrator", integrator, "--rtol", "1e-9", "--atol", "1e-11")
+            final = dict(zip(result["states"], result["final"]["x"]))
+            self.assertEqual((final["doses"], final["held"]), (7, 0))
+            self.assertAlmostEqual(final["A"], 0.13533901, delta=1e-7)  # SciPy, with the rule in Python
+            self.assertAlmostEqual(final["Circ"], 4.59356115, delta=1e-6)
 
     def test_the_layer_that_is_advised_resolves_the_cycles(self):
         _, _, err = self.simulated(FEEDBACK, code=3)

@@ -42,6 +42,7 @@ class Assembly {
     take_switching();
     if (auto error = add_regions(graph_, statement_, sliding_, system_)) return tl::unexpected(*error);
     take_cells();
+    drop_marks();
     take_columns();
     system_.warnings = statement_.warnings;
     add_switching_warnings();
@@ -189,7 +190,19 @@ class Assembly {
       for (const auto* expressions : {&jump->guards, &jump->values, &jump->priority, &jump->delay}) {
         for (const SXElem& e : expressions->nonzeros()) others_.push_back(graph_.node(e));
       }
+      for (auto* expressions : {&jump->values, &jump->priority, &jump->delay}) {
+        if (auto error = put_at_instant(*expressions)) return error;
+      }
       system_.jumps.push_back(std::move(*jump));
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> put_at_instant(casadi::SX& expressions) {
+    for (SXElem& e : expressions.nonzeros()) {
+      const auto value = recognition_.at_instant(e);
+      if (!value) return value.error();
+      e = *value;
     }
     return std::nullopt;
   }
@@ -329,6 +342,21 @@ class Assembly {
       if (std::none_of(cell.nodes.begin(), cell.nodes.end(), [&](int node) { return used.contains(node); })) continue;
       system_.cells.push_back({cell.name, casadi::SX(cell.argument), column(cell.symbols), cell.table});
     }
+  }
+
+  /// Of conditions: right-hand sides of jumps have their truth instead.
+  void drop_marks() {
+    std::vector<casadi::SX*> all{&system_.f, &system_.f_as_written, &system_.outputs, &system_.input};
+    for (auto& function : system_.switching) all.push_back(&function.psi);
+    for (auto& event : system_.events) all.insert(all.end(), {&event.value, &event.guards});
+    for (auto& jump : system_.jumps) all.push_back(&jump.guards);
+    for (auto& cell : system_.cells) all.push_back(&cell.argument);
+    auto& touching = system_.contacts;
+    all.insert(all.end(),
+               {&touching.gap, &touching.velocity, &touching.rows, &touching.responses, &touching.acceleration,
+                &touching.normal_force, &touching.tangential_force, &touching.friction, &touching.restitution});
+    KnownExpressions known;
+    for (auto* expressions : all) graph_.drop_marks(*expressions, known);
   }
 
   void take_decisions() {

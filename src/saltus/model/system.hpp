@@ -60,8 +60,8 @@ struct Jump {
   std::vector<double> times;           ///< trigger times: `at`, ascending
   double every = 0.0;                  ///< trigger times: at from + k every, k = 1, 2, …; 0 without
   std::vector<int> targets;            ///< states that are set
-  casadi::SX values;                   ///< one per target, over t, x, u, p, alpha
-  casadi::SX priority, delay;          ///< scalars over t, x, u, p, alpha
+  casadi::SX values;                   ///< one per target, over t, x, u, p and the alphas at the instant
+  casadi::SX priority, delay;          ///< scalars over t, x, u, p and the alphas at the instant
   bool at_start = false;
   bool persistent = true;
   JumpValues evaluated = JumpValues::at_trigger;

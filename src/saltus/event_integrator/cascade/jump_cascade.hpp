@@ -93,7 +93,9 @@ class JumpCascade {
   [[nodiscard]] std::vector<HeldGuard> guards_kept_by_sliding(const RestingGuards& others);
 
  private:
-  [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
+  [[nodiscard]] JumpPoint jump_point() const {
+    return {here_.t, here_.x, here_.state.alpha, search_.user_signs(), zeros_};
+  }
   [[nodiscard]] SwitchingPoint at_this_time() const;
   void find_values();
   [[nodiscard]] bool is_open_at_zero(int function);

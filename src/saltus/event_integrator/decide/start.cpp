@@ -345,20 +345,4 @@ Transition decide_behind_jump(const SwitchingContext& s, const ModeState& before
   return transition;
 }
 
-std::vector<double> selections_at(const SwitchingContext& s, double t, const double* x, std::vector<double> alpha) {
-  const auto n = at(s.kernel.event_functions());
-  std::vector<double> values(n), noise(n), slope(n);
-  s.kernel.scales(t, x, alpha.data(), noise.data(), slope.data());
-  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
-    s.kernel.functions(t, x, alpha.data(), values.data());
-    const auto& function = s.layout.surfaces[at(j)];
-    if (function.role == model::SwitchingRole::region) continue;
-    const double psi = values[at(j)];
-    const bool discrete = function.role == model::SwitchingRole::discrete;
-    if (discrete && psi == 0.0) alpha[at(j)] = function.alpha_at_zero;
-    if (std::abs(psi) > (discrete ? 0.0 : rounding_of(noise[at(j)]))) alpha[at(j)] = psi > 0.0 ? 1.0 : 0.0;
-  }
-  return alpha;
-}
-
 }  // namespace saltus::event_integrator

@@ -28,9 +28,4 @@ struct Start {
                                             double t, const double* x, double time_scale, const std::vector<int>& held,
                                             const RestingSurfaces& resting = {}, const std::vector<int>& slid = {});
 
-/// Returns the selections read pointwise at (t, x), inner functions first; those at zero keep what they have in
-/// `alpha`, functions of discrete states have what is written.
-[[nodiscard]] std::vector<double> selections_at(const SwitchingContext& switching_context, double t, const double* x,
-                                                std::vector<double> alpha);
-
 }  // namespace saltus::event_integrator

@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/event_integrator/mode/selections_at.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -136,8 +137,19 @@ void Jumps::accept(const std::vector<int>& jumps, const JumpPoint& point) {
   for (const int jump : jumps) truth_[at(jump)] = truth(jump, point);
 }
 
+std::vector<double> Jumps::at_instant(const JumpPoint& point) const {
+  auto alpha = point.alpha;
+  if (alpha.empty()) return alpha;
+  for (std::size_t j = 0; j < alpha.size(); ++j) {
+    const bool moves = layout_.surfaces[j].role != model::SwitchingRole::region;
+    if (moves && (alpha[j] == 0.0 || alpha[j] == 1.0)) alpha[j] = 0.5;
+  }
+  return selections_at(kernel_, point.t, point.x.data(), std::move(alpha), point.zeros);
+}
+
 void Jumps::trigger(int jump, const JumpPoint& point) {
-  const double delay = kernel_.jump_delay(jump, point.t, point.x.data(), point.alpha.data());
+  const auto alpha = at_instant(point);
+  const double delay = kernel_.jump_delay(jump, point.t, point.x.data(), alpha.data());
   if (!(delay >= 0.0 && std::isfinite(delay))) {
     problem_ = fmt::format("the delay of the jump '{}' is {} at t = {:.17g}; it must be a finite number >= 0",
                            layout_.jumps[at(jump)].name, delay, point.t);
@@ -146,7 +158,7 @@ void Jumps::trigger(int jump, const JumpPoint& point) {
   Execution execution{jump, point.t + delay, {}};
   if (layout_.jumps[at(jump)].evaluated == model::JumpValues::at_trigger) {
     execution.values.resize(layout_.jumps[at(jump)].targets.size());
-    kernel_.jump_values(jump, point.t, point.x.data(), point.alpha.data(), execution.values.data());
+    kernel_.jump_values(jump, point.t, point.x.data(), alpha.data(), execution.values.data());
   }
   queue_.push_back(std::move(execution));
 }
@@ -156,11 +168,12 @@ bool Jumps::due(double t) const {
 }
 
 int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
+  const auto alpha = at_instant(point);
   auto chosen = queue_.end();
   double largest = 0.0;
   for (auto entry = queue_.begin(); entry != queue_.end(); ++entry) {
     if (entry->t > point.t) continue;
-    const double priority = kernel_.jump_priority(entry->jump, point.t, point.x.data(), point.alpha.data());
+    const double priority = kernel_.jump_priority(entry->jump, point.t, point.x.data(), alpha.data());
     if (std::isnan(priority)) {
       problem_ = fmt::format("the priority of the jump '{}' is not a number at t = {:.17g}",
                              layout_.jumps[at(entry->jump)].name, point.t);
@@ -177,7 +190,7 @@ int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
   queue_.erase(chosen);
   if (entry.evaluated == model::JumpValues::at_execution) {
     values.resize(entry.targets.size());
-    kernel_.jump_values(jump, point.t, point.x.data(), point.alpha.data(), values.data());
+    kernel_.jump_values(jump, point.t, point.x.data(), alpha.data(), values.data());
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) {

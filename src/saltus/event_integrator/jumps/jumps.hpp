@@ -16,6 +16,7 @@ struct JumpPoint {
   const std::vector<double>& x;      ///< n_x
   const std::vector<double>& alpha;  ///< n_psi
   const std::vector<int>& signs;     ///< of the user functions (those behind psi), just behind this time; 0 = at zero
+  const std::vector<int>& zeros;     ///< event functions that are at zero whatever is left of their value
 };
 
 /// Returns a switching function or a jump that a discrete state decides, so that it is read at jumps only; nothing
@@ -68,6 +69,8 @@ class Jumps {
   [[nodiscard]] unsigned truth(int jump, const JumpPoint& point) const;
   [[nodiscard]] std::vector<double> steps(int jump, const JumpPoint& point) const;
   [[nodiscard]] int guard_sign(int function, const JumpPoint& point) const;
+  /// Selections as right-hand sides take them: psi at zero has its selection of sliding, or else 1/2.
+  [[nodiscard]] std::vector<double> at_instant(const JumpPoint& point) const;
   void trigger(int jump, const JumpPoint& point);
   [[nodiscard]] double time_of(int jump) const;
   void find_next_time();

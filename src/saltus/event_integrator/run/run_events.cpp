@@ -265,9 +265,9 @@ Run::Step Run::handle(const Located& located) {
                                    [&](std::size_t function) { return search_.is_listed_only(function); });
   flip_user_functions(located);
   turn_by_mode_behind(located);
+  cascade_.begin(located);
   jumps_.update(jump_point());
   if (jumps_have_problem()) return depart(arrival);
-  cascade_.begin(located);
   if (jumps_.due(here_.t)) {
     event_.cell_change = leave_cells(located);
     static_cast<void>(jump(event_.before, event_.x_before));

@@ -192,7 +192,9 @@ class Run {
   void accumulate_jumps();
   void follow_limit(const SeriesLimit& limit);
   [[nodiscard]] std::string jump_names(const std::vector<int>& jumps) const;
-  [[nodiscard]] JumpPoint jump_point() const { return {here_.t, here_.x, here_.state.alpha, search_.user_signs()}; }
+  [[nodiscard]] JumpPoint jump_point() const {
+    return {here_.t, here_.x, here_.state.alpha, search_.user_signs(), cascade_.zeros()};
+  }
   bool jumps_have_problem();
   void start_step();
   bool too_many_events();

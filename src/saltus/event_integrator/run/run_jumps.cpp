@@ -8,6 +8,7 @@
 #include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/mode/kept_by_sliding.hpp"
+#include "saltus/event_integrator/mode/selections_at.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -61,7 +62,7 @@ bool Run::execute_jump() {
     event_.cell_change = std::max(event_.cell_change, cells_.locate(here_.t, here_.x.data(), here_.state.alpha));
   // What is left of a zero depends on the selections behind the jump.
   if (!here_.state.alpha.empty())
-    here_.state.alpha = selections_at(switching_context_, here_.t, here_.x.data(), here_.state.alpha);
+    here_.state.alpha = selections_at(kernel_, here_.t, here_.x.data(), here_.state.alpha);
   cascade_.drop_zeros();
   cascade_.read_user_signs();
   jumps_.update(jump_point());
@@ -211,7 +212,7 @@ bool Run::begin_jumps() {
   if (jumps_.none()) return true;
   here_.state.mode.assign(at(kernel_.switching_functions()), 0);
   here_.state.alpha.assign(here_.state.mode.size(), 0.5);
-  here_.state.alpha = selections_at(switching_context_, here_.t, here_.x.data(), here_.state.alpha);
+  here_.state.alpha = selections_at(kernel_, here_.t, here_.x.data(), here_.state.alpha);
   if (!begin_contacts()) return false;
   cascade_.read_user_signs();
   jumps_.begin(jump_point());

@@ -179,6 +179,7 @@ Run::Step Run::accept(double t_new) {
   if (search_.settle(here_.t, here_.x.data())) {
     // What a user function turns to from a zero at the start is its first sign, not a change of it.
     static_cast<void>(user_events_.update(here_.t, here_.x.data(), here_.state.alpha, search_.user_signs()));
+    cascade_.begin();
     jumps_.update(jump_point());
   }
   if (here_.t >= options_.until && here_.t != choices_.next().departure()) {

@@ -25,7 +25,7 @@ JumpAccumulation::JumpAccumulation(const SwitchingContext& switching_context, co
 
 void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps, const std::vector<int>& user_signs) {
   if (cascade.executed().empty()) return;
-  const JumpPoint point{here_.t, here_.x, here_.state.alpha, user_signs};
+  const JumpPoint point{here_.t, here_.x, here_.state.alpha, user_signs, cascade.zeros()};
   kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), magnitude_.data(), slope_.data());
   executed_.clear();
   for (const auto& executed : cascade.executed().items()) executed_.push_back(executed.jump);

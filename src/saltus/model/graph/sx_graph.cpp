@@ -68,6 +68,20 @@ Error nonsmooth_operation(const std::string& text, const std::string& instead) {
 
 }  // namespace
 
+SXElem with_operands(const SXElem& expression, const KnownExpressions& known) {
+  if (expression.is_constant() || expression.is_symbolic()) return expression;
+  std::vector<SXElem> operands;
+  bool same = true;
+  for (casadi_int i = 0; i < expression.n_dep(); ++i) {
+    operands.push_back(known.at(expression.dep(i).get()));
+    same = same && operands.back().get() == expression.dep(i).get();
+  }
+  if (same) return expression;
+  const auto operation = static_cast<int>(expression.op());
+  return operands.size() == 1 ? SXElem::unary(operation, operands[0])
+                              : SXElem::binary(operation, operands[0], operands[1]);
+}
+
 int SxGraph::remember(const SXElem& expression, int node) {
   if (static_cast<std::size_t>(node) == expressions_.size()) expressions_.push_back(expression);
   if (numbers_.emplace(expression.get(), node).second) keep_alive_.push_back(expression);
@@ -114,6 +128,7 @@ Expected<int> SxGraph::add_one(const SXElem& expression) {
   }
   const auto operation = static_cast<int>(expression.op());
   const int left = numbers_.at(expression.dep(0).get());
+  if (operation == casadi::OP_ASSIGN) return remember(expression, left);
   const int right = expression.n_dep() == 2 ? numbers_.at(expression.dep(1).get()) : -1;
   if (const auto instead = builder_function_for(operation);
       !instead.empty() && !is_ours(tape_, operation, left, right)) {
@@ -149,6 +164,33 @@ int SxGraph::node(const SXElem& expression) {
   const auto added = add(expression);
   SALTUS_ASSERT(added.has_value());
   return *added;
+}
+
+SXElem SxGraph::marked(const SXElem& expression) {
+  const SXElem mark = SXElem::unary(casadi::OP_ASSIGN, expression);
+  remember(mark, node(expression));
+  has_marks_ = true;
+  return mark;
+}
+
+void SxGraph::drop_marks(casadi::SX& expressions, KnownExpressions& known) const {
+  if (!has_marks_) return;
+  for (SXElem& expression : expressions.nonzeros()) {
+    std::vector<SXElem> open{expression};
+    while (!open.empty()) {
+      const SXElem current = open.back();
+      const auto todo = open.size();
+      const bool leaf = current.is_constant() || current.is_symbolic();
+      for (casadi_int i = 0; !leaf && !known.contains(current.get()) && i < current.n_dep(); ++i) {
+        if (!known.contains(current.dep(i).get())) open.push_back(current.dep(i));
+      }
+      if (open.size() > todo) continue;
+      open.pop_back();
+      const bool mark = !leaf && current.op() == casadi::OP_ASSIGN;
+      known.emplace(current.get(), mark ? known.at(current.dep(0).get()) : with_operands(current, known));
+    }
+    expression = known.at(expression.get());
+  }
 }
 
 SXElem SxGraph::with_alphas(int root, const std::map<int, double>& fixed) {

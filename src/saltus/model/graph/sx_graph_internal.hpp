@@ -29,6 +29,12 @@ struct CellUse {
   std::shared_ptr<const CellTable> table;
 };
 
+/// Holds what expressions have become, by their addresses.
+using KnownExpressions = std::unordered_map<const void*, SXElem>;
+
+/// Returns an expression with what its operands have become; itself where they are what they were.
+[[nodiscard]] SXElem with_operands(const SXElem& expression, const KnownExpressions& known);
+
 class SxGraph {
  public:
   [[nodiscard]] const Tape& tape() const { return tape_; }
@@ -56,6 +62,11 @@ class SxGraph {
   /// Returns a copy: what is made with it may add nodes, which moves those that are there.
   [[nodiscard]] SXElem expression(int node) const { return expressions_[at(node)]; }
 
+  /// Returns an expression of its own with the value and the node of one that depends on alphas.
+  [[nodiscard]] SXElem marked(const SXElem& expression);
+  /// Takes the marks out of expressions. What they share stays shared as long as `known` is the same.
+  void drop_marks(casadi::SX& expressions, KnownExpressions& known) const;
+
   /// Returns the expression with some alphas (by node) fixed.
   [[nodiscard]] SXElem with_alphas(int node, const std::map<int, double>& fixed);
 
@@ -82,6 +93,7 @@ class SxGraph {
   std::vector<SXElem> keep_alive_;   ///< the addresses in numbers_ stay theirs
   std::vector<SXElem> expressions_;  ///< by node
   std::vector<CellUse> cells_;
+  bool has_marks_ = false;
 };
 
 /// Returns the only entry of a scalar; nothing for other shapes.

@@ -242,12 +242,15 @@ Expected<SXElem> Recognition::select(const Condition& condition, const SXElem& a
   if (diagram.overflowed()) return tl::unexpected(chain_too_long("the condition of an if"));
   std::vector<SXElem> literals;
   for (const auto& function : functions_) literals.push_back(function.alpha);
+  if (*holds_where <= 1) {
+    return on_surfaces_only(condition, *holds_where == TruthDiagram::constant_true()).map([&](const SXElem& truth) {
+      return graph.blend(truth, a, b);
+    });
+  }
   // A single literal the other way round exchanges the branches rather than computing with 1 - alpha.
   const auto& top = diagram[*holds_where];
-  if (*holds_where > 1 && top.low == 1 && top.high == 0) {
-    return graph.blend(literals[at(top.literal)], b, a);
-  }
-  return graph.blend(graph.polynomial(diagram, *holds_where, literals), a, b);
+  if (top.low == 1 && top.high == 0) return graph.blend(marked(literals[at(top.literal)], !condition), b, a);
+  return graph.blend(marked(graph.polynomial(diagram, *holds_where, literals), condition), a, b);
 }
 
 Expected<DeclaredFunction> Recognition::declare(const std::string& name, const SXElem& psi) {

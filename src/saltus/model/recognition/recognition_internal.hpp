@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,10 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> min(const SXElem& a, const SXElem& b, const std::string& name);
   [[nodiscard]] Expected<SXElem> select(const Condition& condition, const SXElem& a, const SXElem& b);
 
+  /// Returns the value at an instant, over the alphas there: 1 beyond the surface, 0 below, between them on it. A
+  /// condition is 1 where it holds as written, equality included, else 0.
+  [[nodiscard]] Expected<SXElem> at_instant(const SXElem& e);
+
   /// Lets floor and mod from now on be of states and controls, too, or no longer: where nothing but a record has them.
   void take_whole_parts_of_all(bool all) { whole_parts_of_all_ = all; }
   /// Returns floor(e): e of time and parameters only.
@@ -117,6 +122,11 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> choose(const SXElem& difference, const std::string& name, const SXElem& a,
                                         const SXElem& b);
   [[nodiscard]] SXElem value(const Selection& selection);
+  [[nodiscard]] SXElem marked(const SXElem& truth, const Condition& condition);
+  [[nodiscard]] Expected<SXElem> on_surfaces_only(const Condition& condition, bool elsewhere);
+  [[nodiscard]] Expected<SXElem> truth_at_instant(const Condition& condition, const KnownExpressions& known);
+  [[nodiscard]] Expected<SXElem> comparison_at_instant(const Comparison& comparison, const SXElem& difference,
+                                                       const SXElem& here);
   using MakeSelection = FunctionRef<Expected<SXElem>(const SXElem&, const std::string&)>;
   /// Returns what is made of e, or of e with every value of the two-valued states in it, blended.
   [[nodiscard]] Expected<SXElem> blended(const SXElem& e, const std::string& name, MakeSelection make);
@@ -137,6 +147,7 @@ class Recognition {
   std::vector<MetFunction> functions_;
   std::vector<int> two_valued_;  ///< functions whose selections are states
   SharingIndex index_;
+  std::unordered_map<const void*, Condition> conditions_;  ///< by the marks of their truth in expressions
   std::vector<Decision> decisions_;
   std::set<std::tuple<Decision::Kind, int, int, std::string>> known_decisions_;
   std::shared_ptr<const CellTable> integers_ = std::make_shared<const CellTable>(integer_cells());

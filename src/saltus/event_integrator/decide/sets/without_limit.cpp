@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "saltus/event_integrator/decide/start.hpp"
+#include "saltus/event_integrator/mode/selections_at.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -46,7 +46,7 @@ class Around {
   void look(std::size_t axis, double way, double beside) {
     std::vector<double> x = x_;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += i == axis ? way : beside;
-    const auto alpha = selections_at(s_, t_, x.data(), alpha_);
+    const auto alpha = selections_at(s_.kernel, t_, x.data(), alpha_);
     s_.kernel.field(t_, x.data(), alpha.data(), f_.data());
     if (!is_finite(f_)) return;
     std::vector<double> listed;

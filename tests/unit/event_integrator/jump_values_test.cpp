@@ -1,0 +1,147 @@
+// What a jump sets is made of values at the instant: a comparison there is what its operator says.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "run_model.hpp"
+#include "saltus/event_integrator/mode/selections_at.hpp"
+
+namespace saltus::event_integrator::testing {
+namespace {
+
+using casadi::SX;
+using model::Builder;
+using model::Condition;
+
+/// One more state, which a jump sets to what is asked for.
+struct Asked {
+  Builder builder{"values"};
+  SX x;
+  std::vector<std::string> names;
+  std::map<std::string, SX> set;
+
+  void ask(const std::string& name, const SX& value) {
+    builder.discrete_state("is_" + name, -7.0);
+    names.push_back(name);
+    set["is_" + name] = value;
+  }
+  void ask(const std::string& name, const Condition& condition) { ask(name, builder.if_(condition, 1.0, 0.0)); }
+  /// Everything that compares e with 0.
+  void ask_all(const SX& e) {
+    ask("above", model::greater(e, 0.0));
+    ask("not_below", model::greater_equal(e, 0.0));
+    ask("below", model::less(e, 0.0));
+    ask("not_above", model::less_equal(e, 0.0));
+    ask("at", model::greater_equal(e, 0.0) && model::less_equal(e, 0.0));
+    ask("beside", !(model::greater_equal(e, 0.0) && model::less_equal(e, 0.0)));
+    ask("turned", model::greater(0.0, -2.0 * e));
+    ask("sign", builder.sign(e));
+    ask("step", builder.step(e));
+    ask("abs", builder.abs(e));
+    ask("max", builder.max(e, 0.0));
+    ask("min", builder.min(e, 0.0));
+    ask("inside", model::greater(builder.if_(model::greater(e, 0.0), 1.0, 0.0) - 0.25, 0.0));
+  }
+  std::vector<double> run(double until, ode::Method method) {
+    IntegrationOptions options;
+    options.method = method;
+    options.until = until;
+    const auto run = run_model(builder, options);
+    EXPECT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    const auto first = run.final.x.size() - names.size();
+    return {run.final.x.begin() + static_cast<std::ptrdiff_t>(first), run.final.x.end()};
+  }
+};
+
+const std::vector<double> at_equality{0, 1, 0, 1, 1, 0, 0, 0, 0.5, 0, 0, 0, 0};
+const std::vector<double> above{1, 1, 0, 0, 0, 1, 1, 1, 1, 2, 2, 0, 1};
+const std::vector<double> below{0, 0, 1, 1, 0, 1, 0, -1, 0, 2, 0, -2, 0};
+
+void expect_near(const std::vector<double>& found, const std::vector<double>& expected) {
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-9) << i;
+}
+
+/// x' = 1 from 0; jumps where x is `level`.
+std::vector<double> at_a_root(double level, double compared, ode::Method method) {
+  Asked asked;
+  const SX x = asked.builder.state("x", {.initial = 0.0});
+  asked.builder.dynamics("x", 1.0 + 0.0 * x);
+  asked.ask_all(x - compared);
+  asked.builder.jump(model::greater(x, level), asked.set);
+  return asked.run(5.0, method);
+}
+
+TEST(JumpValues, AtTheRootThatTriggeredIsEqual) {
+  for (const auto method : every_method) expect_near(at_a_root(3.0, 3.0, method), at_equality);
+}
+
+TEST(JumpValues, BesideTheirSurfacesHaveTheirSides) {
+  for (const auto method : every_method) {
+    expect_near(at_a_root(3.0, 1.0, method), above);
+    expect_near(at_a_root(1.0, 3.0, method), below);
+  }
+}
+
+TEST(JumpValues, AtGivenTimes) {
+  Asked asked;
+  const SX next = asked.builder.discrete_state("next", 2.1);
+  asked.ask_all(asked.builder.time() - next);
+  asked.builder.jump_at({2.1}, asked.set);
+  expect_near(asked.run(3.0, ode::Method::dop853), at_equality);
+}
+
+TEST(JumpValues, AtTheStart) {
+  Asked asked;
+  const SX next = asked.builder.discrete_state("next", 0.0);
+  asked.ask_all(asked.builder.time() - next);
+  asked.builder.jump_at({0.0}, asked.set);
+  expect_near(asked.run(3.0, ode::Method::dop853), at_equality);
+}
+
+TEST(JumpValues, WhereAnEarlierJumpHasPutThem) {
+  Asked asked;
+  const SX x = asked.builder.state("x", {.initial = 0.0});
+  asked.builder.dynamics("x", 1.0 + 0.0 * x);
+  asked.ask_all(x - 3.0);
+  asked.builder.jump_at({1.0}, {{"x", SX(3.0)}}, {.priority = SX(1.0)});
+  auto options = model::JumpOptions{};
+  options.values = model::JumpValues::at_execution;
+  asked.builder.jump_at({1.0}, asked.set, options);
+  expect_near(asked.run(2.0, ode::Method::dop853), at_equality);
+}
+
+TEST(SelectionsAt, KeepWhatTheyHaveAtZero) {
+  Builder builder("nested");
+  const SX x = builder.state("x", {.initial = 1.0}), y = builder.state("y", {.initial = 0.0});
+  builder.dynamics("x", builder.sign(x));
+  builder.dynamics("y", builder.sign(y + builder.sign(x)));
+  const auto system = builder.build();
+  ASSERT_TRUE(system.has_value());
+  const auto kernel = evaluation::ModelKernel::compile(*system);
+  ASSERT_TRUE(kernel.has_value());
+  const auto selections = [&](double at_x, double at_y, const std::vector<int>& zeros = {}) {
+    const double point[] = {at_x, at_y};
+    return selections_at(*kernel, 0.0, point, {0.25, 0.25}, zeros);
+  };
+  EXPECT_EQ(selections(2.0, -3.0), (std::vector<double>{1.0, 0.0}));
+  EXPECT_EQ(selections(-2.0, 0.5), (std::vector<double>{0.0, 0.0}));  // the inner sign is read first
+  EXPECT_EQ(selections(0.0, 2.0), (std::vector<double>{0.25, 1.0}));
+  EXPECT_EQ(selections(-1e-9, 2.0, {0}), (std::vector<double>{0.25, 1.0}));
+}
+
+/// v slides on 0: it counts as equal, and its selection has the value of sliding.
+TEST(JumpValues, OnWhatIsSlidOn) {
+  Asked asked;
+  const SX v = asked.builder.state("v", {.initial = 0.5});
+  asked.builder.dynamics("v", 0.2 - asked.builder.sign(v));
+  asked.ask("above", model::greater(v, 0.0));
+  asked.ask("not_below", model::greater_equal(v, 0.0));
+  asked.ask("not_above", model::less_equal(v, 0.0));
+  asked.ask("friction", asked.builder.sign(v));
+  asked.builder.jump_at({2.0}, asked.set);
+  expect_near(asked.run(3.0, ode::Method::dop853), {0, 1, 1, 0.2});
+}
+
+}  // namespace
+}  // namespace saltus::event_integrator::testing
