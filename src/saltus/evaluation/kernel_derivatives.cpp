@@ -174,6 +174,29 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
   gradient(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
 }
 
+void ModelKernel::gradient(int function, double t, const double* x, const double* alpha, AffineRow& row) const {
+  auto& self = *implementation_;
+  if (is_affine(function) && inner(function).empty()) {
+    const auto& rows = self.gradients_of_affine();
+    const auto begin = static_cast<std::ptrdiff_t>(rows.start[at(function)]);
+    const auto end = static_cast<std::ptrdiff_t>(rows.start[at(function) + 1]);
+    row.column.assign(rows.column.begin() + begin, rows.column.begin() + end);
+    row.coefficient.assign(rows.coefficient.begin() + begin, rows.coefficient.begin() + end);
+    row.rate = rows.rate[at(function)];
+    return;
+  }
+  auto& all = self.gradient_row;
+  all.resize(at(states()));
+  gradient(function, t, x, alpha, all.data(), &row.rate);
+  row.column.clear();
+  row.coefficient.clear();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i] == 0.0) continue;
+    row.column.push_back(i);
+    row.coefficient.push_back(all[i]);
+  }
+}
+
 double ModelKernel::lie_derivative(int function, int order, double t, const double* x, const double* alpha) const {
   SALTUS_ASSERT(function < 0 ? order >= 0 : function < event_functions() && order >= 1);
   auto& self = *implementation_;

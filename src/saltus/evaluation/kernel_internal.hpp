@@ -182,8 +182,9 @@ struct LastScales {
 /// Holds what the user of a kernel changes, and its work space.
 struct KernelContext : KernelValues {
   LastScales last_scales;
-  FieldConstants constants;   ///< work space of field()
-  std::vector<double> slope;  ///< work space of rate()
+  FieldConstants constants;          ///< work space of field()
+  std::vector<double> slope;         ///< work space of rate()
+  std::vector<double> gradient_row;  ///< work space of gradient()
   /// Of functions that are affine and do not hold selections gradients are constants: these rows, once known.
   std::optional<AffineRows> constant_gradients;
   std::map<int, LimitedFunction> limited;                   ///< by event function

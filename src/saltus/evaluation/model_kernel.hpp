@@ -178,6 +178,9 @@ class ModelKernel {
   void scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const;
   /// Evaluates the gradient row d phi_j / d x (n_x) and d phi_j / d t.
   void gradient(int function, double t, const double* x, const double* alpha, double* row, double* rate) const;
+  /// Does the same for the states that phi_j reads alone; the offset is not set. Cost: that of the row, where it is
+  /// constant.
+  void gradient(int function, double t, const double* x, const double* alpha, AffineRow& row) const;
   /// Returns grad phi_j . f + d phi_j/dt where phi_j is affine and holds no selections. Cost: the rows of f that this
   /// needs, or all of them where these are not more.
   [[nodiscard]] double rate(int function, double t, const double* x, const double* alpha) const;

@@ -1,4 +1,6 @@
 // What a jump sets is made of values at the instant: a comparison there is what its operator says.
+#include <algorithm>
+#include <ctime>
 #include <map>
 #include <string>
 #include <vector>
@@ -141,6 +143,32 @@ TEST(JumpValues, OnWhatIsSlidOn) {
   asked.ask("friction", asked.builder.sign(v));
   asked.builder.jump_at({2.0}, asked.set);
   expect_near(asked.run(3.0, ode::Method::dop853), {0, 1, 1, 0.2});
+}
+
+/// Seconds of the processor for each jump of n neurons, each of which jumps for itself.
+double seconds_per_jump(int n) {
+  Builder builder("neurons");
+  for (int i = 0; i < n; ++i) {
+    const std::string name = "v" + std::to_string(i);
+    const SX v = builder.state(name, {.initial = i / (1.0 + n)});
+    builder.dynamics(name, 1.2 - 0.1 * v);
+    builder.jump(v - 1.0, model::Direction::up, {{name, SX(0.0)}});
+  }
+  const auto system = builder.build();
+  auto kernel = evaluation::ModelKernel::compile(*system);
+  IntegrationOptions options;
+  options.until = 300.0 / n;
+  double least = 1e9;
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    const std::clock_t begin = std::clock();
+    const auto run = integrate(*kernel, options);
+    least = std::min(least, static_cast<double>(std::clock() - begin) / static_cast<double>(run.events.size()));
+  }
+  return least / CLOCKS_PER_SEC;
+}
+
+TEST(CostOfAJump, GrowsLikeTheModelAndNotLikeItsSquare) {
+  EXPECT_LT(seconds_per_jump(1200), 8.0 * seconds_per_jump(300));
 }
 
 }  // namespace

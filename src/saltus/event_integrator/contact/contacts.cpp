@@ -23,15 +23,14 @@ constexpr double small_velocity =
 Contacts::Contacts(const evaluation::ModelKernel& kernel)
     : kernel_(kernel), layout_(kernel.layout()), contacts_(layout_.contacts) {
   if (contacts_.empty()) return;
-  guards_.assign(at(kernel.event_functions()), false);
-  for (const auto& contact : contacts_) {
-    const auto guards = static_cast<int>(layout_.jumps[at(contact.jump)].guards.size());
-    for (int g = 0; g < guards; ++g) guards_[at(kernel.jump_guard(contact.jump, g))] = true;
+  contact_of_guard_.assign(at(kernel.event_functions()), -1);
+  is_of_contact_.assign(layout_.jumps.size(), false);
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    const int jump = contacts_[i].jump;
+    is_of_contact_[at(jump)] = true;
+    for (const auto& guard : layout_.jumps[at(jump)].guards)
+      contact_of_guard_[at(guard.function)] = static_cast<int>(i);
   }
-}
-
-bool Contacts::owns(int jump) const {
-  return std::any_of(contacts_.begin(), contacts_.end(), [jump](const auto& contact) { return contact.jump == jump; });
 }
 
 /// Of the accelerations that the forces of closed contacts cancel, by the sizes of these forces in t and x.
@@ -40,8 +39,8 @@ double Contacts::force_terms(const ContactPoint& point, double t, const std::vec
   const auto presses = [&](const auto& contact) { return contact.has_gap && x[at(contact.active)] != 0.0; };
   if (std::none_of(contacts_.begin(), contacts_.end(), presses)) return 0.0;
   auto& [open, rate, magnitude, slope] = terms_;
-  magnitude.resize(guards_.size());
-  slope.resize(guards_.size());
+  magnitude.resize(contact_of_guard_.size());
+  slope.resize(contact_of_guard_.size());
   kernel_.scales(t, x.data(), alpha.data(), magnitude.data(), slope.data());
   double largest = 0.0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {

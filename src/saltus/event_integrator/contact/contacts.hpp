@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saltus/base/at.hpp"
 #include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/contact/contact_forces.hpp"
@@ -31,10 +32,10 @@ class Contacts {
 
   [[nodiscard]] bool none() const { return contacts_.empty(); }
   /// Returns whether a jump is that of a contact.
-  [[nodiscard]] bool owns(int jump) const;
+  [[nodiscard]] bool owns(int jump) const { return !is_of_contact_.empty() && is_of_contact_[at(jump)]; }
   /// Returns whether an event function is a guard of such a jump.
   [[nodiscard]] bool guards(int function) const {
-    return !guards_.empty() && guards_[static_cast<std::size_t>(function)];
+    return !contact_of_guard_.empty() && contact_of_guard_[at(function)] >= 0;
   }
   /// Returns how far a guard may be on the wrong side where a mode begins: the gap of a contact that has just opened is
   /// 0 to the rounding of bodies whose positions may all be 0.
@@ -209,7 +210,8 @@ class Contacts {
   const evaluation::ModelKernel& kernel_;
   const model::Layout& layout_;
   const std::vector<model::Contact>& contacts_;
-  std::vector<bool> guards_;  ///< by event function; empty without contacts
+  std::vector<int> contact_of_guard_;  ///< by event function, -1: of none; empty without contacts
+  std::vector<bool> is_of_contact_;    ///< by jump; empty without contacts
   evaluation::ContactValues values_;
   struct ProjectionStart {
     std::vector<int> held;  ///< rows that the modes hold

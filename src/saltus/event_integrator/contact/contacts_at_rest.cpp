@@ -156,11 +156,11 @@ std::optional<std::string> Contacts::begin_anew(const ContactMoment& moment, std
 
 /// The contact that is open, and whose gap this event function is.
 std::optional<int> Contacts::open_with_gap(int function, const std::vector<double>& x) const {
-  const auto is_it = [&](const auto& contact) {
-    return contact.has_gap && x[at(contact.closed)] == 0.0 && kernel_.jump_guard(contact.jump, 0) == function;
-  };
-  const auto found = std::find_if(contacts_.begin(), contacts_.end(), is_it);
-  return found == contacts_.end() ? std::nullopt : std::optional(static_cast<int>(found - contacts_.begin()));
+  if (!guards(function)) return std::nullopt;
+  const int i = contact_of_guard_[at(function)];
+  const auto& contact = contacts_[at(i)];
+  const bool is_open = contact.has_gap && x[at(contact.closed)] == 0.0;
+  return is_open && kernel_.jump_guard(contact.jump, 0) == function ? std::optional(i) : std::nullopt;
 }
 
 double Contacts::tolerated(int function, const std::vector<double>& x) const {
@@ -169,7 +169,7 @@ double Contacts::tolerated(int function, const std::vector<double>& x) const {
 
 auto Contacts::gap_motion(int function, const ContactMoment& moment, const std::vector<double>& x,
                           const std::vector<double>& slope, Along& along) const -> std::optional<GapMotion> {
-  const auto contact = guards(function) ? open_with_gap(function, x) : std::nullopt;
+  const auto contact = open_with_gap(function, x);
   if (!contact) return std::nullopt;
   auto& [known, at_x, along_slope, ahead, here, later] = along;
   const double h = ahead_by * moment.time_scale;

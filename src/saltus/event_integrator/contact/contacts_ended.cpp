@@ -39,7 +39,7 @@ std::optional<ContactMode> Contacts::way_back(const ContactMoment& moment, int c
   const double share = x[at(entry.share)];
   double friction = std::abs(share) == 1.0 ? -share : 0.0;
   if (ends && x[at(entry.stick)] != 0.0) {
-    std::vector<double> values(guards_.size());
+    std::vector<double> values(contact_of_guard_.size());
     kernel_.functions(moment.t, x.data(), moment.alpha.data(), values.data());
     // They are negative inside of the cone.
     const int first = entry.has_gap ? 1 : 0;

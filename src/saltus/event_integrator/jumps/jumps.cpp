@@ -37,6 +37,7 @@ Jumps::Jumps(const evaluation::ModelKernel& kernel, double from)
       layout_(kernel.layout()),
       from_(from),
       truth_(layout_.jumps.size(), 0U),
+      steps_(layout_.jumps.size()),
       times_passed_(layout_.jumps.size(), 0),
       values_(at(kernel.event_functions())),
       next_time_(never) {
@@ -83,25 +84,31 @@ int Jumps::guard_sign(int function, const JumpPoint& point) const {
   return value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
 }
 
-/// step of each guard; values_ are those of the point.
-std::vector<double> Jumps::steps(int jump, const JumpPoint& point) const {
-  const auto& entry = layout_.jumps[at(jump)];
-  std::vector<double> result;
-  for (std::size_t g = 0; g < entry.guards.size(); ++g) {
-    const int sign = guard_sign(kernel_.jump_guard(jump, static_cast<int>(g)), point);
-    result.push_back(sign > 0 || (sign == 0 && entry.guards[g].true_at_equality) ? 1.0 : 0.0);
+/// step of each guard; values_ are those of the point. Returns whether one is another than last time.
+bool Jumps::read_steps(int jump, const JumpPoint& point) const {
+  const auto& guards = layout_.jumps[at(jump)].guards;
+  auto& steps = steps_[at(jump)];
+  bool changed = steps.size() != guards.size();
+  steps.resize(guards.size());
+  for (std::size_t g = 0; g < guards.size(); ++g) {
+    const int sign = guard_sign(guards[g].function, point);
+    const double step = sign > 0 || (sign == 0 && guards[g].true_at_equality) ? 1.0 : 0.0;
+    changed = changed || step != steps[g];
+    steps[g] = step;
   }
-  return result;
+  return changed;
 }
 
 unsigned Jumps::truth(int jump, const JumpPoint& point) const {
   const auto trigger = layout_.jumps[at(jump)].trigger;
   if (trigger == JumpTrigger::times) return 0U;
   if (trigger == JumpTrigger::condition) {
-    return kernel_.jump_condition(jump, point.t, point.x.data(), point.alpha.data(), steps(jump, point).data()) ? 1U
-                                                                                                                : 0U;
+    // A condition is a function of its comparisons.
+    if (!read_steps(jump, point)) return truth_[at(jump)] & 1U;
+    const double* steps = steps_[at(jump)].data();
+    return kernel_.jump_condition(jump, point.t, point.x.data(), point.alpha.data(), steps) ? 1U : 0U;
   }
-  const int sign = guard_sign(kernel_.jump_guard(jump, 0), point);
+  const int sign = guard_sign(layout_.jumps[at(jump)].guards.front().function, point);
   const unsigned below = trigger != JumpTrigger::guard_up && sign < 0 ? 1U : 0U;
   const unsigned above = trigger == JumpTrigger::guard_up ? 1U : 2U;
   return below | (trigger != JumpTrigger::guard_down && sign > 0 ? above : 0U);
@@ -218,7 +225,8 @@ int Jumps::trigger_sign(int jump, int guard, const JumpPoint& point, int inward)
       break;
   }
   kernel_.functions(point.t, point.x.data(), point.alpha.data(), values_.data());
-  auto alpha = steps(jump, point);
+  static_cast<void>(read_steps(jump, point));
+  auto alpha = std::exchange(steps_[at(jump)], {});  // to be read anew
   const auto holds = [&](double step) {
     alpha[at(guard)] = step;
     return kernel_.jump_condition(jump, point.t, point.x.data(), point.alpha.data(), alpha.data());

@@ -67,7 +67,7 @@ class Jumps {
   };
   /// Bits: 1 the condition holds (guards: g on the wanted side, both: g < 0), 2 (both only) g > 0.
   [[nodiscard]] unsigned truth(int jump, const JumpPoint& point) const;
-  [[nodiscard]] std::vector<double> steps(int jump, const JumpPoint& point) const;
+  [[nodiscard]] bool read_steps(int jump, const JumpPoint& point) const;
   [[nodiscard]] int guard_sign(int function, const JumpPoint& point) const;
   /// Selections as right-hand sides take them: psi at zero has its selection of sliding, or else 1/2.
   [[nodiscard]] std::vector<double> at_instant(const JumpPoint& point) const;
@@ -79,7 +79,8 @@ class Jumps {
   const model::Layout& layout_;
   double from_;
   std::vector<unsigned> truth_;
-  std::vector<long> times_passed_;  ///< of every jump with given times
+  mutable std::vector<std::vector<double>> steps_;  ///< of the guards of every condition, as they were read last
+  std::vector<long> times_passed_;                  ///< of every jump with given times
   mutable std::vector<double> values_;
   std::vector<Execution> queue_;  ///< in the order of triggering
   double next_time_;

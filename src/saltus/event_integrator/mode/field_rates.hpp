@@ -20,18 +20,20 @@ struct Rate {
 /// Returns d_t g + grad g . field at (t, x); 0 times infinity is 0. `row` takes grad g.
 [[nodiscard]] inline Rate rate_along(const evaluation::ModelKernel& kernel, int function, double t,
                                      const std::vector<double>& x, const std::vector<double>& alpha,
-                                     const std::vector<double>& field, std::vector<double>& row) {
-  row.resize(x.size());
+                                     const std::vector<double>& field, evaluation::AffineRow& row) {
   Rate rate;
-  kernel.gradient(function, t, x.data(), alpha.data(), row.data(), &rate.value);
+  kernel.gradient(function, t, x.data(), alpha.data(), row);
+  rate.value = row.rate;
   rate.terms = std::abs(rate.value);
   rate.magnitude = rate.value == 0.0 ? 0.0 : std::abs(rate.value * t);
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    const double term = row[i] == 0.0 ? 0.0 : row[i] * field[i];
+  for (std::size_t k = 0; k < row.column.size(); ++k) {
+    const double coefficient = row.coefficient[k];
+    if (coefficient == 0.0) continue;
+    const double term = coefficient * field[row.column[k]];
     rate.value += term;
-    rate.magnitude += row[i] == 0.0 ? 0.0 : std::abs(row[i] * x[i]);
+    rate.magnitude += std::abs(coefficient * x[row.column[k]]);
     rate.terms += std::abs(term);
-    rate.slope += std::abs(row[i]);
+    rate.slope += std::abs(coefficient);
   }
   return rate;
 }
@@ -55,7 +57,7 @@ class FieldRates {
  private:
   const evaluation::ModelKernel& kernel_;
   const Position& here_;
-  std::vector<double> row_;  ///< grad g
+  evaluation::AffineRow row_;  ///< grad g
 };
 
 }  // namespace saltus::event_integrator

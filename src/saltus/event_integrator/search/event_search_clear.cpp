@@ -32,7 +32,8 @@ bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
   if (!(is_surface || is_guard) || !may_be_an_error(step, hit)) return true;
   const double t = step.t + hit.theta * step.h;
   step.evaluate(hit.theta, x_.data());
-  std::vector<double> slope(x_.size()), gradient;
+  std::vector<double> slope(x_.size());
+  evaluation::AffineRow gradient;
   field_(t, x_.data(), slope.data());
   const Rate rate = rate_along(kernel_, function.index, t, x_, mode_.state.alpha, slope, gradient);
   return hit.sign * rate.value < 1e-3 * hit.sign * hit.slope;

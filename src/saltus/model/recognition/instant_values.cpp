@@ -77,8 +77,7 @@ Expected<SXElem> Recognition::comparison_at_instant(const Comparison& comparison
 }
 
 /// The truth at the instant of a condition whose differences are known there.
-Expected<SXElem> Recognition::truth_at_instant(const Condition& condition,
-                                               const KnownExpressions& known) {
+Expected<SXElem> Recognition::truth_at_instant(const Condition& condition, const KnownExpressions& known) {
   std::vector<SXElem> truths;
   for (const auto& comparison : comparisons_of(condition)) {
     const auto difference = difference_of(comparison);
