@@ -129,6 +129,29 @@ held = "held + if(t >= next and Circ <= 1, 1, 0)"
 until = 130
 """
 
+VALVE = """
+[model]
+name = "relay-valve"
+[states]
+y = 0
+dy = 0
+xa = 0
+va = 0
+I = 0
+[definitions]
+e = "1 - y"
+u = "2*e + I + 0.8*sign(e)"
+us = "min(u, 1.5)"
+[dynamics]
+y = "dy"
+dy = "-1.4*dy - (y - xa)"
+xa = "va"
+va = "(us - xa - 0.3*va - 0.15*sign(va))/0.05"
+I = "e + 2*(us - u)"
+[simulate]
+until = 60
+"""
+
 RELAY = """
 [model]
 name = "relay"
@@ -260,6 +283,14 @@ class Tried(tool.ToolTest):
             self.assertEqual((final["doses"], final["held"]), (7, 0))
             self.assertAlmostEqual(final["A"], 0.13533901, delta=1e-7)  # SciPy, with the rule in Python
             self.assertAlmostEqual(final["Circ"], 4.59356115, delta=1e-6)
+
+    def test_cycles_on_their_way_to_a_limit_cycle_have_no_limit(self):
+        # Where the valve leaves its friction the velocity has no rate: that resolves its cycles all the same.
+        for integrator in ("dopri5", "dop853", "radau5"):
+            for until in ("20", "60", "150"):
+                result, _, _ = self.simulated(VALVE, "--integrator", integrator, "--until", until)
+                self.assertEqual(result["status"]["termination"], "completed")
+                self.assertNotIn("accumulation", [event["kind"] for event in result["events"]])
 
     def test_the_layer_that_is_advised_resolves_the_cycles(self):
         _, _, err = self.simulated(FEEDBACK, code=3)

@@ -26,6 +26,7 @@ void SwitchAccumulation::note(const ModeChange& change) {
   if (!series_.tightens()) return cycles_.clear();
   if (change.is_single()) {
     labels_.assign(1, label_of(change.surface, change.after));
+    slid_.assign(1, change.before == 0);
   } else if (!find_labels(*change.mode_before)) {
     return cycles_.clear();
   }
@@ -42,11 +43,13 @@ void SwitchAccumulation::note(const ModeChange& change) {
 /// Of all surfaces whose mode changes; false where one of them does not hold a solution: a kink, or a time.
 bool SwitchAccumulation::find_labels(const ModeState& before) {
   labels_.clear();
+  slid_.clear();
   bool holds = true;
   for_each_difference(before.mode, here_.state.mode, [&](std::size_t j) {
     const auto role = switching_context_.layout.surfaces[j].role;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
     labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));
+    slid_.push_back(before.mode[j] == 0);
   });
   return holds;
 }
@@ -54,7 +57,8 @@ bool SwitchAccumulation::find_labels(const ModeState& before) {
 /// How short cycles of the last switch may get.
 void SwitchAccumulation::note_rates(const std::vector<double>& alpha_before) {
   kernel_.field(here_.t, here_.x.data(), alpha_before.data(), slope_.data());
-  for (const int label : labels_) {
+  for (std::size_t k = 0; k < labels_.size(); ++k) {
+    const int label = labels_[k];
     // Where sliding begins or ends psi moves on the other side only.
     const Rate arriving = rates_.along(surface_of(label), slope_);
     const Rate leaving = rates_.here(surface_of(label));
@@ -68,8 +72,7 @@ void SwitchAccumulation::note_rates(const std::vector<double>& alpha_before) {
     double& shortest = shortest_[at(label)];
     shortest = rate > 0.0 ? 4.0 * unresolved / rate : 0.0;
     // Where sliding ends psi leaves tangentially: its rate is rounding, and what bends it is what resolves the cycle.
-    constexpr double tangent = 1e-12;
-    if (rate > tangent * std::max(arriving.terms, leaving.terms)) continue;
+    if (!slid_[k]) continue;
     const double bend =
         std::abs(kernel_.lie_derivative(surface_of(label), 2, here_.t, here_.x.data(), here_.state.alpha.data()));
     if (bend > 0.0) shortest = std::min(shortest, std::sqrt(8.0 * unresolved / bend));

@@ -73,6 +73,7 @@ class SwitchAccumulation {
   SwitchSeries series_;
   EventSeries cycles_;            ///< by surface and mode behind
   std::vector<int> labels_;       ///< of the last switch
+  std::vector<bool> slid_;        ///< of the surfaces of labels_: before the change
   std::vector<double> shortest_;  ///< by label: shorter cycles are not resolved, for the rounding of psi
   double first_ = 0.0;            ///< duration of the first cycle that was closed
   double closed_ = 0.0;           ///< and of the last one
