@@ -191,7 +191,55 @@ until = 5
 """
 
 
+BLOCK = """
+[model]
+name = "a block on a rough plane"
+[states]
+x = 0
+z = 0
+vx = 2
+vz = 0
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+force = { vz = -10 }
+[[contacts]]
+name = "ground"
+gap = "z"
+tangent = { x = 1 }
+friction = "0.2 + 0.3*x"
+[simulate]
+until = 3
+"""
+
+
 class ContactModes(tool.ResultTest):
+    def test_friction_may_vary_with_positions(self):
+        # x'' + 3 x = -2 until it stops.
+        result = self.result(BLOCK)
+        stick, = (event for event in result["events"] if event["kind"] == "stick")
+        root = math.sqrt(3.0)
+        stop = math.atan(2.0 / (root * (2.0 / 3.0))) / root
+        self.assertAlmostEqual(stick["t"], stop, delta=1e-8)
+        x = math.hypot(2.0 / 3.0, 2.0 / root) - 2.0 / 3.0
+        self.assertAlmostEqual(result["final"]["x"][0], x, delta=1e-8)
+
+    def test_friction_may_vary_with_time(self):
+        # It holds 1 until (0.5 - 0.1 t) 10 = 1; from there on v' = t - 4.
+        text = BLOCK.replace("vx = 2", "vx = 0").replace("vz = -10 }", "vz = -10, vx = 1 }")
+        text = text.replace("0.2 + 0.3*x", "0.5 - 0.1*t").replace("until = 3", "until = 4.5")
+        result = self.result(text)
+        slip, = (event for event in result["events"] if event["kind"] == "slip")
+        self.assertAlmostEqual(slip["t"], 4.0, delta=1e-9)
+        self.assertAlmostEqual(result["final"]["x"][2], 0.125, delta=1e-8)
+
+    def test_friction_that_turns_negative_stops_the_run(self):
+        text = BLOCK.replace("vx = 2", "vx = 9").replace("0.2 + 0.3*x", "0.2 - 0.1*t")
+        result = self.result(text, code=3)
+        self.assertEqual(result["status"]["termination"], "outside_class")
+        self.assertAlmostEqual(result["status"]["time_reached"], 2.0, delta=1e-9)
+        self.assertIn("the friction of 'ground' comes to", result["status"]["message"])
+
     def test_the_unit_of_mass_changes_nothing(self):
         """A body leaves its table where 2 sin 2t = 1; a puck of 1 m/s stops at t = 1/(mu g); the corners of a box come to rest."""
         lifted = """[model]

@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -177,6 +178,12 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
     return fmt::format(
         "the gap of {} has no normal at t = {:.17g}, where its gradient is 0: write it as a distance (x for x^3)",
         names(flat), moment.t);
+  }
+  for (const int i : touching) {
+    const double friction = point.friction[at(i)];
+    if (!contacts_[at(i)].friction_varies || friction > rounding_of(1.0)) continue;
+    return fmt::format("the friction of '{}' comes to {:.6g} at t = {:.17g}: it is positive while bodies touch",
+                       contacts_[at(i)].name, friction, moment.t);
   }
   auto excluded = modes_that_end(moment, point, ended, x);
   const bool closing =

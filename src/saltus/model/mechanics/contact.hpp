@@ -14,6 +14,7 @@ struct Contact {
   std::string name;
   bool has_gap = true;  ///< else dry friction in a plane as it is: always closed, with the normal force 1
   bool has_friction = false;
+  bool friction_varies = false;  ///< with positions or t: its last guard is the coefficient
   bool in_plane = false;  ///< two tangents, with friction: `stick`, `share` and the tangential impulse are two states
   int jump = -1;          ///< in System::jumps: where it opens, closes, sticks or slips
 

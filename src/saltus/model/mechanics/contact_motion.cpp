@@ -43,7 +43,9 @@ class ContactMotion {
       if (auto error = check_jumps(stated)) return tl::unexpected(*error);
       Contact contact{.name = stated.name};
       const SXElem friction = stated.friction.scalar();
-      contact.has_friction = !stated.tangents.is_empty() && recognition_.parameter_value(friction).value_or(0.0) > 0.0;
+      const auto constant = recognition_.parameter_value(friction);
+      contact.friction_varies = !stated.tangents.is_empty() && !constant;
+      contact.has_friction = contact.friction_varies || (!stated.tangents.is_empty() && *constant > 0.0);
       recognition_.note({.kind = Decision::Kind::sign, .node = recognition_.graph.node(friction)},
                         [&] { return fmt::format("the friction of '{}'", stated.name); });
       contact.in_plane = contact.has_friction && stated.tangents.size1() == 2;
@@ -63,19 +65,37 @@ class ContactMotion {
     });
   }
 
-  std::optional<Error> check_values(const ContactStatement& contact) {
-    const auto friction = recognition_.parameter_value(contact.friction.scalar());
-    if (!friction || !(*friction >= 0.0) || !std::isfinite(*friction)) {
-      return contact_error(contact.friction_location,
-                           friction ? fmt::format("the friction of '{}' is {}", contact.name, *friction)
-                                    : fmt::format("the friction of '{}' is no constant", contact.name),
-                           "it is a number that is 0 or positive, or an expression of parameters");
+  /// Of positions and t it is what it is when the run gets there; at the start, if that is known.
+  std::optional<Error> check_friction(const ContactStatement& contact) {
+    const SXElem stated = contact.friction.scalar();
+    auto friction = recognition_.parameter_value(stated);
+    const bool varies = !friction;
+    if (varies) {
+      const auto node = recognition_.graph.add(stated);
+      if (!node) return with_location(node.error(), contact.friction_location);
+      auto error = check_smooth(
+          recognition_, statement_, *node,
+          {motion_.positions, true, fmt::format("the friction of '{}'", contact.name), contact.friction_location});
+      if (error) return with_context(*error, "in [[contacts]]");
+      friction =
+          SX::depends_on(contact.friction, SX(statement_.time)) ? 1.0 : value_at_start(recognition_, statement_, *node);
+    }
+    if (!(*friction >= 0.0) || !std::isfinite(*friction)) {
+      return contact_error(
+          contact.friction_location,
+          fmt::format("the friction of '{}' is {}{}", contact.name, *friction, varies ? " at the start" : ""),
+          "it is a number that is 0 or positive, or an expression of parameters, positions and t");
     }
     if (*friction > 0.0 && contact.tangents.is_empty()) {
       return contact_error(contact.friction_location,
                            fmt::format("the contact '{}' has friction and no `tangent`", contact.name),
                            "write tangent = { x = 1 }: the direction in which it slips, over the positions");
     }
+    return std::nullopt;
+  }
+
+  std::optional<Error> check_values(const ContactStatement& contact) {
+    if (auto error = check_friction(contact)) return error;
     const auto restitution = recognition_.parameter_value(contact.restitution.scalar());
     if (!restitution || !(*restitution >= 0.0 && *restitution <= 1.0)) {
       return contact_error(contact.restitution_location,

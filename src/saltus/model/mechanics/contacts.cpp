@@ -148,7 +148,7 @@ class ContactBuild {
 
   /// What is positive as long as the mode lasts: the gap, or the normal force; with friction also what is left of the
   /// friction cone on both sides, or the speed of slipping. Forces and speeds are relative to the units of the mode:
-  /// they stand beside the 1 of other modes, whatever the user's units are.
+  /// they stand beside the 1 of other modes, whatever the user's units are. A coefficient that varies comes last.
   [[nodiscard]] std::vector<SX> guards(std::size_t k) const {
     const auto i = static_cast<casadi_int>(k);
     const auto& contact = system_.contacts[k];
@@ -158,18 +158,20 @@ class ContactBuild {
       result.push_back((1.0 - closed) * system_.gap(i) +
                        closed * (active * system_.normal_force(i) / state(contact.force_unit) + (1.0 - active)));
     }
-    if (!contact.has_friction) return result;
-    if (contact.in_plane) {
-      add_guards_in_plane(i, result);
-      return result;
-    }
+    if (contact.in_plane) add_guards_in_plane(i, result);
+    if (contact.has_friction && !contact.in_plane) add_guards_along(i, result);
+    if (contact.friction_varies) result.push_back(closed * system_.friction(i) + (1.0 - closed));
+    return result;
+  }
+
+  void add_guards_along(casadi_int i, std::vector<SX>& guards) const {
+    const auto& contact = system_.contacts[at_(i)];
     const SX stick = state(contact.stick), slip = state(contact.slip);
     const SX unit = state(contact.force_unit), speed = system_.velocity(m_ + i) / state(contact.speed_unit);
     const SX limit = system_.friction(i) * system_.normal_force(i) / unit,
              friction = system_.tangential_force(i) / unit;
-    result.push_back(stick * (limit - friction) + slip * state(contact.share) * speed + (1.0 - stick - slip));
-    result.push_back(stick * (limit + friction) + (1.0 - stick));
-    return result;
+    guards.push_back(stick * (limit - friction) + slip * state(contact.share) * speed + (1.0 - stick - slip));
+    guards.push_back(stick * (limit + friction) + (1.0 - stick));
   }
 
   /// What is left of the cone, and the bounds of the speed of slip.
