@@ -1,5 +1,3 @@
-#include "saltus/solver/workplaces_internal.hpp"
-
 #include <algorithm>
 #include <atomic>
 #include <thread>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/solver/workplaces_internal.hpp"
 
 namespace saltus::solver {
 

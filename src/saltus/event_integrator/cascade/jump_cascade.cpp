@@ -113,7 +113,7 @@ void JumpCascade::drop_zeros() {
   std::erase_if(zeros_, [&](int function) { return !stays_at_zero(function); });
 }
 
-void JumpCascade::read_user_signs() {
+void JumpCascade::read_user_signs(Gaps gaps) {
   find_values();
   auto& signs = user_signs_ = search_.user_signs();
   auto& vanish = user_zeros_;
@@ -123,8 +123,10 @@ void JumpCascade::read_user_signs() {
     const double value = values_.value[at(function)];
     const bool located = contains(zeros_, function);
     const bool unchanged = is_unchanged(function);
-    const double rounding = std::max(unchanged ? rounding_of(values_.magnitude[at(function)]) : resolution(function),
-                                     left_by_opening(contacts_, function, executed_.items(), here_.x));
+    const double of_gap = gaps == Gaps::begun ? contacts_.tolerated(function, here_.x)
+                                              : left_by_opening(contacts_, function, executed_.items(), here_.x);
+    const double rounding =
+        std::max(unchanged ? rounding_of(values_.magnitude[at(function)]) : resolution(function), of_gap);
     vanish[user] = located || holding_.holds(function) || std::abs(value) <= rounding;
     if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
     const bool turns = signs[user] * value < 0.0;

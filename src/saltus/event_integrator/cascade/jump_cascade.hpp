@@ -65,7 +65,9 @@ class JumpCascade {
   void drop_zeros();
   /// Reads the signs of all user functions at the point as it is. One that was located here and is still at zero keeps
   /// the sign just behind this time; one that a jump has put there has none yet (0).
-  void read_user_signs();
+  /// @param gaps  begun: modes of contacts begin here, and a gap that they have left open at 0 is at its zero
+  enum class Gaps { kept, begun };
+  void read_user_signs(Gaps gaps = Gaps::kept);
   /// Forgets motions along the mode before, as the mode is decided anew.
   void forget_motions() {
     motions_.assign(motions_.size(), std::nullopt);

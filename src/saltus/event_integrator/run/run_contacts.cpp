@@ -84,7 +84,7 @@ bool Run::contacts_jump() {
     executed.x_after = here_.x;
     executed.why_open = contacts_.why_open();
   }
-  cascade_.read_user_signs();
+  cascade_.read_user_signs(JumpCascade::Gaps::begun);
   return true;
 }
 

@@ -53,7 +53,8 @@ bool Run::execute_jump() {
   executed.x_after = here_.x;
   executed.why_open.clear();
   const bool by_contact = contacts_.owns(executed.jump);
-  if (by_contact ? !move_contacts() : contacts_.are_moved(executed.x, here_.x) && !begin_contacts_anew()) return false;
+  const bool are_begun = !by_contact && contacts_.are_moved(executed.x, here_.x);
+  if (by_contact ? !move_contacts() : are_begun && !begin_contacts_anew()) return false;
   if (by_contact) {
     executed.x_after = here_.x;
     executed.why_open = contacts_.why_open();
@@ -64,7 +65,7 @@ bool Run::execute_jump() {
   if (!here_.state.alpha.empty())
     here_.state.alpha = selections_at(kernel_, here_.t, here_.x.data(), here_.state.alpha);
   cascade_.drop_zeros();
-  cascade_.read_user_signs();
+  cascade_.read_user_signs(are_begun ? JumpCascade::Gaps::begun : JumpCascade::Gaps::kept);
   jumps_.update(jump_point());
   return !jumps_have_problem();
 }
@@ -214,7 +215,7 @@ bool Run::begin_jumps() {
   here_.state.alpha.assign(here_.state.mode.size(), 0.5);
   here_.state.alpha = selections_at(kernel_, here_.t, here_.x.data(), here_.state.alpha);
   if (!begin_contacts()) return false;
-  cascade_.read_user_signs();
+  cascade_.read_user_signs(JumpCascade::Gaps::begun);
   jumps_.begin(jump_point());
   if (jumps_have_problem()) return false;
   while (jumps_.due(here_.t)) {
