@@ -29,6 +29,23 @@ rtol = 1e-10
 atol = 1e-12
 """
 
+# A ball on the ground, or above it.
+RESTING = """[model]
+name = "resting"
+[states]
+z = {z}
+v = {v}
+[mechanics]
+positions = ["z"]
+velocities = ["v"]
+force = {{ v = "-10" }}
+[[contacts]]
+name = "ground"
+gap = "z"
+[simulate]
+until = 2
+"""
+
 # A table that goes up and down, under a ball.
 TABLE = """[model]
 name = "table"
@@ -109,6 +126,15 @@ class ContactLimits(tool.ResultTest):
         self.assertEqual(len(at_limit), 2)
         for value in at_limit:
             self.assertAlmostEqual(value, 0, delta=1e-14)
+
+    def test_a_body_that_begins_below_the_ground_by_rounding_lands(self):
+        """Its gap is negative, and grows so slowly that it never becomes positive: it must not count as fallen through."""
+        for z in ("-1e-20", "-1e-107", "-1e-250", "1e-20"):
+            for v in ("1e-20", "1e-40", "1e-160", "-1e-40"):
+                put = f'[[jumps]]\nname = "put"\nat = [1]\nset = {{ z = "{z}", v = "{v}" }}\n'
+                for text in (RESTING.format(z=z, v=v), RESTING.format(z=1, v=0) + put):
+                    with self.subTest(z=z, v=v, jumps=put in text):
+                        self.assertLess(abs(self.result(text)["final"]["x"][0]), 1e-12)
 
     def test_a_foot_leaves_the_ground_once(self):
         """Its force ends, and grows on as an acceleration: the gap opens like t^3, less than steps leave of its rate."""

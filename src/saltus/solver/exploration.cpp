@@ -24,7 +24,8 @@ SolveOptions options_of_one(const Run& run) {
   return options;
 }
 
-Done one(const Place& place, const SolveOptions& options, const Attempt& start, double until) {
+Done one(const Place& place, SolveOptions options, const Attempt& start, double until) {
+  options.is_interrupted = place.is_interrupted;
   Run run(place.problem, place.nlp, place.lpcc, options);
   place.problem.without_method_terms();
   RelaxedPath path(run, start);

@@ -107,8 +107,9 @@ Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpc
   const Stopwatch stopwatch;
   std::atomic<bool> is_over = false;
   const auto from_seed = [&](int seed, const Place& place) {
-    if (is_over) return;
+    if (seed > 0 && is_over) return;
     SolveOptions one = options;
+    one.is_interrupted = place.is_interrupted;
     one.time_limit = time_left(options, stopwatch.seconds());
     // Other threads do not report.
     if (&place.problem != &problem) one.on_step = [](const result::HomotopyStep&) {};

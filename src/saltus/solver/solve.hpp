@@ -55,7 +55,7 @@ struct SolveOptions {
   double tolerance = 1e-8;             ///< of the three residuals
   int iteration_limit = 3000;          ///< of all relaxed and branch problems of a start together
   std::optional<double> time_limit{};  ///< seconds
-  /// Ends everything at the next iteration of the solver (stopped_by_user). Called by all threads.
+  /// Ends everything at the next iteration of the solver (stopped_by_user). Called by the thread that calls solve().
   std::function<bool()> is_interrupted = [] { return false; };
   /// Called after every problem.
   std::function<void(const result::HomotopyStep&)> on_step = [](const result::HomotopyStep&) {};

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
-#include <thread>
+#include <chrono>
+#include <future>
 #include <utility>
 #include <vector>
 
@@ -17,16 +18,26 @@ void share_out(const Place& own, const SolveOptions& options, int count, Functio
     others.push_back(std::move(*made));
   }
   std::atomic<int> next = 0;
+  std::atomic<bool> is_stopped = false;
+  const auto ask = [&] {
+    if (options.is_interrupted && options.is_interrupted()) is_stopped = true;
+    return is_stopped.load();
+  };
+  const auto hear = [&] { return is_stopped.load(); };
   const auto work = [&](const Place& place) {
     for (int i = next++; i < count; i = next++) task(i, place);
   };
-  // Functions are only evaluated, and the other threads may ask for the lock, to see whether they are interrupted.
+  // Functions are only evaluated, and whoever is asked may want the lock.
   const SymbolicPause pause;
-  std::vector<std::jthread> threads;
+  std::vector<std::future<void>> threads;
   for (auto& [problem, nlp, lpcc] : others) {
-    threads.emplace_back([&work, place = Place{*problem, *nlp, *lpcc}] { work(place); });
+    threads.push_back(std::async(std::launch::async, work, Place{*problem, *nlp, *lpcc, hear}));
   }
-  work(own);
+  work({own.problem, own.nlp, own.lpcc, ask});
+  constexpr auto between_questions = std::chrono::milliseconds(20);
+  for (auto& thread : threads) {
+    while (thread.wait_for(between_questions) != std::future_status::ready) static_cast<void>(ask());
+  }
 }
 
 }  // namespace saltus::solver
