@@ -154,10 +154,10 @@ class Descent {
     // Multipliers that are left say more.
     const bool is_as_good = move.is_simpler && is_equal(branch().objective, next.objective);
     if (!next.is_feasible(tolerance()) || !(is_as_good || falls(branch().objective, next.objective))) return false;
-    // A certified point is not given up for digits of its objective.
-    if (is_certified() && !move.is_simpler) {
+    if (is_certified()) {
+      // A certified point is not given up for digits of its objective.
       const double least = std::max(worth_leaving * std::abs(branch().objective), tolerance());
-      if (branch().objective - next.objective < least) return false;
+      if (!move.is_simpler && branch().objective - next.objective < least) return false;
       certified_ = {std::move(branch()), run_.solution.certificate};
     }
     run_.branch = std::move(next);
