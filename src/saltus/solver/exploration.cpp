@@ -20,6 +20,7 @@ struct Done {
 SolveOptions options_of_one(const Run& run) {
   SolveOptions options = run.options;
   options.on_step = [](const result::HomotopyStep&) {};
+  options.crossover = false;  // paths are compared first
   options.time_limit = time_left(run.options, run.seconds());
   return options;
 }
@@ -43,11 +44,19 @@ Done one(const Place& place, SolveOptions options, const Attempt& start, double 
 std::vector<Explored> explore(Run& run, const std::vector<Attempt>& starts, double until) {
   std::vector<Done> all(starts.size());
   const SolveOptions options = options_of_one(run);
-  const auto task = [&](int i, const Place& place) { all[at(i)] = one(place, options, starts[at(i)], until); };
+  const auto is_given = [](const Attempt& start) { return start.name.empty(); };
+  const auto given = static_cast<int>(std::count_if(starts.begin(), starts.end(), is_given));
+  SolveOptions of_given = options;
+  if (given > 1) of_given.iteration_limit /= given;
+  const auto task = [&](int i, const Place& place) {
+    const Attempt& start = starts[at(i)];
+    all[at(i)] = one(place, is_given(start) ? of_given : options, start, until);
+  };
   share_out({run.problem, run.nlp, run.lpcc}, options, static_cast<int>(starts.size()), task);
   std::vector<Explored> explored;
-  for (auto& [end, solution, stopped, is_infeasible] : all) {
-    run.iteration_limit += solution.iterations;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    auto& [end, solution, stopped, is_infeasible] = all[i];
+    if (!is_given(starts[i])) run.iteration_limit += solution.iterations;
     run.add(solution);
     run.is_infeasible = run.is_infeasible || is_infeasible;
     if (stopped == result::Termination::stopped_by_user) run.stopped = stopped;

@@ -14,8 +14,8 @@ struct Explored {
 };
 
 /// Follows the path of each start in a run of its own, in SolveOptions::threads threads, down to sigma = `until`. What
-/// they have done is recorded in `run`, in the order of the starts; their iterations are outside of its limit, which is
-/// that of one start.
+/// they have done is recorded in `run`, in the order of the starts; iterations of starts with a name are outside of its
+/// limit, which the others share.
 [[nodiscard]] std::vector<Explored> explore(Run& run, const std::vector<Attempt>& starts, double until);
 
 }  // namespace saltus::solver

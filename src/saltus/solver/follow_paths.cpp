@@ -31,11 +31,6 @@ bool has_loop(const Run& run) {
          homotopy::lower_bound(relaxation, 1.0) == homotopy::lower_bound(relaxation, 2.0);
 }
 
-PathEnd shown(RelaxedPath& path, PathEnd end) {
-  path.show();
-  return end;
-}
-
 /// Where a feasible branch is known, half of all iterations belong to what is better beside it.
 bool is_enough(const Run& run) { return run.refused && run.solution.iterations > run.iteration_limit / 2; }
 
@@ -56,19 +51,26 @@ class ComparedLoops {
 
   /// Where it ended; where it failed, best_start() and last_solved() say where to begin another path.
   [[nodiscard]] PathEnd follow(const Attempt& first, const std::vector<mpcc::NamedStart>& others) {
-    const auto cheaper = [&](const mpcc::NamedStart& other) { return has_lower_cost(other.w, first.w); };
-    if (std::any_of(others.begin(), others.end(), cheaper)) compared_ = std::min(compared_, small());
+    const auto is_cheaper = [&](const mpcc::NamedStart& other) { return has_lower_cost(other.w, first.w); };
+    const bool any_cheaper = std::any_of(others.begin(), others.end(), is_cheaper);
+    if (any_cheaper) compared_ = std::min(compared_, small());
     best_start_ = first.w;
+    std::vector<Attempt> starts, rest;
+    add_start(first, sigmas_, starts);
     const int random_starts = run_.options.compared_starts.value_or(0);
-    if (const PathEnd end = add(first); has_ended(end)) return end;
-    if (random_starts > 0) {
-      add_all(starts_beside(first, others, random_starts));
-      return follow_best();
-    }
+    // Many starts are worth more than a second sigma.
+    const std::vector<double> sigmas = random_starts > 0 ? std::vector{sigmas_.back()} : sigmas_;
     for (const auto& other : others) {
-      if (!cheaper(other) && !(candidates_.empty() && is_defined(other.w))) continue;
-      const PathEnd end = add(beside(first, other.w, other.name));
-      if (has_ended(end)) return end;
+      const bool is_compared = random_starts > 0 || is_cheaper(other);
+      add_start(beside(first, other.w, other.name), sigmas, is_compared ? starts : rest);
+    }
+    for (int seed = 1; seed <= random_starts; ++seed) {
+      const linalg::Vector w = start_of_seed(run_.problem, first.w, seed);
+      add_start(beside(first, w, fmt::format("the random start of seed {}", seed)), sigmas, starts);
+    }
+    if (const PathEnd end = compare(starts); has_ended(end)) return end;
+    if (candidates_.empty() && !rest.empty()) {
+      if (const PathEnd end = compare(rest); has_ended(end)) return end;
     }
     return follow_best();
   }
@@ -100,48 +102,31 @@ class ComparedLoops {
     return attempt;
   }
 
-  /// The first sigmas from one start.
-  PathEnd add(Attempt attempt) {
-    const std::string name = attempt.name;
+  /// From one start with each of these sigmas, if functions are finite there.
+  void add_start(Attempt attempt, const std::vector<double>& sigmas, std::vector<Attempt>& starts) const {
+    if (!is_defined(attempt.w)) return;
     const int last_limit = attempt.iteration_limit;
-    for (const double sigma : sigmas_) {
+    for (const double sigma : sigmas) {
       attempt.sigma_initial = sigma;
-      attempt.name = name;
-      attempt.iteration_limit = sigma == sigmas_.back() ? last_limit : compared_iterations;
-      auto path = std::make_unique<RelaxedPath>(run_, attempt);
-      const PathEnd end = path->loop(compared_);
-      if (has_ended(end)) return shown(*path, end);
-      const double objective = path->objective();
-      if (end == PathEnd::paused) candidates_.push_back({std::move(path), objective, attempt.w});
+      attempt.iteration_limit = sigma == sigmas.back() ? last_limit : compared_iterations;
+      starts.push_back(attempt);
     }
-    return PathEnd::failed;
   }
 
-  /// From the small sigma only: many starts are worth more than a second one.
-  [[nodiscard]] std::vector<Attempt> starts_beside(const Attempt& first, const std::vector<mpcc::NamedStart>& others,
-                                                   int random_starts) const {
-    std::vector<Attempt> starts;
-    const auto add_start = [&](const linalg::Vector& w, const std::string& name) {
-      if (!is_defined(w)) return;
-      starts.push_back(beside(first, w, name));
-      starts.back().sigma_initial = sigmas_.back();
-    };
-    for (const auto& other : others) add_start(other.w, other.name);
-    for (int seed = 1; seed <= random_starts; ++seed) {
-      add_start(start_of_seed(run_.problem, first.w, seed), fmt::format("the random start of seed {}", seed));
-    }
-    return starts;
-  }
-
-  void add_all(const std::vector<Attempt>& starts) {
+  /// Paths down to the sigma where they are compared. It has ended where no time is left and none has come so far: then
+  /// the first one is shown.
+  PathEnd compare(const std::vector<Attempt>& starts) {
     auto explored = explore(run_, starts, compared_);
     for (std::size_t i = 0; i < starts.size(); ++i) {
       auto& [end, progress] = explored[i];
-      if (end != PathEnd::paused) continue;
+      if (end != PathEnd::paused && end != PathEnd::finished) continue;
       const double objective = progress.objective;
       auto path = std::make_unique<RelaxedPath>(run_, starts[i], std::move(progress));
       candidates_.push_back({std::move(path), objective, starts[i].w});
     }
+    if (!candidates_.empty() || !run_.is_over()) return PathEnd::paused;
+    RelaxedPath(run_, starts.front(), std::move(explored.front().progress)).show();
+    return PathEnd::stopped;
   }
 
   /// Always the path of the lowest objective, until none can lead to a better branch than the best one.

@@ -50,7 +50,7 @@ struct SolveOptions {
   /// lowest objective goes on. Nothing is 0.
   std::optional<int> compared_starts{};
   int threads = 1;  ///< for starts; results do not depend on it
-  /// Makes a copy of the problem for another thread, with solvers of its own. Empty: there are no other threads.
+  /// Makes a copy of the problem for another thread, with solvers of its own; called there. Empty: no other threads.
   std::function<std::optional<Workplace>()> make_workplace{};
   double tolerance = 1e-8;             ///< of the three residuals
   int iteration_limit = 3000;          ///< of all relaxed and branch problems of a start together

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,12 +12,6 @@
 namespace saltus::solver {
 
 void share_out(const Place& own, const SolveOptions& options, int count, FunctionRef<void(int, const Place&)> task) {
-  std::vector<Workplace> others;
-  while (options.make_workplace && static_cast<int>(others.size()) + 1 < std::min(count, options.threads)) {
-    auto made = options.make_workplace();
-    if (!made) break;
-    others.push_back(std::move(*made));
-  }
   std::atomic<int> next = 0;
   std::atomic<bool> is_stopped = false;
   const auto ask = [&] {
@@ -29,10 +24,19 @@ void share_out(const Place& own, const SolveOptions& options, int count, Functio
   };
   // Functions are only evaluated, and whoever is asked may want the lock.
   const SymbolicPause pause;
+  const auto work_elsewhere = [&] {
+    std::optional<Workplace> place;
+    {
+      const SymbolicLock lock;
+      if (next < count) place = options.make_workplace();
+    }
+    if (place) work({*place->problem, *place->nlp, *place->lpcc, hear});
+    const SymbolicLock lock;
+    place.reset();
+  };
   std::vector<std::future<void>> threads;
-  for (auto& [problem, nlp, lpcc] : others) {
-    threads.push_back(std::async(std::launch::async, work, Place{*problem, *nlp, *lpcc, hear}));
-  }
+  const int others = options.make_workplace ? std::min(count, options.threads) - 1 : 0;
+  for (int k = 0; k < others; ++k) threads.push_back(std::async(std::launch::async, work_elsewhere));
   work({own.problem, own.nlp, own.lpcc, ask});
   constexpr auto between_questions = std::chrono::milliseconds(20);
   for (auto& thread : threads) {
