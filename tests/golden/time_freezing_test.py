@@ -356,10 +356,6 @@ until = 2
               "[simulate]"), "stabilisation must be a constant, found 'h'"),
             (("[simulate]", "[time_freezing]\nclock = 'x'\n[simulate]"), "`clock` beside [[contacts]]"),
             (('gap = "z"', 'gap = "z - 0.1*t"'), "the gap of 'ground' depends on t, and time stands still"),
-            (("vz = 0\n", "vz = 0\nclock = 0\n"), "a state with the name 'clock' beside [[contacts]]"),
-            (("[parameters]\n", "[parameters]\nclock = 1\n"), "a parameter with the name 'clock' beside [[contacts]]"),
-            (("[simulate]", "[tables.clock]\nx = [0, 1]\ny = [0, 1]\n[simulate]"),
-             "a table with the name 'clock' beside [[contacts]]"),
         ):
             file = self.write("bad.toml", BALL.replace(*change))
             _, err = self.run_tool("simulate", file, "--method", "fesd", code=2)

@@ -128,7 +128,7 @@ TEST(OcpBuilder, FreezesHysteresis) {
   problem.terminal_constraint("v == 0", 0, v, 0);
   auto ocp = problem.build();
   ASSERT_TRUE(ocp) << to_text(ocp.error());
-  EXPECT_EQ(ocp->system.state_names, (std::vector<std::string>{"q", "v", "turbo", "clock"}));
+  EXPECT_EQ(ocp->system.state_names, (std::vector<std::string>{"q", "v", "turbo", "frozen.clock"}));
   EXPECT_EQ(ocp->physical->state_names, (std::vector<std::string>{"q", "v", "turbo"}));
   EXPECT_EQ(ocp->clock->state, 3);
   EXPECT_EQ(ocp->clock->speed_lower, 0.1);

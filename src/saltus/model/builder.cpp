@@ -59,7 +59,7 @@ SX Builder::discrete_state(const std::string& name, double initial) {
 
 SX Builder::hysteresis(const std::string& name, const SX& input, const HysteresisValues& values) {
   auto& states = parts_->statement.states;
-  if (!parts_->declare_with_clock(name, NameKind::hysteresis, states.size(), "hysteresis()")) return SX(0.0);
+  if (!parts_->declare(name, NameKind::hysteresis, states.size())) return SX(0.0);
   const SXElem e = parts_->entry(input, "input of " + name);
   parts_->add_state(name, {.initial = values.initial}, VariableKind::discrete);
   const auto state = static_cast<int>(states.size()) - 1;
@@ -197,7 +197,7 @@ void Builder::mechanics(const Mechanics& mechanics) {
 }
 
 void Builder::contact(const std::string& name, const SX& gap, const ContactOptions& options) {
-  if (!parts_->declare_with_clock(name, NameKind::contact, parts_->contacts.size(), "contact()")) return;
+  if (!parts_->declare(name, NameKind::contact, parts_->contacts.size())) return;
   parts_->gaps.push_back(SX(parts_->entry(gap, "gap of " + name)));
   parts_->contacts.emplace_back(name, options);
 }

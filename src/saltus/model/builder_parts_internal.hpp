@@ -48,13 +48,6 @@ struct Builder::Parts {
     return !mistake;
   }
 
-  /// Declares what has a clock of its own.
-  bool declare_with_clock(const std::string& name, NameKind kind, std::size_t index, const std::string& call) {
-    auto mistake = names.reserve_clock(call);
-    if (mistake) fail(*mistake);
-    return !mistake && declare(name, kind, index);
-  }
-
   /// Returns a scalar; of another shape it is refused.
   SXElem entry(const casadi::SX& expression, const std::string& where);
   /// Returns the result of a recognition, or 0 and the mistake kept. Nothing is tried after the first one.

@@ -62,10 +62,6 @@ std::optional<Error> ModelScope::declare_names() {
   // The later one of two equal names is the wrong one.
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.second.location.line < b.second.location.line; });
-  const char* beside = !description_.contacts.empty()     ? "[[contacts]]"
-                       : !description_.hysteresis.empty() ? "[[hysteresis]]"
-                                                          : nullptr;
-  if (beside != nullptr) static_cast<void>(names_.reserve_clock(beside, {"in [time_freezing]"}));
   for (const auto& [name, meaning] : found) {
     auto error = names_.declare(name, meaning);
     if (!error) continue;

@@ -19,18 +19,6 @@ constexpr EnumNames<NameKind::contact> kinds_with_article("a parameter", "a stat
 
 std::string with_article(NameKind kind) { return std::string(kinds_with_article(kind)); }
 
-std::optional<Error> NameTable::reserve_clock(const std::string& beside, std::vector<std::string> context) {
-  if (!clock_) clock_ = {beside, std::move(context)};
-  const Meaning* taken = find(clock_name);
-  return taken == nullptr ? std::nullopt : std::optional(taken_by_clock(*taken));
-}
-
-Error NameTable::taken_by_clock(const Meaning& meaning) const {
-  return {ErrorCode::invalid_model,
-          fmt::format("{} with the name '{}' beside {}", with_article(meaning.kind), clock_name, clock_->beside),
-          "rename it: that is the name of their physical time", meaning.location, clock_->context};
-}
-
 std::optional<Error> NameTable::declare(const std::string& name, const Meaning& meaning) {
   if (expression::is_reserved(name)) {
     return Error{
@@ -47,7 +35,6 @@ std::optional<Error> NameTable::declare(const std::string& name, const Meaning& 
                  meaning.location,
                  {}};
   }
-  if (clock_ && name == clock_name) return taken_by_clock(meaning);
   const auto [it, fresh] = meanings_.emplace(name, meaning);
   if (fresh) return std::nullopt;
   const Meaning& first = it->second;

@@ -33,15 +33,12 @@ struct Meaning {
   SourceLocation location;
 };
 
-/// The name of the physical time of contacts and hysteresis, for which other methods make a state.
-inline constexpr const char* clock_name = "clock";
+/// The name of the state that is the physical time of contacts and hysteresis where that stands still: no user's name
+/// has a point in it.
+inline constexpr const char* clock_name = "frozen.clock";
 
 class NameTable {
  public:
-  /// Keeps clock_name for what has a clock of its own; refuses it of what is declared, before or behind.
-  /// @param beside   whose clock it is, for the error: "[[contacts]]"
-  /// @param context  of the error
-  [[nodiscard]] std::optional<Error> reserve_clock(const std::string& beside, std::vector<std::string> context = {});
   /// Refuses names that are reserved, not made of letters, digits and underscores, or taken.
   [[nodiscard]] std::optional<Error> declare(const std::string& name, const Meaning& meaning);
   [[nodiscard]] const Meaning* find(const std::string& name) const;
@@ -49,14 +46,7 @@ class NameTable {
   [[nodiscard]] std::vector<std::string> of(const std::vector<NameKind>& kinds) const;
 
  private:
-  struct Clock {
-    std::string beside;
-    std::vector<std::string> context;
-  };
-  [[nodiscard]] Error taken_by_clock(const Meaning& meaning) const;
-
   std::map<std::string, Meaning> meanings_;
-  std::optional<Clock> clock_;
 };
 
 }  // namespace saltus::model
