@@ -31,7 +31,7 @@ FILES = {
     "key misspelt": (hysteresis(*ALL, "inital = 1"), 14, "did you mean 'initial'"),
     "initial value": (hysteresis(*ALL, "initial = 2"), 14, "begins with 2", "0 or 1"),
     "input of time": (hysteresis(ALL[0], "input = 'v + t'", *ALL[2:]), 11, "depends on t"),
-    "threshold of a state": (hysteresis(*ALL[:2], "on = 'v'", "off = 1"), 12, "must be a constant"),
+    "threshold of a state": (hysteresis(*ALL[:2], "on = 'v'", "off = 1"), 12, "`on` of the hysteresis 'turbo' depends on a state"),
     "name of a state": (hysteresis("name = 'v'", *ALL[1:]), 10, "'v' is already a state"),
     "a table": (GOOD + "[hysteresis]\nname = 'turbo'\n", 9, "[[hysteresis]]"),
     "dynamics": (hysteresis(*ALL).replace("v = \"1", "turbo = '0'\nv = \"1"), 6, "'turbo', which is a hysteresis"),

@@ -47,6 +47,7 @@ struct Layout {
     std::vector<int> targets;   ///< states that are set
     bool at_start = false, persistent = true;
     JumpValues evaluated = JumpValues::at_trigger;
+    std::string forbidden;  ///< what its trigger means where that stops the run instead; else empty
   };
   struct Event {
     std::string name;

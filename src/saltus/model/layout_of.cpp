@@ -40,7 +40,7 @@ void add_events(const System& system, Layout& layout) {
   }
   for (const auto& jump : system.jumps) {
     layout.jumps.push_back({jump.name, jump.trigger, guards_of(jump.guards, jump.true_at_equality), jump.times,
-                            jump.every, jump.targets, jump.at_start, jump.persistent, jump.evaluated});
+                            jump.every, jump.targets, jump.at_start, jump.persistent, jump.evaluated, jump.forbidden});
   }
 }
 

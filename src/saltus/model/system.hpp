@@ -65,6 +65,7 @@ struct Jump {
   bool at_start = false;
   bool persistent = true;
   JumpValues evaluated = JumpValues::at_trigger;
+  std::string forbidden;  ///< what its trigger means where that stops the run instead, with its first value; else empty
 };
 
 /// Holds a piece of an expression that is smooth in every cell of its argument: floor, a table, a sampled input. The

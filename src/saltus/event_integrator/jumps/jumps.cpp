@@ -206,6 +206,11 @@ int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
       return jump;
     }
   }
+  if (!entry.forbidden.empty()) {
+    came_to_forbidden_ = true;
+    problem_ = fmt::format("{} at {:.6g}, t = {:.17g}", entry.forbidden, values.front(), point.t);
+    return jump;
+  }
   for (std::size_t i = 0; i < values.size(); ++i) x[at(entry.targets[i])] = values[i];
   find_next_time();
   return jump;

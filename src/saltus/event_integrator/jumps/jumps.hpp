@@ -48,6 +48,8 @@ class Jumps {
   int execute(const JumpPoint& point, std::vector<double>& x);
   /// Returns what is wrong with a delay, priority or value that was evaluated; empty if nothing is.
   [[nodiscard]] const std::string& problem() const { return problem_; }
+  /// Returns whether that is a jump whose trigger must not come.
+  [[nodiscard]] bool came_to_forbidden() const { return came_to_forbidden_; }
 
   /// Returns whether the condition of a jump held when it was read last.
   [[nodiscard]] bool holds(int jump) const { return truth_[static_cast<std::size_t>(jump)] != 0U; }
@@ -85,6 +87,7 @@ class Jumps {
   std::vector<Execution> queue_;  ///< in the order of triggering
   double next_time_;
   std::string problem_;
+  bool came_to_forbidden_ = false;
 };
 
 }  // namespace saltus::event_integrator

@@ -29,7 +29,8 @@ std::string Run::jump_names(const std::vector<int>& jumps) const {
 }
 
 bool Run::jumps_have_problem() {
-  if (!jumps_.problem().empty() && outcome_.running) fail(Termination::evaluation_failed, jumps_.problem());
+  const auto reason = jumps_.came_to_forbidden() ? Termination::outside_class : Termination::evaluation_failed;
+  if (!jumps_.problem().empty() && outcome_.running) fail(reason, jumps_.problem());
   return !jumps_.problem().empty();
 }
 

@@ -15,18 +15,38 @@ Error hysteresis_error(const SourceLocation& location, std::string message, std:
   return {ErrorCode::invalid_model, std::move(message), std::move(remedy), location, {}};
 }
 
-std::optional<Error> threshold_mistake(const HysteresisThresholds& thresholds) {
-  for (const auto& [what, value, location] : {std::tuple{"on", thresholds.on, &thresholds.on_location},
-                                              std::tuple{"off", thresholds.off, &thresholds.off_location}}) {
+std::optional<Error> threshold_mistake(const HysteresisThresholds& thresholds, const ConstantThresholds& numbers) {
+  for (const auto& [what, value, location] : {std::tuple{"on", numbers.on, &thresholds.on_location},
+                                              std::tuple{"off", numbers.off, &thresholds.off_location}}) {
     if (std::isfinite(value)) continue;
     return hysteresis_error(*location, fmt::format("`{}` of the hysteresis '{}' is {}", what, thresholds.name, value),
                             "a threshold is a finite number; check the parameters in it");
   }
-  if (thresholds.on == thresholds.off) {
+  if (numbers.on != numbers.off) return std::nullopt;
+  return hysteresis_error(thresholds.off_location,
+                          fmt::format("`on` and `off` of the hysteresis '{}' are both {}", thresholds.name, numbers.on),
+                          "give it two different thresholds, or write step(input - threshold)");
+}
+
+std::optional<Error> threshold_mistake(Recognition& recognition, const HysteresisThresholds& thresholds) {
+  constexpr KindSet allowed = kind_bit(VariableKind::parameter) | kind_bit(VariableKind::time) |
+                              kind_bit(VariableKind::alpha) | kind_bit(VariableKind::cell);
+  for (const auto& [what, value, location] : {std::tuple{"on", thresholds.on, &thresholds.on_location},
+                                              std::tuple{"off", thresholds.off, &thresholds.off_location}}) {
+    const auto node = recognition.graph.add(value);
+    if (!node) return with_location(node.error(), *location);
+    if ((recognition.graph.tape()[*node].reached & ~allowed) == 0) continue;
     return hysteresis_error(
-        thresholds.off_location,
-        fmt::format("`on` and `off` of the hysteresis '{}' are both {}", thresholds.name, thresholds.on),
-        "give it two different thresholds, or write step(input - threshold)");
+        *location, fmt::format("`{}` of the hysteresis '{}' depends on a state or a control", what, thresholds.name),
+        "a threshold is an expression of parameters and t: subtract what moves from both thresholds and from `input`");
+  }
+  if (const auto numbers = constant_thresholds(recognition, thresholds)) {
+    for (const auto& [what, value] : {std::pair{"on", thresholds.on}, std::pair{"off", thresholds.off}}) {
+      recognition.note(
+          {.kind = Decision::Kind::value, .node = recognition.graph.node(value), .computed = ComputedNumber{}},
+          [&, key = what] { return fmt::format("`{}` of '{}'", key, thresholds.name); });
+    }
+    if (auto mistake = threshold_mistake(thresholds, *numbers)) return mistake;
   }
   if (thresholds.initial != 0.0 && thresholds.initial != 1.0) {
     return hysteresis_error(thresholds.initial_location,
@@ -37,14 +57,54 @@ std::optional<Error> threshold_mistake(const HysteresisThresholds& thresholds) {
 }
 
 /// The side that holds beyond the outer thresholds, whatever it was before; nothing between them.
-std::optional<double> outer_side(const HysteresisThresholds& thresholds, double input) {
+std::optional<double> outer_side(const ConstantThresholds& thresholds, double input) {
   const double high = thresholds.on > thresholds.off ? 1.0 : 0.0;
   if (input > std::max(thresholds.on, thresholds.off)) return high;
   if (input < std::min(thresholds.on, thresholds.off)) return 1.0 - high;
   return std::nullopt;
 }
 
+/// Stops the run where thresholds meet: from both sides, and where they are equal at its start.
+void forbid_meeting(Statement& statement, int state, const HysteresisThresholds& thresholds) {
+  const casadi::SX on(thresholds.on), off(thresholds.off);
+  const auto add = [&](const char* name, Condition meets, bool at_start) {
+    JumpStatement jump{.name = thresholds.name + name};
+    jump.condition = std::move(meets);
+    jump.set.push_back({state, thresholds.on, thresholds.location});
+    jump.at_start = at_start;
+    jump.priority = 1.0;  // before the jump of the hysteresis, whose thresholds have changed places
+    jump.forbidden = fmt::format("`on` and `off` of the hysteresis '{}' meet", thresholds.name);
+    jump.location = jump.when_location = jump.delay_location = thresholds.location;
+    statement.jumps.push_back(std::move(jump));
+  };
+  add(".on_falls", less_equal(on, off), false);
+  add(".on_rises", greater_equal(on, off), false);
+  add(".equal", less_equal(on, off) && greater_equal(on, off), true);
+}
+
+/// Where the jump happens: `on` is the higher threshold, or `off` is, always or at that time.
+Condition beyond_threshold(const casadi::SX& w, const casadi::SX& e, const HysteresisThresholds& thresholds,
+                           const std::optional<ConstantThresholds>& numbers) {
+  if (numbers) {
+    const casadi::SX high = std::max(numbers->on, numbers->off), low = std::min(numbers->on, numbers->off);
+    const casadi::SX above = numbers->on > numbers->off ? w : 1.0 - w;
+    return (less(above, 0.5) && greater(e, high)) || (greater(above, 0.5) && less(e, low));
+  }
+  const casadi::SX on(thresholds.on), off(thresholds.off);
+  const Condition rises = greater(on, off), falls = less(on, off);
+  const Condition to_one = (rises && greater(e, on)) || (falls && less(e, on));
+  const Condition to_zero = (rises && less(e, off)) || (falls && greater(e, off));
+  return (less(w, 0.5) && to_one) || (greater(w, 0.5) && to_zero);
+}
+
 }  // namespace
+
+std::optional<ConstantThresholds> constant_thresholds(Recognition& recognition,
+                                                      const HysteresisThresholds& thresholds) {
+  const auto on = recognition.parameter_value(thresholds.on), off = recognition.parameter_value(thresholds.off);
+  if (!on || !off) return std::nullopt;
+  return ConstantThresholds{*on, *off};
+}
 
 void declare_hysteresis(const Description& description, Recognition& recognition, Statement& statement) {
   for (const auto& entry : description.hysteresis) {
@@ -57,7 +117,7 @@ void declare_hysteresis(const Description& description, Recognition& recognition
 
 std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& statement, int state, const SXElem& input,
                                       const HysteresisThresholds& thresholds) {
-  if (auto mistake = threshold_mistake(thresholds)) return mistake;
+  if (auto mistake = threshold_mistake(recognition, thresholds)) return mistake;
   const auto node = recognition.graph.add(input);
   if (!node) return with_location(node.error(), thresholds.input_location);
   const KindSet moving = recognition.graph.tape()[*node].reached;
@@ -80,7 +140,9 @@ std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& state
   auto& stated = statement.states[at(state)];
   stated.initial = thresholds.initial;
   const double start = value_at_start(recognition, statement, *node);
-  if (const auto side = outer_side(thresholds, start); side && *side != thresholds.initial) {
+  const auto numbers = constant_thresholds(recognition, thresholds);
+  const auto side = numbers ? outer_side(*numbers, start) : std::nullopt;
+  if (side && *side != thresholds.initial) {
     stated.initial = *side;
     statement.warnings.push_back(located(
         thresholds.location, fmt::format("the input of the hysteresis '{}' is {} at the start, beyond its thresholds: "
@@ -95,18 +157,14 @@ std::optional<Error> state_hysteresis(Recognition& recognition, Statement& state
                                       const HysteresisThresholds& thresholds) {
   if (auto error = begin_hysteresis(recognition, statement, state, input, thresholds)) return error;
   const auto& stated = statement.states[at(state)];
-  const casadi::SX w(stated.symbol), e(input);
-  const casadi::SX high = std::max(thresholds.on, thresholds.off), low = std::min(thresholds.on, thresholds.off);
-  const bool rises = thresholds.on > thresholds.off;  // 1 above
-  const casadi::SX above = rises ? w : 1.0 - w;
-  const Condition up = less(above, 0.5) && greater(e, high);
-  const Condition down = greater(above, 0.5) && less(e, low);
+  const auto numbers = constant_thresholds(recognition, thresholds);
   JumpStatement jump{.name = thresholds.name};
-  jump.condition = up || down;
+  jump.condition = beyond_threshold(casadi::SX(stated.symbol), casadi::SX(input), thresholds, numbers);
   jump.set.push_back({state, SXElem(1.0) - stated.symbol, thresholds.location});
   jump.at_start = true;
   jump.location = jump.when_location = jump.delay_location = thresholds.location;
   statement.jumps.push_back(std::move(jump));
+  if (!numbers) forbid_meeting(statement, state, thresholds);
   return std::nullopt;
 }
 
@@ -120,13 +178,15 @@ std::optional<Error> state_all_hysteresis(const Description& description, ModelS
                                     .on_location = entry.on->location,
                                     .off_location = entry.off->location};
     thresholds.initial_location = entry.initial ? entry.initial->location : entry.location;
-    for (const auto& [node, result, key] :
-         {std::tuple{&entry.on, &thresholds.on, "on"}, std::tuple{&entry.off, &thresholds.off, "off"},
-          std::tuple{&entry.initial, &thresholds.initial, "initial"}}) {
-      if (*node == nullptr) continue;
-      const auto value = scope.value(**node, Reach::everything, fmt::format("`{}` of '{}'", key, entry.name));
+    for (const auto& [node, result] : {std::pair{&entry.on, &thresholds.on}, std::pair{&entry.off, &thresholds.off}}) {
+      const auto threshold = scope.expression(**node);
+      if (!threshold) return with_context(threshold.error(), "in [[hysteresis]]");
+      *result = *threshold;
+    }
+    if (entry.initial) {
+      const auto value = scope.value(*entry.initial, Reach::everything, fmt::format("`initial` of '{}'", entry.name));
       if (!value) return with_context(value.error(), "in [[hysteresis]]");
-      *result = *value;
+      thresholds.initial = *value;
     }
     if (const auto set = initial.find(entry.name); set != initial.end()) thresholds.initial = set->second;
     auto input = scope.expression(*entry.input);

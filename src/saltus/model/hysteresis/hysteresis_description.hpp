@@ -13,7 +13,7 @@ namespace saltus::model {
 struct HysteresisDescription {
   std::string name;
   expression::NodePtr input;    ///< over states and parameters
-  expression::NodePtr on, off;  ///< numbers or expressions of parameters
+  expression::NodePtr on, off;  ///< numbers or expressions of parameters and t
   expression::NodePtr initial;  ///< 0 or 1; null means 0
   SourceLocation location;
 };

@@ -11,22 +11,43 @@ namespace saltus::model {
 
 using casadi::SX;
 
+namespace {
+
+Error not_frozen(std::string message, std::string remedy) {
+  // Member by member: g++ 12 takes the aggregate for uninitialised.
+  Error error;
+  error.code = ErrorCode::not_available;
+  error.message = std::move(message);
+  error.remedy = std::move(remedy);
+  return error;
+}
+
+}  // namespace
+
 std::optional<Error> freeze_hysteresis(Recognition& recognition, Statement& statement, int state, const SXElem& input,
                                        const HysteresisThresholds& thresholds, FreezingPlan& plan) {
+  const auto numbers = constant_thresholds(recognition, thresholds);
+  if (!numbers) {
+    auto error = not_frozen(
+        fmt::format("the thresholds of the hysteresis '{}' vary, and time-freezing needs numbers", thresholds.name),
+        "simulate with method = \"event\", or give numbers");
+    return with_location(std::move(error),
+                         recognition.parameter_value(thresholds.on) ? thresholds.off_location : thresholds.on_location);
+  }
   if (auto error = begin_hysteresis(recognition, statement, state, input, thresholds)) return error;
   const SX w(statement.states[at(state)].symbol);
-  const double side = thresholds.on > thresholds.off ? 1.0 : -1.0;
+  const auto [on, off] = *numbers;
+  const double side = on > off ? 1.0 : -1.0;
   if (plan.takes_plane) {
-    const double low = std::min(thresholds.on, thresholds.off), high = std::max(thresholds.on, thresholds.off);
+    const double low = std::min(on, off), high = std::max(on, off);
     plan.plane = {thresholds.name, (SX(input) - low) / (high - low), side > 0.0 ? w : 1.0 - w, state, side > 0.0};
     return std::nullopt;
   }
   // NOTE: no region pulls back to 0 or 1 where the state waits. Between two such regions the point where they meet the
   // threshold would be at rest, too, and time would stand still there for ever.
   std::vector<SX> alphas;
-  for (const auto& [psi, name] :
-       {std::pair{side * (SX(input) - thresholds.on), "on"}, std::pair{side * (thresholds.off - SX(input)), "off"},
-        std::pair{w - 1.0, "one"}, std::pair{w, "zero"}}) {
+  for (const auto& [psi, name] : {std::pair{side * (SX(input) - on), "on"}, std::pair{side * (off - SX(input)), "off"},
+                                  std::pair{w - 1.0, "one"}, std::pair{w, "zero"}}) {
     const auto alpha = recognition.surface(SX::densify(psi).scalar(), fmt::format("{}.{}", thresholds.name, name));
     if (!alpha) return with_location(alpha.error(), thresholds.location);
     alphas.emplace_back(*alpha);
@@ -38,16 +59,6 @@ std::optional<Error> freeze_hysteresis(Recognition& recognition, Statement& stat
 }
 
 namespace {
-
-Error not_frozen(std::string message, std::string remedy) {
-  // Member by member: g++ 12 takes the aggregate for uninitialised.
-  Error error;
-  error.code = ErrorCode::not_available;
-  error.message = std::move(message);
-  error.remedy = std::move(remedy);
-  error.context.emplace_back("in [[contacts]]");
-  return error;
-}
 
 class ContactFreezing {
  public:
@@ -153,9 +164,10 @@ class ContactFreezing {
     const auto i = static_cast<casadi_int>(k);
     auto& made = plan_.made.contacts[k];
     if (system_.contacts[k].has_friction) {
-      return not_frozen(
+      auto both = not_frozen(
           fmt::format("the contact '{}' has friction and restitution: time-freezing covers one of both", made.name),
           "simulate with method = \"event\", or leave one of them out");
+      return with_context(std::move(both), "in [[contacts]]");
     }
     const SX depth(statement_.states[at(plan_.depth[k])].symbol);
     const auto open = selection(system_.gap(i) + depth, made.name + ".gap", made.gap);
