@@ -233,13 +233,6 @@ class ContactModes(tool.ResultTest):
         self.assertAlmostEqual(slip["t"], 4.0, delta=1e-9)
         self.assertAlmostEqual(result["final"]["x"][2], 0.125, delta=1e-8)
 
-    def test_friction_that_turns_negative_stops_the_run(self):
-        text = BLOCK.replace("vx = 2", "vx = 9").replace("0.2 + 0.3*x", "0.2 - 0.1*t")
-        result = self.result(text, code=3)
-        self.assertEqual(result["status"]["termination"], "outside_class")
-        self.assertAlmostEqual(result["status"]["time_reached"], 2.0, delta=1e-9)
-        self.assertIn("the friction of 'ground' comes to", result["status"]["message"])
-
     def test_the_unit_of_mass_changes_nothing(self):
         """A body leaves its table where 2 sin 2t = 1; a puck of 1 m/s stops at t = 1/(mu g); the corners of a box come to rest."""
         lifted = """[model]

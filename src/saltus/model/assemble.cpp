@@ -100,6 +100,9 @@ class Assembly {
       }
     }
     system_.contacts = statement_.contacts;
+    for (const SXElem& restitution : system_.contacts.restitution.nonzeros()) {
+      if (auto error = take_root(restitution, others_)) return error;
+    }
     system_.drawing = statement_.drawing;
     system_.t = statement_.time;
     system_.x = column(x);

@@ -20,8 +20,9 @@ class Shown {
     std::vector<result::ContactMode> result;
     for (const auto& contact : layout_.contacts) {
       const bool closed = x[at(contact.closed)] != 0.0;
+      const bool smooth = contact.friction_varies ? x[at(contact.smooth)] != 0.0 : !contact.has_friction;
       result.push_back(!closed                      ? result::ContactMode::open
-                       : !contact.has_friction      ? result::ContactMode::closed
+                       : smooth                     ? result::ContactMode::closed
                        : x[at(contact.slip)] != 0.0 ? result::ContactMode::slip
                                                     : result::ContactMode::stick);
     }

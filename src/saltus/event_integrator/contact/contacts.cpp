@@ -8,7 +8,6 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
-#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -113,16 +112,19 @@ void Contacts::read_motion(double t, const std::vector<double>& alpha, const std
   point.has_gap.clear();
   point.tangents.clear();
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    point.friction.push_back(contacts_[i].has_friction ? values_.friction(static_cast<linalg::Index>(i)) : 0.0);
-    point.has_gap.push_back(contacts_[i].has_gap);
-    point.tangents.push_back(!contacts_[i].has_friction ? 0 : contacts_[i].in_plane ? 2 : 1);
+    const auto& contact = contacts_[i];
+    const double friction = contact.has_friction ? values_.friction(static_cast<linalg::Index>(i)) : 0.0;
+    const bool is_smooth = contact.friction_varies ? friction <= model::no_friction : !contact.has_friction;
+    point.friction.push_back(is_smooth ? 0.0 : friction);
+    point.has_gap.push_back(contact.has_gap);
+    point.tangents.push_back(is_smooth ? 0 : contact.tangents());
   }
 }
 
 ContactMode Contacts::mode_of(int contact, const std::vector<double>& x) const {
   const auto& entry = contacts_[at(contact)];
   if (x[at(entry.closed)] == 0.0) return ContactMode::open;
-  if (!entry.has_friction) return ContactMode::closed;
+  if (!entry.has_friction || (entry.friction_varies && x[at(entry.smooth)] != 0.0)) return ContactMode::closed;
   if (x[at(entry.slip)] == 0.0) return ContactMode::stick;
   if (entry.in_plane) return ContactMode::slip;
   return x[at(entry.share)] > 0.0 ? ContactMode::slip_up : ContactMode::slip_down;
@@ -179,12 +181,7 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
         "the gap of {} has no normal at t = {:.17g}, where its gradient is 0: write it as a distance (x for x^3)",
         names(flat), moment.t);
   }
-  for (const int i : touching) {
-    const double friction = point.friction[at(i)];
-    if (!contacts_[at(i)].friction_varies || friction > rounding_of(1.0)) continue;
-    return fmt::format("the friction of '{}' comes to {:.6g} at t = {:.17g}: it is positive while bodies touch",
-                       contacts_[at(i)].name, friction, moment.t);
-  }
+  if (auto problem = out_of_range(moment, touching, point)) return problem;
   auto excluded = modes_that_end(moment, point, ended, x);
   const bool closing =
       std::any_of(touching.begin(), touching.end(), [&](int i) { return point.normal_velocity(i) < 0.0; });
@@ -393,6 +390,7 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
     x[at(contact.closed)] = closed ? 1.0 : 0.0;
     x[at(contact.active)] = closed && !contains(found.idle, i) && basis.takes(i) ? 1.0 : 0.0;
     std::fill(x.begin() + contact.active + 1, x.begin() + contact.force_unit, 0.0);
+    if (contact.friction_varies) x[at(contact.smooth)] = closed && point.tangents[at(i)] == 0 ? 1.0 : 0.0;
     set_units(moment, point, i, x);
   }
   for (int i = 0; i < m; ++i) {

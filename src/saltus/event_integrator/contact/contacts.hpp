@@ -180,6 +180,8 @@ class Contacts {
   [[nodiscard]] std::optional<ContactMode> way_back(const ContactMoment& moment, int contact, bool ends,
                                                     const std::vector<double>& x) const;
   [[nodiscard]] bool touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const;
+  [[nodiscard]] std::optional<std::string> out_of_range(const ContactMoment& moment, const std::vector<int>& touching,
+                                                        const ContactPoint& point) const;
   [[nodiscard]] std::optional<linalg::Vector> push(const ContactMoment& moment, const std::vector<int>& touching,
                                                    std::optional<int> pushed, ContactPoint& point,
                                                    std::vector<double>& x);

@@ -36,6 +36,23 @@ void end_turning_slips(double fastest, ContactPoint& point) {
 
 }  // namespace
 
+/// Says of a coefficient that varies where it has left its range: friction of what touches, restitution of what hits.
+std::optional<std::string> Contacts::out_of_range(const ContactMoment& moment, const std::vector<int>& touching,
+                                                  const ContactPoint& point) const {
+  for (const int i : touching) {
+    const double friction = values_.friction(i), restitution = values_.restitution(i);
+    if (contacts_[at(i)].friction_varies && !(friction >= -model::no_friction)) {
+      return fmt::format("the friction of '{}' turns negative ({:.6g}) at t = {:.17g}, while bodies touch",
+                         contacts_[at(i)].name, friction, moment.t);
+    }
+    if (point.normal_velocity(i) < 0.0 && !(restitution >= 0.0 && restitution <= 1.0)) {
+      return fmt::format("the restitution of '{}' is {:.6g} at the impact at t = {:.17g}: it is in [0, 1]",
+                         contacts_[at(i)].name, restitution, moment.t);
+    }
+  }
+  return std::nullopt;
+}
+
 /// The impulses, and the velocities behind them.
 std::optional<Vector> Contacts::push(const ContactMoment& moment, const std::vector<int>& touching,
                                      std::optional<int> pushed, ContactPoint& point, std::vector<double>& x) {

@@ -65,45 +65,48 @@ class ContactMotion {
     });
   }
 
-  /// Of positions and t it is what it is when the run gets there; at the start, if that is known.
-  std::optional<Error> check_friction(const ContactStatement& contact) {
-    const SXElem stated = contact.friction.scalar();
-    auto friction = recognition_.parameter_value(stated);
-    const bool varies = !friction;
+  /// One over positions or t is what it is when the run gets there; at the start, if that is known.
+  struct Coefficient {
+    std::string what;  ///< "the friction of 'ground'"
+    const SX& stated;
+    const SourceLocation& location;
+    double largest;
+    const char* range;  ///< in words
+  };
+
+  /// Its value, or one of its range if it depends on t: nobody knows yet when it starts.
+  Expected<double> check_coefficient(const Coefficient& coefficient) {
+    auto value = recognition_.parameter_value(coefficient.stated.scalar());
+    const bool varies = !value;
     if (varies) {
-      const auto node = recognition_.graph.add(stated);
-      if (!node) return with_location(node.error(), contact.friction_location);
-      auto error = check_smooth(
-          recognition_, statement_, *node,
-          {motion_.positions, true, fmt::format("the friction of '{}'", contact.name), contact.friction_location});
-      if (error) return with_context(*error, "in [[contacts]]");
-      friction =
-          SX::depends_on(contact.friction, SX(statement_.time)) ? 1.0 : value_at_start(recognition_, statement_, *node);
+      const auto node = recognition_.graph.add(coefficient.stated.scalar());
+      if (!node) return tl::unexpected(with_location(node.error(), coefficient.location));
+      const SmoothOf allowed{motion_.positions, true, coefficient.what, coefficient.location, true};
+      if (auto error = check_smooth(recognition_, statement_, *node, allowed)) {
+        return tl::unexpected(with_context(*error, "in [[contacts]]"));
+      }
+      value = SX::depends_on(coefficient.stated, SX(statement_.time)) ? 1.0
+                                                                      : value_at_start(recognition_, statement_, *node);
     }
-    if (!(*friction >= 0.0) || !std::isfinite(*friction)) {
-      return contact_error(
-          contact.friction_location,
-          fmt::format("the friction of '{}' is {}{}", contact.name, *friction, varies ? " at the start" : ""),
-          "it is a number that is 0 or positive, or an expression of parameters, positions and t");
-    }
+    if (*value >= 0.0 && *value <= coefficient.largest) return *value;
+    return tl::unexpected(contact_error(
+        coefficient.location, fmt::format("{} is {}{}", coefficient.what, *value, varies ? " at the start" : ""),
+        fmt::format("it is a number {}, or an expression of parameters, positions and t", coefficient.range)));
+  }
+
+  std::optional<Error> check_values(const ContactStatement& contact) {
+    const auto friction =
+        check_coefficient({fmt::format("the friction of '{}'", contact.name), contact.friction,
+                           contact.friction_location, std::numeric_limits<double>::max(), "that is 0 or positive"});
+    if (!friction) return friction.error();
     if (*friction > 0.0 && contact.tangents.is_empty()) {
       return contact_error(contact.friction_location,
                            fmt::format("the contact '{}' has friction and no `tangent`", contact.name),
                            "write tangent = { x = 1 }: the direction in which it slips, over the positions");
     }
-    return std::nullopt;
-  }
-
-  std::optional<Error> check_values(const ContactStatement& contact) {
-    if (auto error = check_friction(contact)) return error;
-    const auto restitution = recognition_.parameter_value(contact.restitution.scalar());
-    if (!restitution || !(*restitution >= 0.0 && *restitution <= 1.0)) {
-      return contact_error(contact.restitution_location,
-                           restitution ? fmt::format("the restitution of '{}' is {}", contact.name, *restitution)
-                                       : fmt::format("the restitution of '{}' is no constant", contact.name),
-                           "it is a number in [0, 1], or an expression of parameters");
-    }
-    return std::nullopt;
+    const auto restitution = check_coefficient({fmt::format("the restitution of '{}'", contact.name),
+                                                contact.restitution, contact.restitution_location, 1.0, "in [0, 1]"});
+    return restitution ? std::nullopt : std::optional(restitution.error());
   }
 
   /// They are not 0, not along the normal, and two of them span a plane at the start.

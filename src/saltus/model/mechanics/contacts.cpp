@@ -52,6 +52,7 @@ class ContactBuild {
       contact.stick = declare_along(contact, ".stick");
       contact.slip = declare_state(contact.name + ".slip");
       contact.share = declare_along(contact, ".share");
+      if (contact.friction_varies) contact.smooth = declare_state(contact.name + ".smooth");
     }
     if (contact.in_plane) {
       contact.speeds = declare_unit(contact.name + ".least_speed");
@@ -148,7 +149,8 @@ class ContactBuild {
 
   /// What is positive as long as the mode lasts: the gap, or the normal force; with friction also what is left of the
   /// friction cone on both sides, or the speed of slipping. Forces and speeds are relative to the units of the mode:
-  /// they stand beside the 1 of other modes, whatever the user's units are. A coefficient that varies comes last.
+  /// they stand beside the 1 of other modes, whatever the user's units are. A coefficient that varies comes last: where
+  /// friction begins, and where it turns negative.
   [[nodiscard]] std::vector<SX> guards(std::size_t k) const {
     const auto i = static_cast<casadi_int>(k);
     const auto& contact = system_.contacts[k];
@@ -160,7 +162,10 @@ class ContactBuild {
     }
     if (contact.in_plane) add_guards_in_plane(i, result);
     if (contact.has_friction && !contact.in_plane) add_guards_along(i, result);
-    if (contact.friction_varies) result.push_back(closed * system_.friction(i) + (1.0 - closed));
+    if (!contact.friction_varies) return result;
+    const SX smooth = state(contact.smooth);
+    result.push_back(smooth * (2.0 * no_friction - system_.friction(i)) + (1.0 - smooth));
+    result.push_back(closed * (system_.friction(i) + 2.0 * no_friction) + (1.0 - closed));
     return result;
   }
 

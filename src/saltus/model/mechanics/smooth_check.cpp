@@ -20,21 +20,28 @@ Error not_allowed(const SmoothOf& allowed, std::string message, std::string reme
   return {ErrorCode::invalid_model, std::move(message), std::move(remedy), allowed.location, {}};
 }
 
+std::optional<Error> find_kink(const Recognition& recognition, int node, const SmoothOf& allowed) {
+  const auto& tape = recognition.graph.tape();
+  if (tape[node].psi >= 0) {
+    return not_allowed(allowed, fmt::format("{} switches", allowed.what), "write it with smooth functions");
+  }
+  if (tape[node].operation != cell_operation || !allowed.and_time) return std::nullopt;
+  const bool of_a_state = (tape[tape[node].left].written & kind_bit(VariableKind::state)) != 0;
+  if (!of_a_state || tape.table_of(tape[node]).has_slope()) return std::nullopt;
+  return not_allowed(allowed, fmt::format("{} has kinks or jumps: floor, mod or a table", allowed.what),
+                     "write it with smooth functions, or give the table kind = \"cubic\"");
+}
+
 }  // namespace
 
 std::optional<Error> check_smooth(const Recognition& recognition, const Statement& statement, int node,
                                   const SmoothOf& allowed) {
   const auto& tape = recognition.graph.tape();
   for (const int member : tape.cone(std::span(&node, 1), Links::written)) {
-    if (tape[member].psi >= 0) {
-      return not_allowed(allowed, fmt::format("{} switches", allowed.what), "write it with smooth functions");
+    if (!allowed.may_switch) {
+      if (auto error = find_kink(recognition, member, allowed)) return error;
     }
-    if (tape[member].operation == cell_operation) {
-      const bool of_a_state = (tape[tape[member].left].written & kind_bit(VariableKind::state)) != 0;
-      if (!allowed.and_time || !of_a_state || tape.table_of(tape[member]).has_slope()) continue;
-      return not_allowed(allowed, fmt::format("{} has kinks or jumps: floor, mod or a table", allowed.what),
-                         "write it with smooth functions, or give the table kind = \"cubic\"");
-    }
+    if (tape[member].psi >= 0 || tape[member].operation == cell_operation) continue;
     if (tape[member].variable < 0) continue;
     const auto& variable = tape.variables()[at(tape[member].variable)];
     if (variable.kind == VariableKind::parameter || variable.kind == VariableKind::cell) continue;

@@ -130,9 +130,10 @@ std::optional<Error> declare_frozen(const Description& description, ModelScope& 
   for (const auto& contact : description.contacts) {
     contacts.push_back({.name = contact.name, .in_plane = contact.tangents.size() == 2});
     if (!contact.restitution) continue;
-    const auto value = scope.value(*contact.restitution, Reach::everything, "the restitution");
-    if (!value) return with_context(value.error(), "in [[contacts]]");
-    contacts.back().restitution = *value;
+    const auto restitution = scope.expression(*contact.restitution);
+    if (!restitution) return with_context(restitution.error(), "in [[contacts]]");
+    // One that varies is refused with the contacts.
+    contacts.back().restitution = recognition.parameter_value(*restitution).value_or(0.0);
   }
   declare_hidden(recognition, statement, contacts, plan);
   const bool has_indicators = std::any_of(description.modes.begin(), description.modes.end(),

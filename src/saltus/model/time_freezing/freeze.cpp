@@ -6,6 +6,7 @@
 
 #include "saltus/model/mechanics/contact_motion_internal.hpp"
 #include "saltus/model/time_freezing/freeze_internal.hpp"
+#include "saltus/model/time_freezing/negative_friction.hpp"
 
 namespace saltus::model {
 
@@ -71,6 +72,15 @@ class ContactFreezing {
 
   [[nodiscard]] std::optional<Error> run(const std::vector<ContactStatement>& contacts) {
     for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
+      if (!recognition_.parameter_value(contacts[i].restitution.scalar())) {
+        auto varies = not_frozen(
+            fmt::format("the restitution of '{}' varies, and time-freezing needs a number", contacts[i].name),
+            "simulate with method = \"event\", or give a number");
+        return with_location(with_context(std::move(varies), "in [[contacts]]"), contacts[i].restitution_location);
+      }
+      const int restitution = recognition_.graph.node(contacts[i].restitution.scalar());
+      recognition_.note({.kind = Decision::Kind::value, .node = restitution, .computed = ComputedNumber{}},
+                        [&] { return fmt::format("the restitution of '{}'", contacts[i].name); });
       auto error = plan_.made.contacts[i].is_elastic ? take_elastic(i) : take_inelastic(i);
       if (error) return with_location(*error, contacts[i].location);
     }
@@ -108,6 +118,7 @@ class ContactFreezing {
       const auto [psi, directions] = slip(k);
       const auto side = selection(psi, made.name + ".slip", made.tangent);
       if (!side) return side.error();
+      if (system_.contacts[k].friction_varies) stop_below_none(k);
       tangential = -system_.friction(i) * (2.0 * *side - 1.0) * normal * directions;
       made.tangents = static_cast<int>(directions.numel());
     }
@@ -121,6 +132,16 @@ class ContactFreezing {
     }
     add_outputs(k, normal, tangential);
     return std::nullopt;
+  }
+
+  /// An event of a simulation, where friction turns negative at a gap that is closed.
+  void stop_below_none(std::size_t k) {
+    constexpr double closed = 1e-6;
+    if (plan_.purpose != FrozenFor::simulation) return;
+    const auto i = static_cast<casadi_int>(k);
+    EventStatement stop{.name = plan_.made.contacts[k].name + negative_friction, .action = AtEvent::stop};
+    stop.condition = less(system_.friction(i), -no_friction) && less(system_.gap(i), closed);
+    statement_.events.push_back(std::move(stop));
   }
 
   /// What is positive in slip, and the directions against which friction acts. In a plane it is the speed beyond eps_t,

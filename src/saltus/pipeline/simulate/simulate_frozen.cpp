@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include "saltus/model/frozen_system.hpp"
 #include "saltus/model/layout_of.hpp"
 #include "saltus/model/system.hpp"
+#include "saltus/model/time_freezing/negative_friction.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/continuous/continuous_internal.hpp"
 #include "saltus/pipeline/simulate/methods_internal.hpp"
@@ -69,6 +72,14 @@ result::Trajectory rows_at_events(result::Trajectory rows) {
   return rows;
 }
 
+/// The contact whose friction has ended a run by turning negative.
+std::optional<std::string> negative_friction(const result::Result& run) {
+  if (run.status.termination != result::Termination::stopped_by_event || run.events.empty()) return std::nullopt;
+  const std::string name = run.events.back().name.value_or(""), end = model::negative_friction;
+  if (!name.ends_with(end)) return std::nullopt;
+  return name.substr(0, name.size() - end.size());
+}
+
 /// Says of a run in numerical time how it ended at the time that its clock has reached.
 void restate_status(double reached, double until, result::Result& run) {
   auto& status = run.status;
@@ -78,6 +89,11 @@ void restate_status(double reached, double until, result::Result& run) {
     run.events.pop_back();
     status.termination = result::Termination::completed;
     status.message.clear();
+  } else if (auto contact = negative_friction(run)) {
+    run.events.pop_back();
+    status.termination = result::Termination::outside_class;
+    status.message =
+        fmt::format("the friction of '{}' turns negative at t = {:.10g}, while bodies touch", *contact, reached);
   } else if (status.termination == result::Termination::completed) {
     status.termination = result::Termination::not_converged;
     status.message = "the clock stands still";
