@@ -27,9 +27,8 @@ struct NlpOptions {
   double acceptable_tolerance = 1e-6;  ///< taken if the solver cannot improve any more
   int iteration_limit = 500;
   std::optional<double> time_limit = {};  ///< seconds, of the wall clock
-  /// Barrier parameter to begin with where the start has multipliers; the solver's own choice if absent.
-  std::optional<double> warm_barrier_mu = {};
-  /// The same where it has none. It is moved inside of its bounds by no more than this.
+  /// Barrier parameter to begin with; the solver's own choice if absent. A start without multipliers is moved inside of
+  /// its bounds by no more than this.
   std::optional<double> first_barrier_mu = {};
   /// Violation of the rows above which the Hessian is that of the objective alone: with multipliers that are far off,
   /// the curvature of constraints would only have to be regularised away.

@@ -31,7 +31,7 @@ RelaxedPath::RelaxedPath(Run& run, Attempt attempt, PathProgress progress)
       crossing_(run),
       relaxed_(std::make_unique<homotopy::RelaxedProblem>(run.problem, run.options.relaxation, attempt_.steering)),
       at_(std::move(progress)) {
-  if (!at_.level) return;
+  if (at_.sigma == 0.0) return;
   relaxed_->set_sigma(at_.sigma);
   attempt_.name.clear();  // it is in the record
 }
@@ -175,8 +175,8 @@ NlpPoint RelaxedPath::start(NlpOptions& options) {
     return point;
   }
   // Products of pairs are of the order of sigma, and so are those of bounds and their multipliers.
-  options.warm_barrier_mu = std::clamp(std::pow(at_.sigma, 1.2), 1e-9, 0.1);
-  options.warm_push = std::clamp(*options.warm_barrier_mu, 1e-9, 1e-5);
+  options.first_barrier_mu = std::clamp(std::pow(at_.sigma, 1.2), 1e-9, 0.1);
+  options.warm_push = std::clamp(*options.first_barrier_mu, 1e-9, 1e-5);
   return point;
 }
 

@@ -182,12 +182,11 @@ struct IpoptSolver::Implementation {
                    options->SetIntegerValue("max_iter", wanted.iteration_limit) && set_time_limit(*options, wanted) &&
                    set_start(*options, with_multipliers, wanted.warm_push);
     // Only the monotone strategy begins with a given parameter; the adaptive one chooses its own.
-    const auto first_mu = with_multipliers && wanted.warm_barrier_mu ? wanted.warm_barrier_mu : wanted.first_barrier_mu;
+    const auto& first_mu = wanted.first_barrier_mu;
     are_set = are_set && options->SetStringValue("mu_strategy", first_mu ? "monotone" : "adaptive") &&
               options->SetNumericValue("mu_init", first_mu.value_or(0.1));
     for (const char* name : {"bound_push", "bound_frac", "slack_bound_push", "slack_bound_frac"}) {
-      are_set =
-          are_set && options->SetNumericValue(name, std::min(cold_push, wanted.first_barrier_mu.value_or(cold_push)));
+      are_set = are_set && options->SetNumericValue(name, std::min(cold_push, first_mu.value_or(cold_push)));
     }
     SALTUS_ASSERT(are_set);
   }

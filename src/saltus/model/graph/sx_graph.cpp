@@ -179,12 +179,12 @@ void SxGraph::drop_marks(casadi::SX& expressions, KnownExpressions& known) const
     std::vector<SXElem> open{expression};
     while (!open.empty()) {
       const SXElem current = open.back();
-      const auto todo = open.size();
+      const auto before = open.size();
       const bool leaf = current.is_constant() || current.is_symbolic();
       for (casadi_int i = 0; !leaf && !known.contains(current.get()) && i < current.n_dep(); ++i) {
         if (!known.contains(current.dep(i).get())) open.push_back(current.dep(i));
       }
-      if (open.size() > todo) continue;
+      if (open.size() > before) continue;
       open.pop_back();
       const bool mark = !leaf && current.op() == casadi::OP_ASSIGN;
       known.emplace(current.get(), mark ? known.at(current.dep(0).get()) : with_operands(current, known));

@@ -106,11 +106,11 @@ Expected<SXElem> Recognition::at_instant(const SXElem& e) {
     } else if (!current.is_constant() && !current.is_symbolic()) {
       for (casadi_int i = 0; i < current.n_dep(); ++i) needed.push_back(current.dep(i));
     }
-    const auto todo = open.size();
+    const auto before = open.size();
     for (const auto& one : needed) {
       if (!known.contains(one.get())) open.push_back(one);
     }
-    if (open.size() > todo) continue;
+    if (open.size() > before) continue;
     open.pop_back();
     if (known.contains(current.get())) continue;
     if (mark != conditions_.end()) {

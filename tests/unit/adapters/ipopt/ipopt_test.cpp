@@ -48,7 +48,7 @@ TEST(Ipopt, SolvesANonlinearProgramWithMultipliers) {
   EXPECT_GT(report.iterations, 2);
 
   // From the solution with its multipliers and a small barrier parameter little is left to do.
-  const NlpReport again = solver.solve(problem, point, {.time_limit = {}, .warm_barrier_mu = 1e-9});
+  const NlpReport again = solver.solve(problem, point, {.time_limit = {}, .first_barrier_mu = 1e-9});
   EXPECT_EQ(again.termination, Termination::completed);
   EXPECT_LE(again.iterations, 3);
 }
@@ -57,7 +57,7 @@ TEST(Ipopt, SaysWhatWentWrong) {
   adapters::IpoptSolver solver;
   auto problem = hock_schittkowski_15();
   NlpPoint point{.w = linalg::Vector{-2.0, 1.0}, .y = {}, .z_lower = {}, .z_upper = {}};
-  EXPECT_EQ(solver.solve(problem, point, {.iteration_limit = 2, .time_limit = {}, .warm_barrier_mu = {}}).termination,
+  EXPECT_EQ(solver.solve(problem, point, {.iteration_limit = 2, .time_limit = {}, .first_barrier_mu = {}}).termination,
             Termination::iteration_limit);
 
   PolynomialStatement contradiction;  // w^2 = -1
