@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "saltus/event_integrator/approach/zero_approach.hpp"
-#include "saltus/event_integrator/run/output_rows.hpp"
+#include "saltus/event_integrator/record/output_rows.hpp"
 #include "saltus/event_integrator/sequences/switch_accumulation.hpp"
 #include "saltus/event_integrator/steps/step_attempt.hpp"
 #include "saltus/event_integrator/steps/step_tolerances.hpp"

@@ -61,8 +61,8 @@ class Process {
       const double length = piece_length();
       if (!(length <= largest_impulse * size_ / strength_)) {
         // Friction that holds everything at rest keeps the work back that is left to give.
-        const bool holds = !closes() && change_.max_abs() <= process_rounding * strength_;
-        return holds ? std::optional(impulse_) : std::nullopt;
+        const bool at_rest = !closes() && change_.max_abs() <= process_rounding * strength_;
+        return at_rest ? std::optional(impulse_) : std::nullopt;
       }
       advance(length);
     }

@@ -11,20 +11,20 @@ namespace saltus::event_integrator {
 /// smooth in t there, so that steps may shrink in proportion to T: some thirty of them instead of hundreds whose stages
 /// have no root.
 void Run::limit_beside_coalescence() {
-  if (field_.solve() != SlidingSolve::coupled) return;
+  if (run_.field.solve() != SlidingSolve::coupled) return;
   constexpr double near = 0.1;
-  const double share =
-      std::min(1.0, std::max(tolerances_.smallest_part(), field_.root_distance(here_.t, here_.x.data()) / near));
-  tolerances_.limit(StepTolerances::Reason::coalescence, {share, share});
+  const double share = std::min(
+      1.0, std::max(run_.tolerances.smallest_part(), run_.field.root_distance(run_.here.t, run_.here.x.data()) / near));
+  run_.tolerances.limit(StepTolerances::Reason::coalescence, {share, share});
 }
 
 /// Before a step of length h: errors of functions that the field has roots of.
 void Run::limit_beside_zeros(double h) {
   const auto cycle = switches_.cycle();
   if (!zeros_.any_continued() && !nested_.watches() && !(cycle && zeros_.any_ending())) return;
-  ode::Tolerances parts = zeros_.bearable(h, cycle, tolerances_.mode());
+  ode::Tolerances parts = zeros_.bearable(h, cycle, run_.tolerances.mode());
   nested_.limit(parts);
-  tolerances_.limit(StepTolerances::Reason::zeros, parts);
+  run_.tolerances.limit(StepTolerances::Reason::zeros, parts);
 }
 
 }  // namespace saltus::event_integrator

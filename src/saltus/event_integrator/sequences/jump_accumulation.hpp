@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "saltus/event_integrator/accumulate/accumulation.hpp"
-#include "saltus/event_integrator/cascade/jump_cascade.hpp"
+#include "saltus/event_integrator/instant/jump_cascade.hpp"
 
 namespace saltus::event_integrator {
 

@@ -4,7 +4,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/rounding_unit.hpp"
-#include "saltus/event_integrator/cascade/jump_cascade.hpp"
+#include "saltus/event_integrator/instant/jump_cascade.hpp"
 
 namespace saltus::event_integrator {
 namespace {

@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/run/output_rows.hpp"
+#include "saltus/event_integrator/record/output_rows.hpp"
 
 #include <algorithm>
 #include <span>

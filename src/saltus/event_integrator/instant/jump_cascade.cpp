@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/cascade/jump_cascade.hpp"
+#include "saltus/event_integrator/instant/jump_cascade.hpp"
 
 #include <algorithm>
 #include <cmath>
