@@ -63,13 +63,13 @@ CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording
     }
     if (event().spiral) begin_spiral();
     if (event().rooted >= 0) leave_root();
-    pass_instants();
+    if (next_.any()) pass_instants();
     if (!run_.running || here.t >= run_.options.until) break;
     const double h = std::max(here.h, 2.0 * here.smallest_step());
     steps_.begin(run_.options.max_step ? std::min(h, *run_.options.max_step) : h);
     while (run_.running && attempt() == Step::shortened) {
     }
-    pass_instants();
+    if (next_.any()) pass_instants();
     if (run_.running && observer &&
         observer({here.t, statistics_.steps, run_.recorder.events(), shown_state()}) == Continue::no) {
       run_.end(Termination::stopped_by_user, fmt::format("stopped at {}", run_.where()));

@@ -24,7 +24,7 @@ void Run::come_to(Instant::Cause cause) {
 /// Passes what a step has come to, and what follows it at once: limits of sequences, and jumps behind them.
 void Run::pass_instants() {
   const long events = run_.recorder.events();
-  while (run_.running && (next_.zeros != nullptr || next_.instant)) {
+  while (run_.running && next_.any()) {
     if (next_.zeros != nullptr) {
       pass_zeros(*std::exchange(next_.zeros, nullptr));
     } else {

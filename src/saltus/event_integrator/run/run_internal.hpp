@@ -151,6 +151,8 @@ class Run : private ResolverClient {
     Located located;                        ///< zeros that no step has met
     bool departs = false;                   ///< the next decision leaves a mode as a member of a family
     std::optional<SeriesLimit> unresolved;  ///< the limit that a switch is which cannot be decided
+
+    [[nodiscard]] bool any() const { return zeros != nullptr || instant; }
   };
   /// What decides and enters ordinary switches without detours.
   struct FastSwitch {

@@ -155,7 +155,8 @@ void Run::accept(double t_new) {
   const bool projected = run_.field.project(here.t, here.x.data());
   const bool follows = steps_.stepper().follows();
   if (follows) run_.field.prepare();
-  if (run_.holding.project(here.t, here.state.alpha, here.x) || projected || follows) {
+  const bool held = !run_.jumps.none() && run_.holding.project(here.t, here.state.alpha, here.x);
+  if (held || projected || follows) {
     run_.field(here.t, here.x.data(), here.slope.data());
   } else {
     std::copy_n(steps_.stepper().slope_new(), here.slope.size(), here.slope.begin());
