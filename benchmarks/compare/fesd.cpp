@@ -33,7 +33,7 @@ discretization::TableauFamily family_of(std::string_view scheme) {
 int compare_fesd(char** arguments, saltus::evaluation::NativeCode native) {
   const auto file = value_or_exit(saltus::io::read_model(arguments[1]));
   const auto built = value_or_exit(saltus::model::build(file.description));
-  const auto system = built.frozen ? value_or_exit(built.frozen->system) : built;
+  const auto system = built.frozen ? value_or_exit(built.frozen->system()) : built;
   reformulation::ReformulationOptions form;
   form.reformulation =
       std::string_view(arguments[2]) == "step" ? reformulation::Form::step : reformulation::Form::stewart;

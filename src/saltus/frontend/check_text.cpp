@@ -25,7 +25,7 @@ std::string methods_text(const model::System& system) {
   }
   const auto regularisation = smoothed::regularise(system, pipeline::SmoothedOptions{}.epsilon);
   if (system.frozen) {
-    const auto& frozen = system.frozen->system;
+    const auto& frozen = system.frozen->system();
     const auto dcs = frozen.and_then([](const auto& made) { return reformulation::reformulate(made); });
     std::string text =
         fmt::format("\nmethods: event{}\n", dcs ? ", fesd (time stands still at contacts and in hysteresis)" : "");

@@ -51,7 +51,7 @@ std::string shortened(const std::vector<std::string>& names) {
 
 /// The system that finite elements discretise: the frozen one, where there are contacts or hysteresis.
 const model::System& of_elements(const model::System& system) {
-  return system.frozen && system.frozen->system ? *system.frozen->system : system;
+  return system.frozen && system.frozen->system() ? *system.frozen->system() : system;
 }
 
 /// A line for each group of surfaces, and one for all that follow each other with the same numbers.

@@ -471,12 +471,12 @@ bool stands_still(const Description& description) {
 Expected<System> build(const Description& description, const std::vector<Override>& overrides) {
   auto system = build_with(description, overrides, nullptr);
   if (!system || (!stands_still(description) && system->contacts.empty())) return system;
-  const Quantities as_written;
-  FreezingPlan plan{.purpose = FrozenFor::simulation};
-  auto frozen = !stands_still(description)
-                    ? build_with(description, overrides, &as_written)
-                    : build_guarded(description, [&] { return Build(description, overrides, nullptr, plan).run(); });
-  system->frozen = std::make_shared<const FrozenSystem>(FrozenSystem{std::move(frozen)});
+  system->frozen = std::make_shared<const FrozenSystem>([description, overrides]() -> Expected<System> {
+    const Quantities as_written;
+    if (!stands_still(description)) return build_with(description, overrides, &as_written);
+    FreezingPlan plan{.purpose = FrozenFor::simulation};
+    return build_guarded(description, [&] { return Build(description, overrides, nullptr, plan).run(); });
+  });
   return system;
 }
 

@@ -301,9 +301,10 @@ Expected<System> Builder::build() {
   if (parts_->error) return tl::unexpected(*parts_->error);
   auto system = guarded([&] { return parts_->physical(); });
   if (!system || (!parts_->stands_still() && system->contacts.empty())) return system;
-  auto other =
-      guarded([&] { return parts_->stands_still() ? parts_->frozen(FrozenFor::simulation) : parts_->as_written(); });
-  system->frozen = std::make_shared<const FrozenSystem>(FrozenSystem{std::move(other)});
+  // Of the model as it is stated by now, whatever is added to it later.
+  system->frozen = std::make_shared<const FrozenSystem>([parts = std::make_shared<Parts>(*parts_)] {
+    return guarded([&] { return parts->stands_still() ? parts->frozen(FrozenFor::simulation) : parts->as_written(); });
+  });
   return system;
 }
 

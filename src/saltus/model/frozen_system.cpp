@@ -4,8 +4,15 @@
 #include <cstddef>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/symbolic_lock.hpp"
 
 namespace saltus::model {
+
+const Expected<System>& FrozenSystem::system() const {
+  const SymbolicLock lock;  // before the flag: whoever has that needs no lock any more
+  std::call_once(made_, [this] { system_ = make_(); });
+  return *system_;
+}
 
 System with_values_of(System frozen, const System& system) {
   frozen.parameter_values.assign(system.parameter_values.begin(),

@@ -26,9 +26,9 @@ std::optional<Error> find_mistake_at_start(const model::System& system, const Si
 /// The system with its forces as written, for methods that are none of events; null: it is that already.
 std::shared_ptr<const model::System> as_written(const model::System& system, Method method) {
   const auto& other = system.frozen;
-  if (method == Method::event || !other || !other->system || other->system->freezing) return nullptr;
+  if (method == Method::event || !other || !other->system() || other->system()->freezing) return nullptr;
   const SymbolicLock lock;
-  return dropped_under_lock(model::with_values_of(*other->system, system));
+  return dropped_under_lock(model::with_values_of(*other->system(), system));
 }
 
 Expected<result::Result> by_its_method(const Simulation& asked, KernelStore& kernels) {

@@ -1,6 +1,9 @@
 // [[hysteresis]] on its way from a description into a system.
+#include <algorithm>
+
 #include "model_text.hpp"
 #include "saltus/model/builder.hpp"
+#include "saltus/model/frozen_system.hpp"
 
 namespace saltus::model {
 namespace {
@@ -102,6 +105,34 @@ TEST(Hysteresis, AStateMayBeCalledClock) {
   builder.dynamics("clock", builder.state("clock", {0.0}));
   static_cast<void>(builder.hysteresis("turbo", v, {.on = 15.0, .off = 10.0}));
   builder.dynamics("v", 1.0);
+  EXPECT_TRUE(builder.build().has_value());
+}
+
+/// Methods with events never ask for the frozen form, in which every expression may hold all hysteresis states.
+TEST(Hysteresis, TheFrozenFormIsMadeWhenItIsAskedForAndOnce) {
+  int made = 0;
+  const FrozenSystem frozen([&]() -> Expected<System> {
+    ++made;
+    return System{};
+  });
+  EXPECT_EQ(made, 0);
+  EXPECT_TRUE(frozen.system().has_value());
+  EXPECT_TRUE(frozen.system().has_value());
+  EXPECT_EQ(made, 1);
+}
+
+/// It is the form of what was stated when the system was built.
+TEST(Hysteresis, TheFrozenFormKnowsNothingOfWhatIsAddedLater) {
+  Builder builder("car");
+  const auto v = builder.state("v", {12.0});
+  static_cast<void>(builder.hysteresis("turbo", v, {.on = 15.0, .off = 10.0}));
+  builder.dynamics("v", 1.0);
+  const auto system = builder.build();
+  ASSERT_TRUE(system.has_value());
+  builder.dynamics("later", builder.state("later", {0.0}));
+  ASSERT_TRUE(system->frozen->system().has_value());
+  const auto& names = system->frozen->system()->state_names;
+  EXPECT_EQ(std::count(names.begin(), names.end(), "later"), 0);
   EXPECT_TRUE(builder.build().has_value());
 }
 

@@ -109,7 +109,7 @@ Expected<result::Result> simulate_frozen(const Simulation& asked) {
   const SymbolicLock lock;  // systems are made and dropped
   const auto& system = asked.system;
   const auto& options = asked.options;
-  const auto& frozen = system.frozen->system;
+  const auto& frozen = system.frozen->system();
   if (!frozen) return tl::unexpected(frozen.error());
   if (options.method != Method::fesd) {
     return tl::unexpected(not_frozen("the method \"timestepping\" does not cover contacts and hysteresis",
