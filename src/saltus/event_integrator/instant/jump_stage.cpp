@@ -6,6 +6,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/base/stop.hpp"
 #include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/instant/contact_stage.hpp"
 #include "saltus/event_integrator/instant/rest_stage.hpp"
@@ -90,6 +91,7 @@ bool execute_jump(const InstantContext& c) {
 
 bool execute_due_jumps(const InstantContext& c) {
   while (c.run.running && c.run.jumps.due(c.run.here.t)) {
+    heed_stop();
     if (!execute_jump(c)) return false;
   }
   return c.run.running;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/stop.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -50,8 +51,23 @@ bool Run::begin() {
   return true;
 }
 
-/// One step at a time, and the instants that it meets.
 CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording& take) {
+  // Inside of a decision that lasts, too.
+  const StopScope scope([&] { return observer && !observes(observer); });
+  try {
+    take_steps(observer, take);
+  } catch (const Stopped&) {
+    run_.end(Termination::stopped_by_user, fmt::format("stopped at {}", run_.where()));
+  }
+  return finish();
+}
+
+bool Run::observes(const StepObserver& observer) const {
+  return observer({run_.here.t, statistics_.steps, run_.recorder.events(), shown_state()}) == Continue::yes;
+}
+
+/// One step at a time, and the instants that it meets.
+void Run::take_steps(const StepObserver& observer, const TakeRecording& take) {
   const Position& here = run_.here;
   bool goes_on = begin();
   while (goes_on && run_.running && here.t < run_.options.until) {
@@ -70,13 +86,11 @@ CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording
     while (run_.running && attempt() == Step::shortened) {
     }
     if (next_.any()) pass_instants();
-    if (run_.running && observer &&
-        observer({here.t, statistics_.steps, run_.recorder.events(), shown_state()}) == Continue::no) {
+    if (run_.running && observer && !observes(observer)) {
       run_.end(Termination::stopped_by_user, fmt::format("stopped at {}", run_.where()));
     }
     if (take && run_.recorder.has_many()) take(run_.recorder.hand_over());
   }
-  return finish();
 }
 
 /// What a run returns, with a row where it ends.

@@ -57,6 +57,8 @@ class Run : private ResolverClient {
   [[nodiscard]] double longest_step() const override { return steps_.longest(); }
 
   bool begin();
+  void take_steps(const StepObserver& observer, const TakeRecording& take);
+  [[nodiscard]] bool observes(const StepObserver& observer) const;
   CompactIntegration finish();
   void pass_instants();
   void pass_zeros(const Located& located);

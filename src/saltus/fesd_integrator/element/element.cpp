@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/stop.hpp"
 #include "saltus/fesd_integrator/element/element_equations_internal.hpp"
 #include "saltus/fesd_integrator/element/element_polynomial_internal.hpp"
 #include "saltus/fesd_integrator/element/rest_projection.hpp"
@@ -55,6 +56,7 @@ const discretization::ButcherTableau& ElementSolver::tableau() const { return im
 
 ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::span<const ActiveSet> sets,
                                             const double* held, Guess guess, Element& element) {
+  heed_stop();
   using Matrix = ElementEquations::Matrix;
   auto& equations = implementation_->equations;
   SALTUS_ASSERT(sets.size() == 1 || sets.size() == static_cast<std::size_t>(tableau().stages()));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/stop.hpp"
 #include "saltus/fesd_integrator/run/diagnosis_internal.hpp"
 #include "saltus/fesd_integrator/run/run_internal.hpp"
 
@@ -47,8 +48,22 @@ void Run::stop(result::Termination termination, std::string message) {
 }
 
 Integration Run::run() {
+  // Inside of an element that takes long, too.
+  const StopScope scope([&] {
+    status_.show_progress(position_.t(), recorder_.events(), position_.x());
+    return stopped();
+  });
+  try {
+    start();
+    take_elements();
+  } catch (const Stopped&) {
+    stop(result::Termination::stopped_by_user, fmt::format("stopped at t = {:.10g}", position_.t()));
+  }
+  return take_integration();
+}
+
+void Run::take_elements() {
   const IntegrationOptions& options = context_.options;
-  start();
   const auto steps = static_cast<double>(options.steps);
   for (long k = 0; k < options.steps && !stopped(); ++k) {
     // From the ends, not by adding up: no drift in time.
@@ -69,7 +84,6 @@ Integration Run::run() {
     }
     status_.show_progress(position_.t(), recorder_.events(), position_.x());
   }
-  return take_integration();
 }
 
 Integration Run::take_integration() {

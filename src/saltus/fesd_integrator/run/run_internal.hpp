@@ -41,6 +41,7 @@ class Run {
 
  private:
   void start();
+  void take_elements();
   /// The continuation that agrees with IntegrationOptions::initial_mode, put first; false if there is none.
   [[nodiscard]] bool put_forced_first(std::vector<Continuation>& found) const;
   /// Functions at zero at the start, as the result counts them.

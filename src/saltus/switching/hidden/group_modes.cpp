@@ -8,6 +8,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/stop.hpp"
 #include "saltus/switching/hidden/hidden_face_internal.hpp"
 #include "saltus/switching/plane/plane_internal.hpp"
 #include "saltus/switching/selections/selection_newton.hpp"
@@ -41,6 +42,7 @@ class Enumeration {
 
   std::vector<GroupMode> run() {
     do {
+      heed_stop();
       look_at_zone();
     } while (next_zone());
     return std::move(modes_);

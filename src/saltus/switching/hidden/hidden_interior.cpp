@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/stop.hpp"
 #include "saltus/ode/bernstein.hpp"
 #include "saltus/ode/step_control.hpp"
 #include "saltus/switching/hidden/hidden_trajectory_internal.hpp"
@@ -89,6 +90,7 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
   ode::StepControl control(stiff_ ? ode::Method::radau5 : options_.method);
   if (stiff_stepper_) stiff_stepper_->restart();
   for (; used_ < options_.budget; ++steps, ++used_) {
+    heed_stop();
     if (const auto status = look_for_rest_at(steps)) return *status;
     auto& made = stiff_ ? stiff_stepper_ : stepper_;
     if (!made) made.emplace(stiff_ ? ode::Method::radau5 : options_.method, m_);
@@ -126,6 +128,7 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
 std::optional<HiddenTrajectory::Status> HiddenTrajectory::cross_pair(double fastest, int& steps) {
   const double longest = longest_step / fastest;
   for (; steps < most_series && used_ < options_.budget; ++steps, ++used_) {
+    heed_stop();
     if (const auto status = look_for_rest_at(steps)) return *status;
     series_.series.take(*face_.pair(), face_.free(), u_, v_, tolerance_here(), longest);
     series_.series.evaluate(1.0, series_.end.data());

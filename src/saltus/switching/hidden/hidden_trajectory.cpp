@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/stop.hpp"
 #include "saltus/ode/bernstein.hpp"
 #include "saltus/switching/hidden/hidden_strip_internal.hpp"
 #include "saltus/switching/hidden/hidden_trajectory_internal.hpp"
@@ -47,6 +48,7 @@ TrajectoryEnd HiddenTrajectory::follow(const std::vector<double>& u) {
   nudges_ = 0;
   std::string_view stopped = "the hidden dynamics has no limit within its budget";
   while (used_ < options_.budget) {
+    heed_stop();
     ++used_;
     face_.enter(zone_);
     face_.velocity(u_.data(), v_.data());
