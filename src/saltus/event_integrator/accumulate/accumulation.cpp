@@ -13,6 +13,16 @@ namespace saltus::event_integrator {
 namespace {
 
 constexpr double hundredth = 0.01;
+/// Cycles that shrink fast are short where they are less than this part of the time taken.
+constexpr double short_cycle = 1e-6;
+/// Of the time taken: what may remain behind too few cycles to believe in a limit.
+constexpr double most_remaining = 1e-7;
+
+/// What remains before a limit is asked for: of the time taken, and of what t resolves.
+double least_remaining(double taken, double resolution) {
+  constexpr double part = 1e-8, roundings = 100.0;
+  return std::max(part * taken, roundings * resolution);
+}
 
 }  // namespace
 
@@ -143,7 +153,7 @@ bool EventSeries::is_far_from_limit(std::size_t period, double resolved_to) cons
   const auto cycles = static_cast<std::size_t>(std::min(std::ceil(before / (before - last)), double{most_cycles})) + 2;
   const double others = back(period).t - back(std::min(cycles * period, entries_.size() - 1)).t;
   // With twice what they are compared with the roundings of the ratio do not matter.
-  return last * last > 2.0 * others * std::max(1e-8 * (t - start_[period]), 100.0 * resolution);
+  return last * last > 2.0 * others * least_remaining(t - start_[period], resolution);
 }
 
 /// @param resolved_to  how long the cycles are that are lost in roundings
@@ -155,7 +165,7 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double reso
     // Cycles that shrink fast leave little, but not nothing. Long ones are here because psi leaves its surface
     // tangentially, with no rate: their limit is where they are.
     const double fast = now.of[0] / now.of[1];
-    if (!(fast <= 0.5 && now.of[0] <= 1e-6 * (t - start_[period]))) {
+    if (!(fast <= 0.5 && now.of[0] <= short_cycle * (t - start_[period]))) {
       return SeriesLimit{t, last_state(), last_jumps(period), now.of[0]};
     }
     const double left = now.of[0] * fast / (1.0 - fast);
@@ -172,7 +182,7 @@ std::optional<SeriesLimit> EventSeries::limit_of(std::size_t period, double reso
   if (!(ratio_now < 1.0)) return std::nullopt;
   const double remaining = now.of[0] * ratio_now / (1.0 - ratio_now);
   const double taken = t - start_[period];
-  if (remaining > std::max(1e-8 * taken, 100.0 * resolution) && !is_unresolved) return std::nullopt;
+  if (remaining > least_remaining(taken, resolution) && !is_unresolved) return std::nullopt;
   const double ratio_before = ratio(period, 1);
   if (!(ratio_before < 1.0)) return std::nullopt;
   const double remaining_before = now.of[1] * ratio_before / (1.0 - ratio_before);
@@ -230,7 +240,7 @@ std::optional<SeriesLimit> EventSeries::nearly() const {
     // Of a shorter period that repeats, too, the longer ones are multiples.
     if (!(cycle <= hundredth * before)) return std::nullopt;
     // What would remain.
-    if (cycle * (cycle / before) <= 1e-7 * (back(0).t - entries_.front().t)) {
+    if (cycle * (cycle / before) <= most_remaining * (back(0).t - entries_.front().t)) {
       return SeriesLimit{back(0).t, last_state(), last_jumps(period), cycle};
     }
   }

@@ -6,6 +6,12 @@
 #include "saltus/base/contracts.hpp"
 
 namespace saltus::event_integrator {
+namespace {
+
+/// Of the span: no model lives on that scale.
+constexpr double shortest_scale = 1e-9;
+
+}  // namespace
 
 bool SwitchSeries::note(double t, const ModeChange& change) {
   if (!change.is_single() && change.mode_before->mode == change.mode_after->mode) return false;
@@ -57,7 +63,7 @@ bool SwitchSeries::shrinks(double t) const {
   // The last terms of a geometric series are lost in the rounding of t: a fast one is over after a few, and with more
   // in a cycle a slow one shrinks by half from cycle to cycle.
   for (const std::size_t cycle : {std::size_t{2}, std::size_t{4}}) {
-    if (switches_ <= 2 * cycle || t - times_[cycle] > 1e-9 * span_) continue;
+    if (switches_ <= 2 * cycle || t - times_[cycle] > shortest_scale * span_) continue;
     if (times_[0] - times_[cycle] <= 0.5 * (times_[cycle] - times_[2 * cycle])) return true;
   }
   return false;
@@ -73,8 +79,8 @@ bool SwitchSeries::tightens() const {
 }
 
 bool SwitchSeries::too_dense(double t) {
-  // 500 switches within 1e-9 of the span: no model lives on that scale, a spiral or Zeno sequence does.
-  if (in_a_row_ == 0 || t - start_ > 1e-9 * span_) {
+  // 500 switches on that scale: a spiral or a Zeno sequence.
+  if (in_a_row_ == 0 || t - start_ > shortest_scale * span_) {
     in_a_row_ = 0;
     start_ = t;
   }

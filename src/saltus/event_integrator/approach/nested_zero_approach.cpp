@@ -47,7 +47,8 @@ void NestedZeroApproach::limit(ode::Tolerances& parts) {
   auto& [rtol, atol] = parts;
   // Where g is a difference of states, its rounding moves the selection by a part of u / g. The selection is of the
   // size of |g'|^2 / g. Less than this could not be reached any more before g is as small as it may get.
-  const double smallest = 1e-12 / tolerances_.mode().rtol;
+  constexpr double part = 1e-12;
+  const double smallest = part / tolerances_.mode().rtol;
   for (const Approaching& approaching : functions_) {
     const Rate rate = rates_.here(approaching.function);
     const double wanted = tolerances_.mode().rtol * std::abs(values_[at(approaching.function)]);

@@ -13,6 +13,8 @@ namespace {
 
 /// A rate below this part of its terms is rounding: the function is touched, or left, tangentially.
 constexpr double rate_rounding = 1e-12;
+/// Of det G: a root that is as good as lost.
+constexpr double lost_root = 1e-3;
 
 }  // namespace
 
@@ -68,7 +70,7 @@ Located ZeroApproach::onto(std::size_t function, double left) const {
 ode::Tolerances ZeroApproach::bearable(double h, std::optional<double> cycle, const ode::Tolerances& mode) {
   // A thousandth of psi moves that time by 1e-3 sqrt(psi); of what is left at `least` of atol, 1e-18, by 1e-9 at most.
   constexpr double part = 1e-3, least = 1e-8;
-  const double smallest = 1e-13 / mode.rtol;  // what doubles carry of a state, several hundred times
+  const double smallest = carried_part / mode.rtol;
   ode::Tolerances bearable{.rtol = 1.0, .atol = 1.0};
   auto& [rtol, atol] = bearable;
   kernel_values_.resize(at(kernel_.event_functions()));
@@ -138,7 +140,7 @@ std::optional<Located> ZeroApproach::beside_undefined() {
       // Of sqrt(x) + 1 the rate is infinite at x = 0, and nothing is reached.
       const bool is_near = std::isfinite(rate) && std::abs(values_[i] / rate) <= 1e3 * here_.smallest_step();
       if (ahead && is_near) return onto(i, 0.0);
-    } else if (function.kind == FunctionKind::loss && std::abs(values_[i]) < 1e-3) {
+    } else if (function.kind == FunctionKind::loss && std::abs(values_[i]) < lost_root) {
       return Located{here_.t, here_.x, {i}, {function.sign}};  // the selection has become double
     }
   }

@@ -8,6 +8,7 @@
 #include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
 #include "saltus/event_integrator/decide/projected_fields.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/switching/plane/admissible_modes.hpp"
 
@@ -76,11 +77,10 @@ void Families::find_groups() {
 
 bool Families::is_on(const ModeState& state) const {
   // Roots that are compared are those of one point: they differ by their rounding, or by much more.
-  constexpr double same = 1e-6;
   const auto has_root = [&](const Group& group) {
     std::vector<double> alpha;
     for (const int j : group.surfaces) alpha.push_back(state.alpha[at(j)]);
-    return distance(alpha, group.alpha) <= same;
+    return distance(alpha, group.alpha) <= same_selection;
   };
   return state.mode == state_.mode && std::all_of(groups_.begin(), groups_.end(), has_root);
 }

@@ -7,13 +7,14 @@
 #include <utility>
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
 /// The same mode with the same selections: on an intersection there may be two sliding motions.
 bool is_same(const ModeState& a, const ModeState& b) {
-  const auto near = [](double first, double second) { return std::abs(first - second) <= 1e-6; };
+  const auto near = [](double first, double second) { return std::abs(first - second) <= same_selection; };
   return a.mode == b.mode && std::equal(a.alpha.begin(), a.alpha.end(), b.alpha.begin(), near);
 }
 

@@ -63,9 +63,10 @@ std::vector<double> ProjectedFields::point_beside(const std::vector<double>& alp
     double square = 0.0;
     for (const double d : row) square += d * d;
     if (!(square > 0.0) || !std::isfinite(square)) continue;
-    // Just enough to be on the right side after rounding.
+    // Just enough to be on the right side after rounding, of states that are 0, too.
+    constexpr double least_state = 1e-30;
     const double distance =
-        4.0 * std::max({noise_[at(j)], rounding_unit * slope_[at(j)] * largest, 1e-30 * slope_[at(j)]});
+        4.0 * std::max({noise_[at(j)], rounding_unit * slope_[at(j)] * largest, least_state * slope_[at(j)]});
     const double side = alpha[at(j)] == 1.0 ? 1.0 : alpha[at(j)] == 0.0 ? -1.0 : 0.0;
     const double step = side * distance - values[at(j)];
     if (!std::isfinite(step)) continue;
@@ -173,10 +174,11 @@ bool ProjectedFields::gradient_vanishes(const std::vector<double>& alpha, int su
   if (rate != 0.0 || here == 0.0) return rate == 0.0;
   // Close by: a thousandth of the state and of what a step changes. A square is located to a relative 1e-8, where its
   // gradient is 1e-5 of that.
+  constexpr double close = 1e-3, vanishing = 1e-4;
   std::vector<double> f(n);
   kernel_.field(switching_point_.t, switching_point_.x, alpha.data(), f.data());
-  for (std::size_t i = 0; i < n; ++i) x[i] += 1e-3 * (std::abs(x[i]) + switching_point_.time_scale * std::abs(f[i]));
-  return here <= 1e-4 * size();
+  for (std::size_t i = 0; i < n; ++i) x[i] += close * (std::abs(x[i]) + switching_point_.time_scale * std::abs(f[i]));
+  return here <= vanishing * size();
 }
 
 bool ProjectedFields::gradients_depend(const std::vector<double>& alpha, const std::vector<int>& surfaces) const {
@@ -234,9 +236,10 @@ bool ProjectedFields::fields_agree(const ModeState& before, const std::vector<in
   for (std::size_t corner = 1; corner < corners; ++corner) {
     kernel_.field(switching_point_.t, switching_point_.x, corner_alpha(before.alpha, group, corner).data(),
                   other.data());
+    constexpr double one_field = 1e-12;
     for (std::size_t i = 0; i < n; ++i) {
       const double size = std::max(std::abs(first[i]), std::abs(other[i]));
-      if (!(std::abs(first[i] - other[i]) <= 1e-12 * size)) return false;
+      if (!(std::abs(first[i] - other[i]) <= one_field * size)) return false;
     }
   }
   return true;

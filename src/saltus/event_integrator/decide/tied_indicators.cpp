@@ -62,9 +62,9 @@ std::optional<std::pair<int, int>> same_indicators(const ModelKernel& kernel, co
     kernel.scales(t, x.data(), state.alpha.data(), magnitude.data(), slope.data());
     std::erase_if(same, [&](const auto& pair) {
       const auto [i, j] = pair;
-      // A thousandth of their slopes, but for those of one function: roundings.
+      constexpr double nearly = 1e-9;
       const double size = magnitude[at(i)] + magnitude[at(j)] + slope[at(i)] + slope[at(j)];
-      return !(std::abs(values[at(i)] - values[at(j)]) <= 1e-9 * size);
+      return !(std::abs(values[at(i)] - values[at(j)]) <= nearly * size);
     });
   }
   if (same.empty()) return std::nullopt;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/switching/plane/spiral.hpp"
 #include "saltus/switching/table/multi_affine.hpp"
 
@@ -137,7 +138,7 @@ bool Decider::is_same_motion(const std::vector<int>& group, const auto& mode) co
   for (std::size_t k = 0; k < group.size(); ++k) {
     if (s_.layout.surfaces[at(group[k])].is_kink) continue;
     const auto& decision = taken[static_cast<std::ptrdiff_t>(k)].second;
-    if (mode.mode[k] != decision.mode || std::abs(mode.alpha[k] - decision.alpha) > 1e-6) return false;
+    if (mode.mode[k] != decision.mode || std::abs(mode.alpha[k] - decision.alpha) > same_selection) return false;
   }
   return true;
 }
@@ -188,8 +189,9 @@ bool Decider::spiral_out(const std::vector<int>& group, const PlaneTable& table,
   if (!cycle || !(cycle->cycle_ratio > 1.0)) return false;
   // Any size is as good as another; the fields are constant to a millionth of it over this one, and the surface on
   // which the cycle ends is far above its rounding.
-  double delta = 1e-6 * switching_point_.time_scale / cycle->duration();
-  for (const int j : group) delta = std::max(delta, 1e5 * fields_.noise(j) / (cycle->cycle_ratio - 1.0));
+  constexpr double small = 1e-6, above_rounding = 1e5;
+  double delta = small * switching_point_.time_scale / cycle->duration();
+  for (const int j : group) delta = std::max(delta, above_rounding * fields_.noise(j) / (cycle->cycle_ratio - 1.0));
   const std::size_t crossed = (cycle->corners[3] ^ cycle->corners[0]) >> 1U;
   transition_.beyond_spiral = SpiralStart{delta * cycle->duration(),
                                           {switching_point_.x, switching_point_.x + s_.kernel.states()},
@@ -244,7 +246,8 @@ switching::HiddenDecision Decider::follow_hidden(const std::vector<int>& group, 
   field.enter(before_);
   std::vector<double> ahead(at(s_.kernel.states()));
   field(switching_point_.t, switching_point_.x, ahead.data());
-  const double time = 1e-4 * switching_point_.time_scale;
+  constexpr double soon = 1e-4;
+  const double time = soon * switching_point_.time_scale;
   for (std::size_t i = 0; i < ahead.size(); ++i) ahead[i] = switching_point_.x[i] + time * ahead[i];
   SwitchingPoint later = switching_point_;
   later.t += time;
@@ -253,7 +256,8 @@ switching::HiddenDecision Decider::follow_hidden(const std::vector<int>& group, 
   auto rate = here;
   subtract(corner_velocities(ProjectedFields(s_.kernel, later), base_, group), time, rate);
   const double change = largest(rate);
-  const double eta = change > 0.0 ? 1e-5 * largest(here) / change : time;
+  constexpr double small_change = 1e-5;
+  const double eta = change > 0.0 ? small_change * largest(here) / change : time;
   if (!std::isfinite(eta)) return {};
   const int m = static_cast<int>(group.size());
   return switching::decide_leaving(

@@ -100,7 +100,8 @@ bool HeldFunctions::tangent_direction(std::size_t state, std::size_t lower, std:
   }
   double square = 0.0;
   for (const double d : direction) square += d * d;
-  return square > 1e-20;
+  constexpr double dependent = 1e-20;  // of the square of a unit vector
+  return square > dependent;
 }
 
 /// How a point moves, into direction_, that stays where the first `lower` functions vanish as time passes: in the span

@@ -8,6 +8,12 @@
 #include "saltus/linalg/factors.hpp"
 
 namespace saltus::event_integrator {
+namespace {
+
+/// Differences of velocities, which are good to about ten digits.
+constexpr double velocity_digits = 1e-8;
+
+}  // namespace
 
 HigherOrderField::HigherOrderField(const evaluation::ModelKernel& kernel)
     : kernel_(kernel),
@@ -70,8 +76,7 @@ bool HigherOrderField::determines(const Balance& balance, const BalanceRange& ra
     for (std::size_t i = 0; i < low.size(); ++i) {
       const double size = std::max({std::abs(low[i]), std::abs(high[i]), std::abs(corners_[corner][i])});
       const double difference = corners_[corner][i] - (low[i] + share * (high[i] - low[i]));
-      // Velocities are good to about ten digits.
-      if (!(std::abs(difference) <= 1e-8 * size)) return false;
+      if (!(std::abs(difference) <= velocity_digits * size)) return false;
     }
   }
   return true;
@@ -133,7 +138,7 @@ bool HigherOrderField::Coupled::determines_motion() {
       jumps - linalg::least_squares(effects.transpose(), jumps.transpose()).transpose() * effects;
   determined = true;
   for (linalg::Index i = 0; i < rest.rows() && determined; ++i) {
-    determined = rest.row(i).max_abs() <= 1e-8 * jumps.row(i).max_abs();
+    determined = rest.row(i).max_abs() <= velocity_digits * jumps.row(i).max_abs();
   }
   return determined;
 }

@@ -41,7 +41,8 @@ void ModeField::gradients(double t, const double* x) {
 
 ode::Attempt ModeField::attempt(ode::Stepper& stepper, double t, const double* x, const double* slope, double h,
                                 const ode::Tolerances& tolerances) {
-  if (known_ != nullptr && t == known_->t && h <= known_->h * (1.0 + 1e-9)) {
+  constexpr double the_same = 1.0 + 1e-9;
+  if (known_ != nullptr && t == known_->t && h <= known_->h * the_same) {
     stepper.follow(*known_, std::min(h, known_->h));
     return ode::Attempt::finite;
   }
@@ -146,7 +147,8 @@ void ModeField::evaluate_nonaffine(double t, const double* x) {
   for (std::size_t row = 0; row < sliding_.size(); ++row) {
     const auto j = at(sliding_[row]);
     double a = start_alpha_[j];
-    double b = a > 0.5 ? a - 1e-3 : a + 1e-3;
+    constexpr double beside = 1e-3;
+    double b = a > 0.5 ? a - beside : a + beside;
     double at_a = selected_velocity(t, x, row, a);
     double at_b = selected_velocity(t, x, row, b);
     for (int iteration = 0; iteration < 30 && at_a != 0.0 && at_a != at_b; ++iteration) {

@@ -6,6 +6,7 @@
 
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/mode/regions.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/switching/plane/bilinear_root.hpp"
 #include "saltus/switching/table/surface_decision.hpp"
@@ -20,8 +21,7 @@ switching::RootKind kind_of_mode(const switching::PairCorners& g, double alpha_1
   const auto rising = switching::bilinear_root(g, RootKind::rising);
   const auto falling = switching::bilinear_root(g, RootKind::falling);
   const auto has = [&](const switching::BilinearRoot& root) {
-    // Selections are carried along to about 1e-8.
-    return std::abs(root.alpha[0] - alpha_1) < 1e-6 && std::abs(root.alpha[1] - alpha_2) < 1e-6;
+    return std::abs(root.alpha[0] - alpha_1) < same_selection && std::abs(root.alpha[1] - alpha_2) < same_selection;
   };
   const auto inside = [](const switching::BilinearRoot& root) {
     return std::min(root.alpha[0], root.alpha[1]) >= 0.0 && std::max(root.from_one[0], root.from_one[1]) <= 0.0;
@@ -302,7 +302,8 @@ void ModeField::evaluate_tie(double t, const double* x, SlidingRegions& regions)
     const auto excess = [&](std::size_t facet) { return facet < facets ? regions.tie->excess(facet) : 1.0; };
     exits_[rows[k]] = {found ? excess(2 * k) : not_a_number, found ? -excess(2 * k + 1) : not_a_number, 0.0, 0.0};
     // Weights are as good as the equations are regular.
-    groups_.condition[rows[k]] = 1.0 / std::max(std::abs(regions.tie->determinant()), 1e-6);
+    constexpr double singular = 1e-6;
+    groups_.condition[rows[k]] = 1.0 / std::max(std::abs(regions.tie->determinant()), singular);
   }
   exits_[rows[0]].loss = regions.tie->determinant();
 }

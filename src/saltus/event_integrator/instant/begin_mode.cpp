@@ -30,9 +30,9 @@ bool begin_field(RunState& run, const ModeChange& change, double t, std::vector<
 /// was met; -1 if there is none. Behind a jump of a surface nothing is projected.
 int Resolver::state_moved_from(const std::vector<double>& met) const {
   const auto& [rtol, atol] = run_.options.tolerances;
-  constexpr double many = 1e4;
+  constexpr double many = 1e4, least = 1e-2, most = 0.1;
   // Of a state: what is located at roots, one inside the other, is known to a few digits.
-  const double share = std::clamp(many * rtol, 1e-2, 0.1);
+  const double share = std::clamp(many * rtol, least, most);
   const auto& x = run_.here.x;
   for (std::size_t i = 0; i < met.size(); ++i) {
     const double size = std::max(std::abs(x[i]), std::abs(met[i]));

@@ -242,8 +242,7 @@ std::vector<int> JumpCascade::surfaces_keeping(int function) {
     range += change;
     if (change > 0.0) surfaces.push_back(j);
   }
-  // As for selections that move nothing.
-  return std::abs(bend(field_.alpha())) <= 1e-9 * range ? surfaces : std::vector<int>{};
+  return std::abs(bend(field_.alpha())) <= no_effect * range ? surfaces : std::vector<int>{};
 }
 
 std::vector<HeldGuard> JumpCascade::guards_kept_by_sliding(const RestingGuards& others) {

@@ -19,6 +19,15 @@ constexpr double look_ahead(double time_scale) { return 1e-2 * time_scale; }
 /// leaves it there only to the conditioning of a quotient.
 inline constexpr double selection_rounding = 1e-9;
 
+/// Holds how close selections of two motions are that are one: they are carried along to about 1e-8.
+inline constexpr double same_selection = 1e-6;
+
+/// Holds the part of an effect below which it is none: what is left where velocities, good to ten digits, cancel.
+inline constexpr double no_effect = 1e-9;
+
+/// Holds the part of a size that doubles carry of it several hundred times.
+inline constexpr double carried_part = 1e-13;
+
 /// Returns whether a selection lies within its bounds, to rounding.
 constexpr bool is_within_bounds(double selection) {
   return selection >= -selection_rounding && selection <= 1.0 + selection_rounding;

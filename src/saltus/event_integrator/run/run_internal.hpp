@@ -20,6 +20,7 @@
 #include "saltus/event_integrator/field/field_memory.hpp"
 #include "saltus/event_integrator/instant/resolver.hpp"
 #include "saltus/event_integrator/instant/run_state.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 #include "saltus/event_integrator/run/compact_integration.hpp"
 #include "saltus/event_integrator/run/followed_choices.hpp"
@@ -105,7 +106,10 @@ class Run : private ResolverClient {
   void begin_spiral();
   void leave_root();
   /// Where x and f are both 0 the step that was proposed says nothing.
-  [[nodiscard]] double root_step() const { return std::max(1e-2 * run_.here.time_scale, 1e-8 * run_.span()); }
+  [[nodiscard]] double root_step() const {
+    constexpr double of_span = 1e-8;
+    return std::max(look_ahead(run_.here.time_scale), of_span * run_.span());
+  }
   void take_side_of_root();
   void begin_same_mode(int zero);
   void project_onto_roots(const Located& located);

@@ -23,8 +23,9 @@ void Run::arrive_at_nested_roots(Located located) {
   run_.field(run_.here.t, run_.here.x.data(), slope.data());
   if (is_finite(run_.field.alpha())) run_.here.state.alpha = run_.field.alpha();
   // The last steps may have been short because of rounding.
+  constexpr double part = 1e-3;
   run_.here.time_scale =
-      std::max({run_.here.time_scale, located.t - run_.here.t, 1e-3 * (run_.here.t - nested_.since())});
+      std::max({run_.here.time_scale, located.t - run_.here.t, part * (run_.here.t - nested_.since())});
   come_to(std::move(located));
 }
 

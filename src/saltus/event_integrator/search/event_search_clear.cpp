@@ -36,7 +36,8 @@ bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
   evaluation::AffineRow gradient;
   field_(t, x_.data(), slope.data());
   const Rate rate = rate_along(kernel_, function.index, t, x_, mode_.state.alpha, slope, gradient);
-  return hit.sign * rate.value < 1e-3 * hit.sign * hit.slope;
+  constexpr double turned = 1e-3;
+  return hit.sign * rate.value < turned * hit.sign * hit.slope;
 }
 
 /// Whether a zero of a user function is one of its roundings, as the surfaces that are slid on keep it.

@@ -184,7 +184,8 @@ void EventSearch::limit_by_tangency(std::size_t i, double t, const double* x) {
   alpha[at(function.index)] = is_below ? 0.0 : 1.0;
   if (!moves_along(kernel_, alpha, function.index, t, x, scale)) return;
   constexpr double errors = 1e4;  // of steps, which are smaller than those of dense outputs
-  const double margin = std::clamp(errors * errors_.of_run().rtol, 1e-7, 1e-2) * scale;
+  constexpr double least = 1e-7, most = 1e-2;
+  const double margin = std::clamp(errors * errors_.of_run().rtol, least, most) * scale;
   function.zero_order = 0;
   function.offset = -function.sign * margin;
 }

@@ -216,7 +216,8 @@ bool Locator::correct(const Hit& hit) {
 
 /// Values of the candidates shortly before the trial's end, into `beside_`; returns how long before.
 double Locator::look_back() {
-  const double back = 1e-3 * trial_.h;
+  constexpr double shortly = 1e-3;
+  const double back = shortly * trial_.h;
   dense_->evaluate((trial_.h - back) / dense_->h, x_.data());
   evaluate(start_.t + trial_.h - back, x_.data(), beside_);
   return back;

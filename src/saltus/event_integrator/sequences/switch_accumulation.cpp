@@ -92,7 +92,8 @@ void SwitchAccumulation::limit_tolerances(Roots roots) {
   if (!cycle) return;
   if (first_ == 0.0) first_ = *cycle;
   closed_ = *cycle;
-  const double share = std::clamp(*cycle / first_, 1e-6, 1.0);
+  constexpr double least = 1e-6;
+  const double share = std::clamp(*cycle / first_, least, 1.0);
   tolerances_.limit(Reason::cycles, {.rtol = 1.0, .atol = share * share});
 }
 

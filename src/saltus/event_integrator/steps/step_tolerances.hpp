@@ -6,6 +6,7 @@
 
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/mode/position.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/options.hpp"
 
 namespace saltus::event_integrator {
@@ -33,7 +34,7 @@ class StepTolerances {
   void lift(Reason reason) { limit(reason, unlimited); }
   [[nodiscard]] const ode::Tolerances& part(Reason reason) const { return parts_[static_cast<std::size_t>(reason)]; }
   /// Returns the part of rtol that doubles carry of a state, several hundred times.
-  [[nodiscard]] double smallest_part() const { return 1e-13 / mode_.rtol; }
+  [[nodiscard]] double smallest_part() const { return carried_part / mode_.rtol; }
 
  private:
   static constexpr ode::Tolerances unlimited{1.0, 1.0};

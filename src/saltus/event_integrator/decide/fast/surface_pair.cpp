@@ -134,7 +134,8 @@ bool SurfacePair::slides_on_both(const SwitchingPoint& switching_point, ModeStat
   const double mixed = product(rows_[0], rows_[1]);
   const double squares = product(rows_[0], rows_[0]) * product(rows_[1], rows_[1]);
   // Gradients that nearly depend on each other: another reason to stop may be the right one.
-  if (!(squares - mixed * mixed > 1e-6 * squares)) return false;
+  constexpr double nearly = 1e-6;
+  if (!(squares - mixed * mixed > nearly * squares)) return false;
   field_.enter(state);
   field_(switching_point.t, switching_point.x, f_.data());
   if (!is_finite(f_)) return false;
