@@ -8,6 +8,7 @@ the ceiling is to be lowered then, so that nothing comes back. lower_ceilings.py
 from calls import find_call_cycles
 from includes import find_forced_includes, find_reaches_casadi, find_reaches_eigen, find_rooms_of_others
 from literals import find_numeric_literals
+from mechanisms import find_mechanisms
 from tested import find_untested_parts
 
 CEILINGS = "tests/architecture/ceilings.toml"
@@ -19,6 +20,7 @@ RATCHETS = {
     "forced_includes": (find_forced_includes, "headers that the build includes and no source names: write the #include"),
     "rooms_of_others": (find_rooms_of_others, "headers from inside a room of another module: include its face, or widen that"),
     "call_cycles": (find_call_cycles, "member functions that call each other in a circle: pass on a value instead"),
+    "mechanisms": (find_mechanisms, "places do what is one mechanism: use the one that there is"),
     "numeric_literals": (find_numeric_literals, "numbers inline: give each a name (constexpr), and say where it comes from"),
     "untested_parts": (find_untested_parts, "parts that no unit test of their module names: write one"),
 }

@@ -136,6 +136,24 @@ class RatchetsSelfTest(unittest.TestCase):
         }
         self.assertEqual(self.items("untested_parts", changes), expected)
 
+    def test_places_of_mechanisms(self):
+        begin = "bool begin_field(int& run) { return run > 0; }\nbool f(int& run) {\n  return begin_field(run);\n}\n"
+        changes = {
+            "src/saltus/event_integrator/instant/a.cpp": begin,
+            "src/saltus/event_integrator/decide/b.cpp": "bool f(double v) { return v < rounding_of(1.0); }\n",
+            "src/saltus/event_integrator/search/c.cpp": "bool f(double v) { return v < rounding_of(1.0); }\n",
+            "src/saltus/event_integrator/contact/d.cpp": "bool Contacts::project(double t, double& x) {\n  return x > t;\n}\n",
+            "src/saltus/switching/regions/region_decision.cpp": "int subsets();\n",
+            "src/saltus/event_integrator/jumps/holding.cpp": '#include "saltus/switching/point/point_solver.hpp"\n',
+        }
+        expected = {
+            "complementarity is solved": ["src/saltus/switching/regions/region_decision.cpp"],
+            "modes begin": ["src/saltus/event_integrator/instant/a.cpp:3"],
+            "states are projected": ["src/saltus/event_integrator/contact/d.cpp:1"],
+            "zero is told from rounding": ["src/saltus/event_integrator/decide/b.cpp"],
+        }
+        self.assertEqual(self.items("mechanisms", changes), expected)
+
     def test_seconds_of_modules(self):
         lines = ("0\t900\t1\tCMakeFiles/saltus_ode.dir/a.o\tx", "0\t2000\t1\tCMakeFiles/saltus_ode.dir/b.o\tx",
                  "5\t1005\t1\tCMakeFiles/saltus_ode.dir/a.o\tx", "0\t500\t1\ttests/unit/CMakeFiles/a.dir/a.o\tx", "0\t9\t1\tlibode.a\tx")
