@@ -237,6 +237,7 @@ void Resolver::settle_signs() {
 bool Resolver::resolve(const Instant& instant) {
   using Cause = Instant::Cause;
   instant_ = &instant;
+  entering_ = {};
   if (instant.cause == Cause::given) {
     run(enter(instant.transition, Stage::done));
     return true;

@@ -61,6 +61,8 @@ class Resolver {
 
   [[nodiscard]] Outcome& outcome() { return out_; }
   [[nodiscard]] const Outcome& outcome() const { return out_; }
+  /// Returns the transition into the mode that has begun at this instant; null if none has.
+  [[nodiscard]] const Transition* entered() const { return entering_.transition; }
   [[nodiscard]] JumpCascade& cascade() { return cascade_; }
   [[nodiscard]] SingleSurface& single() { return single_; }
   [[nodiscard]] SurfacePair& pair() { return pair_; }

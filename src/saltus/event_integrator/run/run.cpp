@@ -12,7 +12,8 @@ namespace saltus::event_integrator {
 using result::Termination;
 
 Run::Run(evaluation::ModelKernel& kernel, const IntegrationOptions& options, Way way)
-    : run_(kernel, options),
+    : way_(way),
+      run_(kernel, options),
       resolver_(run_, *this),
       steps_(options, kernel.layout(), run_.field, run_.here, run_.tolerances),
       zeros_(run_.switching, run_.here, run_.field, run_.search),

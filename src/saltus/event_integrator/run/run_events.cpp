@@ -59,12 +59,22 @@ void Run::pass_zeros(const Located& located) {
 
 void Run::pass(const Instant& instant) {
   if (!resolver_.resolve(instant) || !run_.running) return;
+  if (way_ == Way::full_twice) resolve_again();
   start_steps(instant);
   if (!instant.is_limit()) return look_for_limits();
   if (run_.jumps.due(run_.here.t)) {
     come_to(Instant::Cause::due);
     next_.instant->row_is_written = true;
   }
+}
+
+/// What has come of an instant is what comes of it.
+void Run::resolve_again() {
+  if (resolver_.entered() == nullptr) return;
+  Instant instant{.cause = Instant::Cause::given};
+  instant.transition = *resolver_.entered();
+  instant.transition.state = run_.here.state;
+  static_cast<void>(resolver_.resolve(instant));
 }
 
 /// Steps behind an instant: as at a start behind jumps and limits, or like those before the switch.

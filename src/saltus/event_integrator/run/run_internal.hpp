@@ -37,8 +37,8 @@ namespace saltus::event_integrator {
 class Run : private ResolverClient {
  public:
   /// Says how switches are decided and entered: the ordinary ones by the fast path, or all by the one that covers
-  /// everything.
-  enum class Way { fast_where_ordinary, full };
+  /// everything; or what has come of each instant once more, which is the same.
+  enum class Way { fast_where_ordinary, full, full_twice };
 
   Run(evaluation::ModelKernel& kernel, const IntegrationOptions& options, Way way = Way::fast_where_ordinary);
 
@@ -112,6 +112,7 @@ class Run : private ResolverClient {
   }
   void take_side_of_root();
   void begin_same_mode(int zero);
+  void resolve_again();
   void project_onto_roots(const Located& located);
   void arrive_at_nested_roots(Located located);
   void leave_nested_root();
@@ -172,6 +173,7 @@ class Run : private ResolverClient {
     SlidAcross slid;                   ///< of the last change that had one
   };
 
+  Way way_;
   RunState run_;
   Resolver resolver_;
   StepAttempt steps_;

@@ -12,7 +12,8 @@ using casadi::SX;
 /// bounce is no more than the rounding of o it ends at rest; the limit of the others, extrapolated with it, had lost
 /// 2e-7 of that momentum.
 TEST(LastBounces, KeepTheMomentumAlongTheGround) {
-  for (const auto& [restitution, height] : {std::pair{0.359, 3.218}, std::pair{0.311, -4.69}, std::pair{0.195, -2.83}}) {
+  for (const auto& [restitution, height] :
+       {std::pair{0.359, 3.218}, std::pair{0.311, -4.69}, std::pair{0.195, -2.83}}) {
     SCOPED_TRACE(::testing::Message() << restitution << " " << height);
     model::Builder model("coupled");
     static_cast<void>(model.state("x", {0.0}));
@@ -22,10 +23,8 @@ TEST(LastBounces, KeepTheMomentumAlongTheGround) {
     SX mass = SX::eye(2);
     mass(0, 0) = 3.0;
     mass(0, 1) = mass(1, 0) = 1.0;
-    model.mechanics({.positions = {"x", "z"},
-                     .velocities = {"vx", "vz"},
-                     .mass = mass,
-                     .force = {{"vx", 2.0}, {"vz", -10.0}}});
+    model.mechanics(
+        {.positions = {"x", "z"}, .velocities = {"vx", "vz"}, .mass = mass, .force = {{"vx", 2.0}, {"vz", -10.0}}});
     model.contact("ground", z - height, {.restitution = restitution});
     const auto run = run_model(model, 3.0, {.rtol = 1e-12, .atol = 1e-14});
     ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
