@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/sliding/exit_rows.hpp"
 #include "saltus/event_integrator/sliding/normal_rows.hpp"
 #include "saltus/linalg/factors.hpp"
@@ -42,6 +43,69 @@ TEST(NormalRows, AreSolvedAsTheWholeMatrixIs) {
     EXPECT_TRUE(rows.subtract_transposed(residual, x.data()));
     for (linalg::Index i = 0; i < 6; ++i) EXPECT_NEAR(x[static_cast<std::size_t>(i)], 3.0 - product[i], 1e-13);
     EXPECT_FALSE(rows.subtract_transposed(linalg::Vector::zero(5), x.data()));
+  }
+}
+
+/// Rows of a chain share a column with the next one: many of them are solved by a sparse factorisation.
+TEST(NormalRows, ManyInAChainAreSolvedAsTheWholeMatrixIs) {
+  constexpr std::size_t n = 40;
+  const auto solve = [&](double coupling, linalg::Vector& residual) {
+    NormalRows rows;
+    rows.resize(n, n);
+    linalg::Matrix whole;
+    whole.set_zero(n, n);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::vector<double> row(n, 0.0);
+      row[i] = 1.0;
+      if (i > 0) row[i - 1] = coupling;
+      rows.set(i, row);
+      for (std::size_t k = 0; k < n; ++k) whole(static_cast<linalg::Index>(i), static_cast<linalg::Index>(k)) = row[k];
+    }
+    const linalg::Vector expected = linalg::inverse(whole * whole.transpose()) * residual;
+    EXPECT_TRUE(rows.solve(residual));
+    for (linalg::Index i = 0; i < residual.size(); ++i) EXPECT_NEAR(residual[i], expected[i], 1e-10);
+  };
+  for (const double coupling : {-0.5, 0.3}) {
+    linalg::Vector residual = linalg::Vector::ones(n);
+    solve(coupling, residual);
+  }
+}
+
+TEST(NormalRows, ManyThatDependHaveNoSolution) {
+  constexpr std::size_t n = 40;  // a ring of differences: their sum is 0
+  NormalRows rows;
+  rows.resize(n, n);
+  for (std::size_t i = 0; i < n; ++i) {
+    std::vector<double> row(n, 0.0);
+    row[i] = 1.0;
+    row[(i + 1) % n] = -1.0;
+    rows.set(i, row);
+  }
+  linalg::Vector residual = linalg::Vector::ones(n);
+  residual[3] = 2.0;
+  EXPECT_FALSE(rows.solve(residual));
+}
+
+/// Of many surfaces one that is the sum of two others is found among them.
+TEST(ProjectedFields, ManyGradientsDependWhereOneIsASumOfOthers) {
+  for (const bool depends : {false, true}) {
+    constexpr int n = 20;
+    auto s = testing::blank(n, n);
+    std::vector<SX> f;
+    for (int i = 0; i < n; ++i) {
+      const bool sum = depends && i == n - 1;
+      testing::add_surface(s, "s" + std::to_string(i), sum ? s.x(3) + s.x(7) : s.x(i) - (i > 0 ? 0.5 * s.x(i - 1) : 0));
+      f.push_back(1 - 2 * s.alpha(i));
+    }
+    testing::set_field(s, f, std::vector<double>(n, 0.0));
+    const auto kernel = evaluation::ModelKernel::compile(s);
+    ASSERT_TRUE(kernel.has_value());
+    const std::vector<double> x(n, 0.0), alpha(n, 0.5);
+    SwitchingPoint point;
+    point.x = x.data();
+    std::vector<int> all(n);
+    for (int i = 0; i < n; ++i) all[static_cast<std::size_t>(i)] = i;
+    EXPECT_EQ(ProjectedFields(*kernel, point).gradients_depend(alpha, all), depends);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/switching/table/independent_rows.hpp"
 
 namespace saltus::event_integrator {
@@ -181,7 +182,34 @@ bool ProjectedFields::gradient_vanishes(const std::vector<double>& alpha, int su
   return here <= vanishing * size();
 }
 
+/// Of many surfaces each depends on few states: a sparse factorisation. nullopt where a gradient is not finite, beside
+/// a root.
+std::optional<bool> ProjectedFields::sparse_gradients_depend(const std::vector<double>& alpha,
+                                                             const std::vector<int>& surfaces) const {
+  const auto n = at(kernel_.states());
+  std::vector<double> row(n);
+  std::vector<linalg::Triplet> entries;
+  for (std::size_t k = 0; k < surfaces.size(); ++k) {
+    double in_time = 0.0, square = 0.0;
+    kernel_.gradient(surfaces[k], switching_point_.t, switching_point_.x, alpha.data(), row.data(), &in_time);
+    for (const double d : row) square += d * d;
+    if (!std::isfinite(square)) return std::nullopt;
+    if (square == 0.0) return true;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (row[i] != 0.0)
+        entries.push_back({static_cast<linalg::Index>(i), static_cast<linalg::Index>(k), row[i] / std::sqrt(square)});
+    }
+  }
+  const linalg::SparseColumns gradients(static_cast<linalg::Index>(n), static_cast<linalg::Index>(surfaces.size()),
+                                        entries);
+  return !linalg::dependent_columns(gradients, switching::dependent_part).empty();
+}
+
 bool ProjectedFields::gradients_depend(const std::vector<double>& alpha, const std::vector<int>& surfaces) const {
+  constexpr std::size_t many = 16;  // from here on a sparse factorisation costs less
+  if (surfaces.size() >= many) {
+    if (const auto depend = sparse_gradients_depend(alpha, surfaces)) return *depend;
+  }
   std::vector<HeldFunction> functions;
   for (const int j : surfaces) functions.push_back({j, 0});
   HeldFunctions held(kernel_);

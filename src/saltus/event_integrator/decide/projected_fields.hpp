@@ -67,6 +67,8 @@ class ProjectedFields {
   [[nodiscard]] double noise(int surface) const { return noise_[at(surface)]; }
 
  private:
+  [[nodiscard]] std::optional<bool> sparse_gradients_depend(const std::vector<double>& alpha,
+                                                            const std::vector<int>& surfaces) const;
   [[nodiscard]] bool turns_within_rounding(const std::vector<double>& alpha, int surface, double velocity) const;
 
   const evaluation::ModelKernel& kernel_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -141,7 +142,8 @@ class ModeField {
   void find_moved();
   void evaluate_alone(double t, const double* x);
   void evaluate_groups(double t, const double* x);
-  void evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows);
+  void evaluate_pairs(double t, const double* x);
+  void solve_pair(const std::array<std::size_t, 2>& rows, const switching::PairCorners& g);
   void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
   void evaluate_large(double t, const double* x, LargeGroup& group);
   void find_large_groups();

@@ -229,6 +229,7 @@ void ModeField::evaluate_groups(double t, const double* x) {
   for (std::size_t row = 0; row < sliding_.size(); ++row) exits_[row] = {rows_.velocity(row, f_[0]), 0.0, 0.0, 0.0};
   evaluate_alone(t, x);
   if (!groups_.lists.empty()) trial_ = corner_[0];
+  groups_.pairs.clear();
   for (const auto& rows : groups_.lists) {
     const auto tie = std::find_if(ties_.regions.begin(), ties_.regions.end(), [&](const auto& regions) {
       return regions.tie && regions.rows.front() == rows.front();
@@ -236,11 +237,12 @@ void ModeField::evaluate_groups(double t, const double* x) {
     if (tie != ties_.regions.end()) {
       evaluate_tie(t, x, *tie);
     } else if (rows.size() == 2 && !several_regions(rows.front())) {
-      evaluate_pair(t, x, rows);
+      groups_.pairs.push_back({rows[0], rows[1]});
     } else if (!is_in_large(rows[0])) {
       evaluate_many(t, x, rows);
     }
   }
+  evaluate_pairs(t, x);
   if (groups_.large) evaluate_large(t, x, *groups_.large);
   if (!groups_.moved.empty() && constants_[0].motion == kernel_.motion()) {
     for (const auto& [state, row] : groups_.moved)
@@ -251,17 +253,31 @@ void ModeField::evaluate_groups(double t, const double* x) {
   kernel_.field(t, x, alpha_.data(), f_[0].data());
 }
 
-/// Two surfaces: the root with det G > 0 in closed form; its exits are the zeros of that form, which are exact. Behind
-/// evaluate_groups()'s first corner.
-void ModeField::evaluate_pair(double t, const double* x, const std::vector<std::size_t>& rows) {
-  switching::PairCorners g;
-  for (std::size_t k = 0; k < 2; ++k) g[0][k] = exits_[rows[k]].below;
-  for (std::size_t corner = 1; corner < 4; ++corner) {
-    for (std::size_t k = 0; k < 2; ++k) trial_[at(sliding_[rows[k]])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
-    kernel_.field(t, x, trial_.data(), f_[1].data());
-    for (std::size_t k = 0; k < 2; ++k) g[corner][k] = rows_.velocity(rows[k], f_[1]);
+/// Corners of all pairs at once: none feels the selections of another one. Behind evaluate_groups()'s first corner.
+void ModeField::evaluate_pairs(double t, const double* x) {
+  const auto& pairs = groups_.pairs;
+  if (pairs.empty()) return;
+  groups_.corners.resize(pairs.size());
+  for (std::size_t corner = 0; corner < 4; ++corner) {
+    for (const auto& rows : pairs) {
+      for (std::size_t k = 0; k < 2; ++k) trial_[at(sliding_[rows[k]])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;
+    }
+    if (corner > 0) kernel_.field(t, x, trial_.data(), f_[1].data());
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      for (std::size_t k = 0; k < 2; ++k) {
+        const std::size_t row = pairs[i][k];
+        groups_.corners[i][corner][k] = corner > 0 ? rows_.velocity(row, f_[1]) : exits_[row].below;
+      }
+    }
   }
-  for (const std::size_t row : rows) trial_[at(sliding_[row])] = 0.0;
+  for (const auto& rows : pairs) {
+    for (const std::size_t row : rows) trial_[at(sliding_[row])] = 0.0;
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) solve_pair(pairs[i], groups_.corners[i]);
+}
+
+/// Two surfaces: the root with det G > 0 in closed form; its exits are the zeros of that form, which are exact.
+void ModeField::solve_pair(const std::array<std::size_t, 2>& rows, const switching::PairCorners& g) {
   auto& kind = groups_.kind[rows[0]];
   if (!kind) kind = kind_of_mode(g, start_alpha_[at(sliding_[rows[0]])], start_alpha_[at(sliding_[rows[1]])]);
   const auto root = switching::bilinear_root(g, *kind);

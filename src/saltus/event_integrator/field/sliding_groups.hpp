@@ -1,6 +1,7 @@
 // Sliding surfaces that influence each other, and regions among them whose gradients depend on each other.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -18,9 +19,11 @@ namespace saltus::event_integrator {
 struct SlidingGroups {
   explicit SlidingGroups(std::size_t surfaces) : row_of(surfaces, -1) {}
 
-  std::vector<std::vector<std::size_t>> lists;  ///< rows that influence each other, connected and ascending
-  std::vector<std::size_t> alone;               ///< the other rows, ascending
-  std::vector<std::size_t> size;                ///< by row, 0 behind the first of a group
+  std::vector<std::vector<std::size_t>> lists;    ///< rows that influence each other, connected and ascending
+  std::vector<std::size_t> alone;                 ///< the other rows, ascending
+  std::vector<std::array<std::size_t, 2>> pairs;  ///< those of two, where they are evaluated together
+  std::vector<switching::PairCorners> corners;    ///< of these, at one point
+  std::vector<std::size_t> size;                  ///< by row, 0 behind the first of a group
   /// By row, for the first of a pair: known once it was evaluated.
   std::vector<std::optional<switching::RootKind>> kind;
   std::vector<std::optional<switching::SelectionNewton>> newton;  ///< by row, for the first of a larger group

@@ -11,6 +11,8 @@ namespace saltus::event_integrator {
 namespace {
 
 constexpr std::size_t no_row = std::numeric_limits<std::size_t>::max();
+/// From so many rows on a sparse factorisation costs less than a dense one.
+constexpr std::size_t sparse_from = 16;
 
 }  // namespace
 
@@ -77,10 +79,35 @@ void NormalRows::find_components() {
     if (rows.size() == 1) {
       alone_.push_back(rows.front());
     } else {
-      together_.push_back(std::move(rows));
+      auto& component = together_.emplace_back(Component{std::move(rows)});
+      if (component.rows.size() >= sparse_from) find_pattern(component);
     }
   }
   components_known_ = true;
+}
+
+/// Rows that share a column have a product.
+void NormalRows::find_pattern(Component& component) const {
+  std::vector<std::vector<int>> of_column(columns_);
+  const auto n = component.rows.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (const std::size_t column : rows_[component.rows[i]]->column) of_column[column].push_back(static_cast<int>(i));
+  }
+  std::vector<int> beside;
+  component.start.assign(1, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    beside.clear();
+    for (const std::size_t column : rows_[component.rows[i]]->column) {
+      beside.insert(beside.end(), of_column[column].begin(), of_column[column].end());
+    }
+    std::sort(beside.begin(), beside.end());
+    beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
+    component.inner.insert(component.inner.end(), beside.begin(), beside.end());
+    component.start.push_back(static_cast<int>(component.inner.size()));
+  }
+  component.values.resize(component.inner.size());
+  component.size.resize(n);
+  component.factors.analyse(component.start, component.inner);
 }
 
 bool NormalRows::solve(linalg::Vector& residual) {
@@ -93,15 +120,26 @@ bool NormalRows::solve(linalg::Vector& residual) {
     r = r / size / size;
   }
   return std::all_of(together_.begin(), together_.end(),
-                     [&](const auto& rows) { return solve_component(rows, residual); });
+                     [&](auto& component) { return solve_component(component, residual); });
 }
 
-bool NormalRows::solve_component(const std::vector<std::size_t>& rows, linalg::Vector& residual) {
+bool NormalRows::solve_component(Component& component, linalg::Vector& residual) {
+  const auto n = component.rows.size();
+  part_.resize(static_cast<linalg::Index>(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    part_[static_cast<linalg::Index>(i)] = residual[static_cast<linalg::Index>(component.rows[i])];
+  }
+  if (!(component.start.empty() ? solve_dense(component.rows) : solve_sparse(component))) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    residual[static_cast<linalg::Index>(component.rows[i])] = part_[static_cast<linalg::Index>(i)];
+  }
+  return true;
+}
+
+bool NormalRows::solve_dense(const std::vector<std::size_t>& rows) {
   const auto n = static_cast<linalg::Index>(rows.size());
   matrix_.resize(n, n);
-  part_.resize(n);
   for (linalg::Index i = 0; i < n; ++i) {
-    part_[i] = residual[static_cast<linalg::Index>(rows[static_cast<std::size_t>(i)])];
     for (linalg::Index j = 0; j <= i; ++j) {
       matrix_(i, j) = product(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(j)]);
     }
@@ -109,9 +147,23 @@ bool NormalRows::solve_component(const std::vector<std::size_t>& rows, linalg::V
   cholesky_.compute(matrix_);
   if (!cholesky_.is_positive()) return false;
   cholesky_.solve_in_place(part_);
-  for (linalg::Index i = 0; i < n; ++i) {
-    residual[static_cast<linalg::Index>(rows[static_cast<std::size_t>(i)])] = part_[i];
+  return true;
+}
+
+bool NormalRows::solve_sparse(Component& component) {
+  constexpr double rounding = 1e-14;  // of a pivot that is none
+  for (std::size_t j = 0; j < component.rows.size(); ++j) {
+    for (int k = component.start[j]; k < component.start[j + 1]; ++k) {
+      const auto place = static_cast<std::size_t>(k);
+      component.values[place] =
+          product(component.rows[static_cast<std::size_t>(component.inner[place])], component.rows[j]);
+    }
+    component.size[j] = size_[component.rows[j]] * size_[component.rows[j]];
   }
+  if (!component.factors.factorise(component.values)) return false;
+  if (component.factors.has_small_pivot(component.size, rounding)) return false;
+  right_.assign(part_.data(), part_.data() + part_.size());
+  component.factors.solve(right_, {part_.data(), right_.size()});
   return true;
 }
 
@@ -149,9 +201,9 @@ bool NormalRows::subtract_transposed(const linalg::Vector& z, double* x) {
     for (const std::size_t column : rows_[row]->column) take(column);
   }
   for (const auto& component : together_) {
-    for (const std::size_t row : component) add(row);
+    for (const std::size_t row : component.rows) add(row);
     // A column of several rows is taken with the first of them: nothing is left for the others.
-    for (const std::size_t row : component) {
+    for (const std::size_t row : component.rows) {
       for (const std::size_t column : rows_[row]->column) take(column);
     }
   }

@@ -6,6 +6,7 @@
 
 #include "saltus/linalg/factors.hpp"
 #include "saltus/linalg/matrix.hpp"
+#include "saltus/linalg/sparse_factors.hpp"
 
 namespace saltus::event_integrator {
 
@@ -23,7 +24,8 @@ struct SparseRow {
 };
 
 /// Solves the normal equations of rows. Rows that share a column, directly or through others, are solved together; all
-/// others by themselves. Cost of a solution: O(1) for each of those, and for a component of c > 1 rows c^3.
+/// others by themselves. Cost of a solution: O(1) for each of those, and for a component of c > 1 rows c^3; from 16
+/// rows on that of a sparse factorisation of J J^T, c times the square of its bandwidth.
 class NormalRows {
  public:
   void resize(std::size_t rows, std::size_t columns);
@@ -39,8 +41,19 @@ class NormalRows {
   bool subtract_transposed(const linalg::Vector& z, double* x);
 
  private:
+  /// Rows that are solved together.
+  struct Component {
+    std::vector<std::size_t> rows;
+    /// Of many rows: J J^T by its columns, from start[j] to start[j + 1] of inner, and its factors.
+    std::vector<int> start = {}, inner = {};
+    std::vector<double> values = {}, size = {};
+    linalg::SparseLuOf<double> factors = {};
+  };
   void find_components();
-  [[nodiscard]] bool solve_component(const std::vector<std::size_t>& rows, linalg::Vector& residual);
+  void find_pattern(Component& component) const;
+  [[nodiscard]] bool solve_component(Component& component, linalg::Vector& residual);
+  [[nodiscard]] bool solve_dense(const std::vector<std::size_t>& rows);
+  [[nodiscard]] bool solve_sparse(Component& component);
   [[nodiscard]] double product(std::size_t a, std::size_t b) const;
 
   std::size_t columns_ = 0;
@@ -48,12 +61,13 @@ class NormalRows {
   std::vector<SparseRow> own_;
   std::vector<double> size_;  ///< |row|
   bool components_known_ = false;
-  std::vector<std::size_t> alone_;                  ///< rows that share no column
-  std::vector<std::vector<std::size_t>> together_;  ///< the other components
+  std::vector<std::size_t> alone_;   ///< rows that share no column
+  std::vector<Component> together_;  ///< the other components
   std::vector<std::size_t> first_of_column_;
   std::vector<double> sum_;  ///< columns, 0 between two calls
   linalg::Matrix matrix_;
-  linalg::Vector part_;
+  linalg::Vector part_;  ///< of a residual, and its solution
+  std::vector<double> right_;
   linalg::Cholesky cholesky_;
 };
 
