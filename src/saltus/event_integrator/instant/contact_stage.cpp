@@ -27,46 +27,51 @@ void limit_beside_rest(RunState& run) {
 }
 
 bool begin_contacts(const InstantContext& c) {
-  if (c.run.contacts.none()) return true;
-  const auto before = c.run.here.x;
-  if (auto problem = c.run.contacts.resolve(c.run.contact_moment(), {}, c.run.here.x)) {
-    c.run.end(Termination::outside_class, std::move(*problem));
+  auto& [run, cascade, out] = c;
+  Position& here = run.here;
+  if (run.contacts.none()) return true;
+  const auto before = here.x;
+  if (auto problem = run.contacts.resolve(run.contact_moment(), {}, here.x)) {
+    run.end(Termination::outside_class, std::move(*problem));
     return false;
   }
   limit_beside_rest(c.run);
-  if (const auto jump = c.run.contacts.jump_to_tell(c.run.here.x)) {
-    ExecutedJump& executed = c.cascade.executed().append();
+  if (const auto jump = run.contacts.jump_to_tell(here.x)) {
+    ExecutedJump& executed = cascade.executed().append();
     executed.x = before;
     executed.jump = *jump;
-    executed.x_after = c.run.here.x;
-    executed.why_open = c.run.contacts.why_open();
+    executed.x_after = here.x;
+    executed.why_open = run.contacts.why_open();
   }
   return true;
 }
 
 bool begin_contacts_anew(const InstantContext& c) {
-  if (auto problem = c.run.contacts.begin_anew(c.run.contact_moment(), c.run.here.x)) {
-    c.run.end(Termination::outside_class, std::move(*problem));
+  auto& [run, cascade, out] = c;
+  if (auto problem = run.contacts.begin_anew(run.contact_moment(), run.here.x)) {
+    run.end(Termination::outside_class, std::move(*problem));
     return false;
   }
-  const auto jumps = c.cascade.executed().size();
+  const auto jumps = cascade.executed().size();
   if (!begin_contacts(c)) return false;
-  if (jumps > 0 && c.cascade.executed().size() == jumps) c.cascade.executed().back().x_after = c.run.here.x;
+  if (jumps > 0 && cascade.executed().size() == jumps) cascade.executed().back().x_after = run.here.x;
   return true;
 }
 
 bool contacts_jump(const InstantContext& c) {
-  if (!c.run.contacts.have_jumped(c.run.contact_moment(), c.run.here.x)) return false;
-  const auto x_before = c.run.here.x;
+  auto& [run, cascade, out] = c;
+  Position& here = run.here;
+  if (!run.contacts.have_jumped(run.contact_moment(), here.x)) return false;
+  const auto x_before = here.x;
   if (!begin_contacts_anew(c)) return true;
-  if (c.cascade.executed().empty()) {
-    ExecutedJump& executed = c.cascade.executed().append();
+  if (cascade.executed().empty()) {
+    ExecutedJump& executed = cascade.executed().append();
     executed.x = x_before;
-    executed.jump = c.run.switching.layout.contacts.front().jump;
-    executed.x_after = c.run.here.x;
-    executed.why_open = c.run.contacts.why_open();
+    executed.jump = run.switching.layout.contacts.front().jump;
+    executed.x_after = here.x;
+    executed.why_open = run.contacts.why_open();
   }
-  c.cascade.read_user_signs(JumpCascade::Gaps::begun);
+  cascade.read_user_signs(JumpCascade::Gaps::begun);
   return true;
 }
 
@@ -82,31 +87,34 @@ void put_on_gaps(RunState& run, const Located& located) {
 }
 
 bool move_contacts(const InstantContext& c) {
-  const auto ended = c.run.contacts.with_jumps([&](int jump) { return c.run.jumps.holds(jump); });
-  auto problem = c.run.contacts.resolve(c.run.contact_moment(), ended, c.run.here.x);
-  if (problem) c.run.end(Termination::outside_class, std::move(*problem));
-  for (const int jump : c.run.contacts.last_bounces()) c.out.last_bounces.push_back(jump);
+  auto& [run, cascade, out] = c;
+  const auto ended = run.contacts.with_jumps([&](int jump) { return run.jumps.holds(jump); });
+  auto problem = run.contacts.resolve(run.contact_moment(), ended, run.here.x);
+  if (problem) run.end(Termination::outside_class, std::move(*problem));
+  for (const int jump : run.contacts.last_bounces()) out.last_bounces.push_back(jump);
   if (problem) return false;
   limit_beside_rest(c.run);
   return true;
 }
 
 bool contact_modes_hold(const InstantContext& c) {
-  const auto ended = c.run.contacts.with_jumps([&](int jump) { return c.run.jumps.holds(jump); });
+  auto& [run, cascade, out] = c;
+  Position& here = run.here;
+  const auto ended = run.contacts.with_jumps([&](int jump) { return run.jumps.holds(jump); });
   if (ended.empty()) return true;
-  const auto n = at(c.run.kernel.event_functions());
+  const auto n = at(run.kernel.event_functions());
   std::vector<double> values(n), magnitude(n), slope(n);
-  c.run.kernel.functions(c.run.here.t, c.run.here.x.data(), c.run.here.state.alpha.data(), values.data());
-  c.run.kernel.scales(c.run.here.t, c.run.here.x.data(), c.run.here.state.alpha.data(), magnitude.data(), slope.data());
+  run.kernel.functions(here.t, here.x.data(), here.state.alpha.data(), values.data());
+  run.kernel.scales(here.t, here.x.data(), here.state.alpha.data(), magnitude.data(), slope.data());
   constexpr double clear = 1e-9;
   const bool hold = std::none_of(values.begin(), values.end(), [&](const double& value) {
     const auto function = static_cast<int>(&value - values.data());
-    return c.run.contacts.guards(function) &&
-           value > std::max(clear * magnitude[at(function)], c.run.contacts.tolerated(function, c.run.here.x));
+    return run.contacts.guards(function) &&
+           value > std::max(clear * magnitude[at(function)], run.contacts.tolerated(function, here.x));
   });
   if (hold) return true;
-  c.run.end(Termination::outside_class, fmt::format("the mode of {} that follows at t = {:.17g} ends where it begins",
-                                                    c.run.contacts.names(ended), c.run.here.t));
+  run.end(Termination::outside_class, fmt::format("the mode of {} that follows at t = {:.17g} ends where it begins",
+                                                  run.contacts.names(ended), here.t));
   return false;
 }
 

@@ -22,14 +22,15 @@ constexpr std::size_t most_rounds = 10000;
 
 /// Ends a run in which jumps trigger each other at one time without an end.
 void end_by_rounds(const InstantContext& c) {
+  auto& [run, cascade, out] = c;
   std::vector<int> jumps;
-  for (const auto& executed : c.cascade.executed().items().last(100)) {
+  for (const auto& executed : cascade.executed().items().last(100)) {
     if (!contains(jumps, executed.jump)) jumps.push_back(executed.jump);
   }
-  c.run.end(Termination::iteration_limit,
-            fmt::format("{} jumps at t = {:.17g} without an end: {} trigger each other; make their conditions false by "
-                        "what they set, or give one of them a delay",
-                        most_rounds, c.run.here.t, jump_names(c.run.switching.layout, jumps)));
+  run.end(Termination::iteration_limit,
+          fmt::format("{} jumps at t = {:.17g} without an end: {} trigger each other; make their conditions false by "
+                      "what they set, or give one of them a delay",
+                      most_rounds, run.here.t, jump_names(run.switching.layout, jumps)));
 }
 
 /// What contacts do behind an execution: those whose modes it ends, or all where it has moved bodies. Returns whether
@@ -90,11 +91,12 @@ bool execute_jump(const InstantContext& c) {
 }
 
 bool execute_due_jumps(const InstantContext& c) {
-  while (c.run.running && c.run.jumps.due(c.run.here.t)) {
+  auto& [run, cascade, out] = c;
+  while (run.running && run.jumps.due(run.here.t)) {
     heed_stop();
     if (!execute_jump(c)) return false;
   }
-  return c.run.running;
+  return run.running;
 }
 
 bool begin_jumps(const InstantContext& c) {
@@ -132,11 +134,12 @@ bool decide_behind_jumps(const InstantContext& c) {
 }
 
 bool check_behind_jumps(const InstantContext& c) {
-  if (const auto endless = c.cascade.endless_jump()) {
-    c.run.end(Termination::outside_class,
-              fmt::format("the jump {} at t = {:.17g} sets what it compares to the limit itself, and the motion passes "
-                          "it again at once; state the limit in [dynamics], as x = \"if(x < limit, f, min(f, 0))\"",
-                          jump_names(c.run.switching.layout, {*endless}), c.run.here.t));
+  auto& [run, cascade, out] = c;
+  if (const auto endless = cascade.endless_jump()) {
+    run.end(Termination::outside_class,
+            fmt::format("the jump {} at t = {:.17g} sets what it compares to the limit itself, and the motion passes "
+                        "it again at once; state the limit in [dynamics], as x = \"if(x < limit, f, min(f, 0))\"",
+                        jump_names(run.switching.layout, {*endless}), run.here.t));
     return false;
   }
   return contact_modes_hold(c);

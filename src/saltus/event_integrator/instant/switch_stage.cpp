@@ -35,12 +35,13 @@ void insert_ascending(std::vector<int>& list, int surface) {
 }  // namespace
 
 bool collect_surfaces(const InstantContext& c, const Located& located, double longest_step) {
-  const Position& here = c.run.here;
-  SwitchingPoint& point = c.out.switching_point;
+  auto& [run, cascade, out] = c;
+  const Position& here = run.here;
+  SwitchingPoint& point = out.switching_point;
   point.begin(here.t, here.x.data(), here.time_scale);
   point.at_zero = here.state.sliding;
   for (const std::size_t place : located.functions) {
-    const auto& function = c.run.search.functions()[place];
+    const auto& function = run.search.functions()[place];
     const bool is_surface = function.kind != FunctionKind::user && function.kind != FunctionKind::release;
     if (!is_surface || is_cell_end(function.kind)) continue;
     if (function.kind == FunctionKind::exit_below) point.exit_below.push_back(function.index);
@@ -58,10 +59,11 @@ bool collect_surfaces(const InstantContext& c, const Located& located, double lo
 }
 
 const ModeState& touch_others(const InstantContext& c) {
-  const ModeState& from = c.out.freed.empty() ? c.out.before : slid_on_freed(c);
-  for (const int j : c.run.here.state.sliding) {
+  auto& [run, cascade, out] = c;
+  const ModeState& from = out.freed.empty() ? out.before : slid_on_freed(c);
+  for (const int j : run.here.state.sliding) {
     // Sliding goes on with the new gradient, or ends, behind a kink of its own psi.
-    if (c.out.cell_change != CellChange::none && c.run.cells.moved_in(j)) c.out.switching_point.touched.push_back(j);
+    if (out.cell_change != CellChange::none && run.cells.moved_in(j)) out.switching_point.touched.push_back(j);
   }
   return from;
 }

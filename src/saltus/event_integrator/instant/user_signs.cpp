@@ -26,72 +26,70 @@ std::vector<std::size_t> with_kinks_here(const RunState& run, const std::vector<
 }  // namespace
 
 void flip_user_functions(const InstantContext& c, const Located& located) {
+  auto& [run, cascade, out] = c;
+  Position& here = run.here;
   const auto each = [&](auto&& set) {
     for (std::size_t k = 0; k < located.functions.size(); ++k) {
-      if (c.run.search.functions()[located.functions[k]].kind == FunctionKind::user)
+      if (run.search.functions()[located.functions[k]].kind == FunctionKind::user)
         set(located.functions[k], located.signs[k]);
     }
   };
   // The signs before become known now, if they were not; only then do all of them change.
   each([&](std::size_t function, int sign) {
-    if (c.run.search.functions()[function].sign != sign)
-      c.run.search.set_user_sign(function, sign, c.run.here.t, c.run.here.x.data());
+    if (run.search.functions()[function].sign != sign) run.search.set_user_sign(function, sign, here.t, here.x.data());
   });
-  static_cast<void>(
-      c.run.user_events.update(c.run.here.t, c.run.here.x.data(), c.run.here.state.alpha, c.run.search.user_signs()));
-  each([&](std::size_t function, int sign) {
-    c.run.search.set_user_sign(function, -sign, c.run.here.t, c.run.here.x.data());
-  });
+  static_cast<void>(run.user_events.update(here.t, here.x.data(), here.state.alpha, run.search.user_signs()));
+  each([&](std::size_t function, int sign) { run.search.set_user_sign(function, -sign, here.t, here.x.data()); });
 }
 
 void turn_by_mode_behind(const InstantContext& c, const Located& located) {
-  const auto& functions = c.run.search.functions();
+  auto& [run, cascade, out] = c;
+  Position& here = run.here;
+  const auto& functions = run.search.functions();
   SwitchingPoint point;
-  point.begin(c.run.here.t, c.run.here.x.data(), c.run.here.time_scale);
+  point.begin(here.t, here.x.data(), here.time_scale);
   std::vector<std::size_t> compared;
   for (const std::size_t place : located.functions) {
     const auto& function = functions[place];
     if (function.kind == FunctionKind::surface) point.touched.push_back(function.index);
     const bool user = function.kind == FunctionKind::user;
-    if (user && (c.run.jumps.is_compared(function.index) || c.run.user_events.is_compared(function.index)))
+    if (user && (run.jumps.is_compared(function.index) || run.user_events.is_compared(function.index)))
       compared.push_back(place);
   }
-  if (point.touched.empty() || c.run.search.user_signs().empty()) return;
+  if (point.touched.empty() || run.search.user_signs().empty()) return;
   auto turning = with_kinks_here(c.run, point.touched);
   std::erase_if(turning,
                 [&](std::size_t place) { return functions[place].sign != 0 && !contains(located.functions, place); });
   if (compared.empty() && turning.empty()) return;
   std::sort(point.touched.begin(), point.touched.end());
-  point.at_zero = c.run.here.state.sliding;
+  point.at_zero = here.state.sliding;
   point.at_zero.insert(point.at_zero.end(), point.touched.begin(), point.touched.end());
   std::sort(point.at_zero.begin(), point.at_zero.end());
-  const Transition next = decide_mode(c.run.switching, c.run.here.state, point);
+  const Transition next = decide_mode(run.switching, here.state, point);
   if (next.termination != Termination::completed) return;
-  const auto turn = [&](std::size_t place, int sign) {
-    c.run.search.set_user_sign(place, sign, c.run.here.t, c.run.here.x.data());
-  };
+  const auto turn = [&](std::size_t place, int sign) { run.search.set_user_sign(place, sign, here.t, here.x.data()); };
   for (const std::size_t place : turning) {
-    turn(place, side_ahead(c.run.switching, next.state, point, c.run.here.x, functions[place].index));
+    turn(place, side_ahead(run.switching, next.state, point, here.x, functions[place].index));
   }
   for (const std::size_t place : compared) {
-    if (is_kept_by_sliding(c.run.kernel, next.state, functions[place].index, c.run.here.t, c.run.here.x.data()))
-      turn(place, 0);
+    if (is_kept_by_sliding(run.kernel, next.state, functions[place].index, here.t, here.x.data())) turn(place, 0);
   }
 }
 
 std::vector<std::size_t> fire_user_events(const InstantContext& c, const std::vector<double>& x_before,
                                           const ModeState& before, const std::vector<std::size_t>& before_jumps) {
-  auto fired =
-      c.run.user_events.update(c.run.here.t, c.run.here.x.data(), c.run.here.state.alpha, c.run.search.user_signs());
+  auto& [run, cascade, out] = c;
+  Position& here = run.here;
+  auto fired = run.user_events.update(here.t, here.x.data(), here.state.alpha, run.search.user_signs());
   std::erase_if(fired, [&](std::size_t event) {
     const bool again = contains(before_jumps, event);
-    return again && !c.run.switching.layout.events[event].is_condition();
+    return again && !run.switching.layout.events[event].is_condition();
   });
   for (const std::size_t event : fired) {
-    c.run.recorder.user(c.run.here.t, {x_before, c.run.here.x, before, c.run.here.state}, static_cast<int>(event));
-    if (c.run.user_events.stops(event) && c.run.running) {
-      c.run.end(Termination::stopped_by_event,
-                fmt::format("stopped by the event '{}'", c.run.switching.layout.events[event].name));
+    run.recorder.user(here.t, {x_before, here.x, before, here.state}, static_cast<int>(event));
+    if (run.user_events.stops(event) && run.running) {
+      run.end(Termination::stopped_by_event,
+              fmt::format("stopped by the event '{}'", run.switching.layout.events[event].name));
     }
   }
   return fired;
