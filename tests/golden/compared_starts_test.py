@@ -82,6 +82,13 @@ class ComparedStarts(tool.ToolTest):
         self.assertAlmostEqual(result["objective"], 9.6332, delta=1e-3)  # arcs of circles; 9.6291 with free switching
         self.assertIn("begins at constant states", self.begins(result))
 
+    def test_sigma_falls_by_smaller_steps_where_whole_ones_fail(self):
+        result = self.optimized(ONCE_MORE.replace("stages = 3\n", ""))
+        self.assertAlmostEqual(result["objective"], 9.63298, delta=1e-3)  # 3 stages: 9.6332
+        self.assertIn("begins at the motion of the guessed controls", self.begins(result))
+        sigmas = {f"{step['sigma']:.0e}" for step in result["homotopy"] if step["phase"] == "relaxed"}
+        self.assertIn("3e-02", sigmas)
+
     def test_one_start_where_others_cost_no_less(self):
         self.assertEqual(self.begins(self.optimized(CAR)), set())
 

@@ -30,6 +30,7 @@ RelaxedPath::RelaxedPath(Run& run, Attempt attempt, PathProgress progress)
       attempt_(std::move(attempt)),
       crossing_(run),
       relaxed_(std::make_unique<homotopy::RelaxedProblem>(run.problem, run.options.relaxation, attempt_.steering)),
+      schedule_(run.schedule),
       at_(std::move(progress)) {
   if (at_.sigma == 0.0) return;
   relaxed_->set_sigma(at_.sigma);
@@ -67,8 +68,16 @@ PathEnd RelaxedPath::loop(double until) {
     if (attempt_.sigma_initial <= until) return PathEnd::paused;
   }
   if (!homotopy::next_level(run_.schedule, *at_.level)) return follow();
-  is_in_loop_ = true;
-  const PathEnd end = run_loop(until);
+  PathProgress solved = at_;
+  PathEnd end = run_loop(until, solved);
+  const bool has_taken_whole_steps = schedule_.sigma_factor == run_.schedule.sigma_factor;
+  // Where a branch is known another path is worth more.
+  if (end == PathEnd::failed && !run_.is_over() && has_taken_whole_steps && run_.known.empty() && until == 0.0) {
+    // Where sigma has fallen too far at once the solution before is still near one of half the way.
+    schedule_.sigma_factor = std::sqrt(schedule_.sigma_factor);
+    at_ = solved;
+    end = run_loop(until, solved);
+  }
   if (end != PathEnd::failed || run_.is_over()) return run_.is_over() ? PathEnd::stopped : end;
   // What is left undecided at the last relaxed problem that was solved may not matter.
   const bool may_cross = run_.options.crossover && until == 0.0;
@@ -78,14 +87,16 @@ PathEnd RelaxedPath::loop(double until) {
   return until == 0.0 ? follow() : PathEnd::failed;
 }
 
-PathEnd RelaxedPath::run_loop(double until) {
-  homotopy::Level level = *homotopy::next_level(run_.schedule, *at_.level);
+/// Leaves in `solved` the last problem that was solved.
+PathEnd RelaxedPath::run_loop(double until, PathProgress& solved) {
+  is_in_loop_ = true;
+  homotopy::Level level = *homotopy::next_level(schedule_, *at_.level);
   NlpPoint point = at_.point;
   move_to(level.sigma);
   std::optional<PathEnd> end;
   int counted = 0;
   const auto next = [&](const NlpPoint& at, double /*mu*/, int iterations) -> std::optional<NextBarrier> {
-    const auto following = homotopy::next_level(run_.schedule, level);
+    const auto following = homotopy::next_level(schedule_, level);
     const bool is_same = following && following->sigma == level.sigma;
     if (is_same) {
       level = *following;
@@ -97,6 +108,7 @@ PathEnd RelaxedPath::run_loop(double until) {
     report.iterations = iterations - std::exchange(counted, iterations);
     take(at, report);
     set_level(level);
+    solved = at_;
     end = run_.is_over() ? PathEnd::stopped : end_at(/*is_last=*/false, 0);
     if (!end && level.sigma <= until) end = PathEnd::paused;
     if (end || !following) return std::nullopt;

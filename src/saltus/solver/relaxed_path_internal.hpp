@@ -58,7 +58,9 @@ class RelaxedPath {
   /// Solves one problem after the other, each with barriers of the solver's choice, down to sigma = `until`.
   PathEnd follow(double until = 0.0);
   /// Solves the first problem so, those behind it in one loop of the solver, down to sigma = `until`. May be called
-  /// again, to go on. A problem that the loop cannot solve is solved, like those behind it, by itself.
+  /// again, to go on. Where the loop cannot solve a problem, and no branch is known, it goes back by one. From there
+  /// it goes on once by the root of the factor of sigma. What it cannot solve so is solved, like those behind it, by
+  /// itself.
   PathEnd loop(double until = 0.0);
   void show() { run_.relaxed = {std::move(relaxed_), std::move(at_.point), std::move(at_.report), at_.sigma}; }
 
@@ -78,13 +80,14 @@ class RelaxedPath {
   void move_back();
   bool solve(double sigma, std::optional<double> tolerance = std::nullopt, int iteration_limit = 500);
   bool take(const NlpPoint& point, const NlpReport& report);
-  PathEnd run_loop(double until);
+  PathEnd run_loop(double until, PathProgress& solved);
   PathEnd follow_from(double sigma, double until = 0.0);
 
   Run& run_;
   Attempt attempt_;
   Crossing crossing_;
   std::unique_ptr<homotopy::RelaxedProblem> relaxed_;
+  homotopy::Schedule schedule_;  ///< of the loop
   PathProgress at_;
   double started_ = 0.0;  ///< seconds of the run at the last move
   bool is_in_loop_ = false;

@@ -225,11 +225,12 @@ class Guess {
       start_.states.push_back(std::move(x));
       start_.alpha.push_back(row < simulation.alpha.size() ? simulation.alpha[row] : std::vector<double>{});
     }
-    if (needs_simulation) add_others(guesses, targets);
+    if (needs_simulation) add_others(guesses, targets, simulation);
     return {};
   }
 
-  void add_others(const std::vector<const OcpGuess*>& guesses, const std::vector<std::optional<double>>& targets) {
+  void add_others(const std::vector<const OcpGuess*>& guesses, const std::vector<std::optional<double>>& targets,
+                  const GuessedSimulation& simulation) {
     const std::vector<std::vector<double>> constant(times_.size(), start_.initial_state);
     const auto add = [&](std::string name, std::vector<std::vector<double>> states) {
       for (std::size_t row = 0; row < times_.size(); ++row) {
@@ -246,6 +247,10 @@ class Guess {
       if (!is_known) start_.others.push_back({std::move(name), std::move(states)});
     };
     add("constant states", constant);
+    // A free horizon has lines to its targets instead, which may cross no surface in the way that a motion does.
+    std::vector<std::vector<double>> moving = simulation.x;
+    moving.resize(times_.size(), simulation.last);
+    add("the motion of the guessed controls", std::move(moving));
     add("states that costs and terminal constraints name", named_states(ocp_, values_, start_, targets, times_));
   }
 
