@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/base/stop.hpp"
 #include "saltus/event_integrator/instant/cell_stage.hpp"
 #include "saltus/event_integrator/instant/contact_stage.hpp"
 #include "saltus/event_integrator/instant/instant_rows.hpp"
@@ -32,10 +31,7 @@ Resolver::Resolver(RunState& run, ResolverClient& client)
 /// From a stage to the last one. What jumps have done is recorded where the run ends among them, too.
 void Resolver::run(Stage stage) {
   jumping_.begun = jumping_.rested = jumping_.settled = false;
-  while (run_.running && stage != Stage::done) {
-    heed_stop();
-    stage = pass(stage);
-  }
+  while (run_.running && stage != Stage::done) stage = pass(stage);
   if (jumping_.begun) record_jumps();
 }
 
