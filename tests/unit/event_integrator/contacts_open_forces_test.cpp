@@ -387,4 +387,67 @@ TEST(OrdersOfImpacts, FrictionHoldsWhatLandsInEveryOrder) {
 }
 
 }  // namespace
+
+namespace {
+
+const Foot rear{"rear", -0.25, 0.3}, front{"front", 0.25, 2.0};
+
+/// A box of height 2 h that slides on its feet.
+Integration slide(const std::vector<Foot>& feet, double speed, double inertia) {
+  model::Builder model("box");
+  constexpr double h = 0.6;
+  static_cast<void>(model.state("x", {0.0}));
+  const SX z = model.state("z", {h}), a = model.state("a", {0.0});
+  static_cast<void>(model.state("vx", {speed}));
+  for (const char* name : {"vz", "w"}) static_cast<void>(model.state(name, {0.0}));
+  model.mechanics({.positions = {"x", "z", "a"},
+                   .velocities = {"vx", "vz", "w"},
+                   .mass = SX::diag(SX(std::vector<double>{1.0, 1.0, inertia})),
+                   .force = {{"vz", -10.0}}});
+  for (const auto& [name, side, friction] : feet) {
+    model.contact(name, z + side * sin(a) - h * cos(a),
+                  {.tangent = {{"x", 1.0}, {"a", -side * sin(a) + h * cos(a)}}, .friction = friction});
+  }
+  return run_tightly(model, 0.1);
+}
+
+/// The front foot is the paradox: n'M^-1(n - mu t) < 0. Its impulse ends the slip at p = 2/4.85, and sticks then.
+TEST(ContactsWithoutCollision, TheFootWhoseOwnFrictionPressesItOnIsHit) {
+  for (const auto& feet : {std::vector{rear, front}, std::vector{front, rear}}) {
+    const auto run = slide(feet, 2.0, 0.2);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_FALSE(run.events.empty());
+    const result::Event event = run.events[0];
+    EXPECT_EQ(event.kind, EventKind::impact);
+    EXPECT_EQ(event.surfaces, std::vector<std::string>{"front"});
+    EXPECT_NEAR(event.x_after[3], 1.1566265060240963, 1e-9);
+    EXPECT_NEAR(event.x_after[4], 0.4819277108433735, 1e-9);
+    EXPECT_NEAR(event.x_after[5], -1.927710843373494, 1e-9);
+  }
+}
+
+/// A disc in the corner of a rough ground and a rough wall: four rows in three positions.
+TEST(ContactsWithDependentRows, ADiscInACornerStaysThere) {
+  for (const double friction : {0.3, 0.9, 1.0, 1.51, 2.5}) {
+    SCOPED_TRACE(friction);
+    model::Builder model("disc");
+    constexpr double radius = 0.24;
+    const SX x = model.state("x", {0.0}), z = model.state("z", {0.0});
+    static_cast<void>(model.state("a", {0.0}));
+    for (const char* name : {"vx", "vz", "w"}) static_cast<void>(model.state(name, {0.0}));
+    model.mechanics({.positions = {"x", "z", "a"},
+                     .velocities = {"vx", "vz", "w"},
+                     .mass = SX::diag(SX(std::vector<double>{2.47, 2.47, 0.0239})),
+                     .force = {{"vz", -9.81 * 2.47}}});
+    model.contact("ground", z, {.tangent = {{"x", 1.0}, {"a", radius}}, .friction = 0.43});
+    model.contact("wall", x, {.tangent = {{"z", 1.0}, {"a", -radius}}, .friction = friction});
+    const auto run = run_tightly(model, 1.0);
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    EXPECT_TRUE(run.events.empty());
+    for (const double state : run.final.x) EXPECT_NEAR(state, 0.0, 1e-14);
+    EXPECT_NEAR(run.trajectory.outputs.back()[1], 9.81 * 2.47, 1e-8);
+  }
+}
+
+}  // namespace
 }  // namespace saltus::event_integrator::testing

@@ -8,6 +8,7 @@
 
 #include "run_model.hpp"
 #include "saltus/event_integrator/contact/contact_forces.hpp"
+#include "saltus/event_integrator/contact/shared_friction.hpp"
 
 namespace saltus::event_integrator::testing {
 namespace {
@@ -119,8 +120,9 @@ void expect_the_same_modes(const ContactPoint& point) {
   std::vector<int> resting;
   for (int i = 0; i < point.contacts(); ++i) resting.push_back(i);
   std::set<std::vector<Mode>> found;
-  for (const auto& forces : admissible_forces(point, resting, std::vector<std::vector<Mode>>(resting.size()))) {
-    found.insert(forces.modes);
+  const std::vector<std::vector<Mode>> none(resting.size());
+  for (const auto& forces : switching::solve_point(problem_of(point, resting), {none, {}}).all) {
+    found.insert(forces.faces);
   }
   EXPECT_FALSE(found.empty());
   EXPECT_EQ(found, modes_by_all_combinations(point, resting));
@@ -143,6 +145,24 @@ TEST(ContactForces, WhatTouchesWithoutAForceMayBeOpenAndClosed) {
     point.acceleration = linalg::Vector{0.0, 0.0, 0.0, 1.0} - point.influence * linalg::Vector{1.0, 0.0, 0.5, 0.0};
     expect_the_same_modes(point);
   }
+}
+
+/// Two feet at one height: of their friction one part is open, and follows the share of one of them.
+TEST(SharedFriction, AsManyRowsFollowAsForcesAreOpen) {
+  const linalg::Matrix rows{{0.0, 1.0, -1.0}, {0.0, 1.0, 1.0}, {1.0, 0.0, 0.5}, {1.0, 0.0, 0.5}};
+  ContactPoint point;
+  point.influence = rows * rows.transpose();
+  point.acceleration = rows * linalg::Vector{1.0, -10.0, 0.0};
+  point.velocity = linalg::Vector::zero(4);
+  point.terms = point.free_terms = 10.0;
+  point.friction.assign(2, 0.5);
+  point.restitution.assign(2, 0.0);
+  point.tangents.assign(2, 1);
+  point.has_gap.assign(2, true);
+  ContactForces forces;
+  ASSERT_TRUE(forces_in(point, {0, 1}, {Mode::stick, Mode::stick}, forces));
+  EXPECT_TRUE(forces.is_open);
+  EXPECT_EQ(rows_that_follow(point, {0, 1}, forces).size(), 1U);
 }
 
 }  // namespace

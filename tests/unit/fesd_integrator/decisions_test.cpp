@@ -7,7 +7,6 @@
 
 #include "compiled.hpp"
 #include "saltus/base/at.hpp"
-#include "saltus/fesd_integrator/decide/nonnegative_solution.hpp"
 #include "saltus/fesd_integrator/decide/transition.hpp"
 #include "saltus/fesd_integrator/record/recorder.hpp"
 #include "saltus/fesd_integrator/watch/held_values.hpp"
@@ -217,30 +216,6 @@ TEST(Transition, AContactThatIsHeldStaysClosedWhileAnotherOneStopsABody) {
   after[closes] = after[closes | holds] = 0;
   EXPECT_EQ(found[0].set.modes(), after);
   EXPECT_NEAR(found[0].selections[closes | holds], 0.5, 1e-12);
-}
-
-TEST(NonnegativeSolution, HasTheLeastResidual) {
-  using linalg::Vector;
-  const linalg::Matrix A{{1.0, -2.0, 0.5, 3.0}, {0.0, 1.0, 1.0, -1.0}, {1.0, 1.0, 1.0, 1.0}};
-  for (const Vector& b :
-       {Vector{0.0, 0.0, 1.0}, Vector{0.0, -5.0, 1.0}, Vector{-1.0, -1.0, -1.0}, Vector{2.0, 0.3, 1.0}}) {
-    const Vector x = nonnegative_solution(A, b);
-    const Vector slope = A.transpose() * (b - A * x);
-    for (linalg::Index j = 0; j < x.size(); ++j) {
-      EXPECT_GE(x[j], 0.0);
-      EXPECT_LE(slope[j], 1e-9);
-      EXPECT_NEAR(x[j] * slope[j], 0.0, 1e-9);
-    }
-  }
-}
-
-TEST(NonnegativeSolution, TakesIndependentColumns) {
-  // Of equal columns one, and the shorter ones of those that do as well.
-  const linalg::Matrix A{{-1.0, -1.0, 4.0, 8.0, 4.0}, {1.0, 1.0, 1.0, 1.0, 1.0}};
-  const linalg::Vector x = nonnegative_solution(A, linalg::Vector{0.0, 1.0});
-  EXPECT_NEAR(x[0], 0.8, 1e-14);
-  EXPECT_NEAR(x[2], 0.2, 1e-14);
-  EXPECT_EQ(std::ranges::count_if(x, [](double weight) { return weight > 0.0; }), 2);
 }
 
 TEST(Transition, SurfacesWithoutInfluenceAreDecidedOneByOne) {

@@ -1,10 +1,8 @@
 // Contacts at one instant, in numbers.
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "saltus/base/function_ref.hpp"
 #include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
@@ -32,57 +30,5 @@ struct ContactPoint {
     return {vector(tangent_row(i, 0)), in_plane(i) ? vector(tangent_row(i, 1)) : 0.0};
   }
 };
-
-/// Holds n <= r unknown forces or impulses of contacts, beside given ones, that keep as many rows of start + influence
-/// forces at 0; the least ones where rows depend on each other.
-class HeldRows {
- public:
-  explicit HeldRows(linalg::Index rows) : given_(linalg::Vector::zero(rows)) {}
-  /// Forgets all rows, and keeps the memory.
-  void clear();
-  /// Adds one more unknown, the force of a row that is held; returns its number.
-  int hold(int row);
-  /// Gives the normal force 1 to a contact whose row is not held.
-  void give(int row) { given_(row) = 1.0; }
-  /// Gives a row this part of an unknown, or of the given force 1 where its number is negative.
-  void share(int row, int unknown, double part);
-  [[nodiscard]] const std::vector<int>& held() const { return held_; }
-  enum class Solution { none, one, open };
-  /// Finds the forces; none where the rows contradict each other, one of many where they depend on each other.
-  [[nodiscard]] Solution solve(const linalg::Matrix& influence, const linalg::Vector& start, linalg::Vector& forces);
-  /// Returns, as columns, forces that leave the held rows as they are.
-  [[nodiscard]] linalg::Matrix open(const linalg::Matrix& influence) const;
-
-  static constexpr double dependent = 1e-11;  ///< rows that depend on each other to rounding
-
- private:
-  static constexpr double contradiction = 1e-8;  ///< relative, of rows
-  struct Share {
-    int row, unknown;
-    double part;
-  };
-  [[nodiscard]] linalg::Matrix rows_of(const linalg::Matrix& influence) const;
-  [[nodiscard]] std::optional<Solution> eliminate(const linalg::Matrix& influence);
-  [[nodiscard]] Solution solve_least(std::size_t rank, double largest);
-  template <class Unknowns, class Forces>
-  void add(const Unknowns& unknowns, Forces& forces) const;
-
-  linalg::Vector given_;
-  std::vector<int> held_;
-  std::vector<Share> shares_;  ///< of what is unknown, by ascending unknowns
-  std::vector<double> table_;  ///< memory of an elimination
-  std::vector<int> order_;     ///< likewise
-  linalg::Vector right_, unknowns_;
-};
-
-/// Finds the directions in which contacts begin to slip from rest: along the rates of their tangential velocities,
-/// which follow from the directions.
-/// @param free        contacts that begin to slip, in a plane each
-/// @param directions  by contact, unit vectors: those of `free` are found, from what they are
-/// @param solve       finds forces and rates (r each) for the directions; returns false where there are none
-/// @return false where solve does, or nothing is found
-[[nodiscard]] bool find_directions(const ContactPoint& point, const std::vector<int>& free,
-                                   std::vector<linalg::Vector>& directions, const linalg::Vector& forces,
-                                   const linalg::Vector& rates, FunctionRef<bool()> solve);
 
 }  // namespace saltus::event_integrator

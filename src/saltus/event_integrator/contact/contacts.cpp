@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/contact/row_basis_internal.hpp"
+#include "saltus/event_integrator/contact/shared_friction.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -281,133 +281,37 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const B
                      moment.t);
 }
 
-std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, const std::vector<int>& touching,
-                                                std::vector<std::vector<ContactMode>> excluded, ContactPoint& point,
-                                                std::vector<double>& x) {
-  const auto at_rest = [&] {
-    std::vector<int> resting;
-    for (const int i : touching) {
-      if (std::abs(point.normal_velocity(i)) == 0.0) resting.push_back(i);
-    }
-    return resting;
-  };
-  auto resting = at_rest();
-  auto found = admissible_forces(point, resting, excluded);
-  if (found.empty()) found = admissible_forces(point, resting, std::vector<std::vector<ContactMode>>(contacts_.size()));
-  // Painleve: no forces keep the contacts closed, and none let them open. An impact without a collision follows.
-  for (std::size_t k = 0; found.empty() && k < resting.size(); ++k) {
-    if (point.friction[at(resting[k])] == 0.0) continue;
-    auto x_behind = x;
-    auto point_behind = point;
-    if (!collide(moment, touching, resting[k], point_behind, x_behind)) continue;
-    x = std::move(x_behind);
-    point = std::move(point_behind);
-    resting = at_rest();
-    found = admissible_forces(point, resting, std::vector<std::vector<ContactMode>>(contacts_.size()));
-  }
-  if (found.empty()) {
-    return fmt::format(
-        "no contact forces continue the motion of {} at t = {:.17g} (Painleve's paradox, or bodies that "
-        "jam)",
-        names(touching), moment.t);
-  }
-  const std::size_t chosen = best_ahead(moment, point, resting, found, x);
-  if (!have_one_motion(point, resting, found, chosen)) {
-    if (!why_open_.empty()) why_open_ += "; ";
-    why_open_ += "the forces of what touches leave more than one motion open";
-  }
-  put_at_rest(point, resting, x);
-  enter(moment, point, found[chosen], x);
-  static_cast<void>(project(moment.t, moment.alpha, x, touching));
-  bound_speeds(moment, x);
-  return std::nullopt;
-}
-
-void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<double>& x) const {
-  std::vector<double> rate(x.size());
-  kernel_.field(moment.t, x.data(), moment.alpha.data(), rate.data());
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * rate[i];
-}
-
-/// Of modes that hold here the first one that clearly holds a little later, too, else the one with the largest margin:
-/// with those contacts idle that will be. Values are those at x, and stay so.
-std::size_t Contacts::best_ahead(const ContactMoment& moment, const ContactPoint& point,
-                                 const std::vector<int>& resting, std::vector<ContactForces>& found,
-                                 const std::vector<double>& x) {
-  constexpr double clear = 1e-4;
-  if (found.size() == 1 && (found[0].idle.empty() || found[0].margin > clear)) return 0;
-  std::size_t best = 0;
-  double largest = -std::numeric_limits<double>::infinity();
-  std::vector<int> idle = found[0].idle;
-  const double h = ahead_by * moment.time_scale;
-  ContactPoint here = point;
-  here.velocity = values_.velocity;
-  const evaluation::ContactValues values = values_;
-  std::vector<double> ahead;
-  ContactPoint later;
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    ahead = x;
-    enter(moment, here, found[k], ahead);
-    move_ahead(moment, h, ahead);
-    read_motion(moment.t + h, moment.alpha, ahead, later);
-    values_ = values;
-    later.terms = point.terms;
-    for (const int i : resting) {
-      // The sign of the slip is that of the mode; where it begins without an acceleration, that of a rounding.
-      const auto mode = found[k].modes[at(i)];
-      const bool begins = slips(mode) && !point.in_plane(i) && point.along(point.velocity, i).is_zero();
-      if (mode != ContactMode::stick && !begins) continue;
-      for (int tangent = 0; tangent < later.tangents[at(i)]; ++tangent) {
-        later.velocity(later.tangent_row(i, tangent)) = 0.0;
-      }
-    }
-    ContactForces forces;
-    if (!forces_in(later, resting, found[k].modes, forces)) continue;
-    const double held = std::min(found[k].margin, forces.margin);
-    // Forces that are not unique, of bodies that rest: those without a slip are the first.
-    if (held > clear) return k;
-    if (held > largest) {
-      largest = held;
-      best = k;
-      idle = forces.idle;
-    }
-  }
-  if (ContactForces carried = found[best]; idle != carried.idle && carry_without(point, resting, idle, carried)) {
-    found[best] = std::move(carried);
-  }
-  return best;
-}
-
-/// The discrete states of these modes. Of rows that depend on each other the first ones hold; the others follow, and a
-/// tangential force that does keeps its share of the friction cone.
-void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
-                     std::vector<double>& x) {
+/// The discrete states of these modes. Of rows that depend on each other some hold; the others follow, and a tangential
+/// force that does keeps its share of the friction cone.
+void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
+                     const ContactForces& found, std::vector<double>& x) {
   const int m = point.contacts();
   RowBasis basis(values_.rows);
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
-    const bool closed = found.modes[at(i)] != ContactMode::open;
+    const bool closed = found.faces[at(i)] != ContactMode::open;
     x[at(contact.closed)] = closed ? 1.0 : 0.0;
     x[at(contact.active)] = closed && !contains(found.idle, i) && basis.takes(i) ? 1.0 : 0.0;
     std::fill(x.begin() + contact.active + 1, x.begin() + contact.force_unit, 0.0);
     if (contact.friction_varies) x[at(contact.smooth)] = closed && point.tangents[at(i)] == 0 ? 1.0 : 0.0;
     set_units(moment, point, i, x);
   }
+  const auto following = rows_that_follow(point, resting, found);
   for (int i = 0; i < m; ++i) {
     const auto& contact = contacts_[at(i)];
-    const double limit = point.friction[at(i)] * found.forces(i);
-    const bool holds = found.modes[at(i)] == ContactMode::stick && !contains(found.idle, i);
+    const double limit = point.friction[at(i)] * found.z(i);
+    const bool holds = found.faces[at(i)] == ContactMode::stick && !contains(found.idle, i);
     for (int k = 0; holds && k < contact.tangents(); ++k) {
       const int row = point.tangent_row(i, k);
-      if (basis.takes(row)) {
+      if (!contains(following, row) && basis.takes(row)) {
         x[at(contact.stick + k)] = 1.0;
       } else if (limit > 0.0) {
-        x[at(contact.share + k)] = std::clamp(-found.forces(row) / limit, -1.0, 1.0);
+        x[at(contact.share + k)] = std::clamp(-found.z(row) / limit, -1.0, 1.0);
       }
     }
   }
   for (int i = 0; i < m; ++i) {
-    if (!slips(found.modes[at(i)])) continue;
+    if (!slips(found.faces[at(i)])) continue;
     bool is_free = false;
     for (int k = 0; k < contacts_[at(i)].tangents(); ++k) is_free = is_free || !basis.holds(point.tangent_row(i, k));
     enter_slip(moment, point, found, i, is_free, x);
@@ -433,7 +337,7 @@ void Contacts::enter_slip(const ContactMoment& moment, const ContactPoint& point
                           bool is_free, std::vector<double>& x) {
   const auto& contact = contacts_[at(i)];
   const bool is_still = point.along(point.velocity, i).is_zero();
-  const bool moves = is_free || !is_still || point.along(found.acceleration, i).norm() > 1e-9 * point.terms;
+  const bool moves = is_free || !is_still || point.along(found.y, i).norm() > 1e-9 * point.terms;
   for (int k = 0; k < contact.tangents() && !(moves && contact.in_plane); ++k) {
     x[at(contact.share + k)] = found.directions[at(i)](k);
   }
@@ -461,7 +365,7 @@ std::optional<std::string> Contacts::jam(const ContactMoment& moment, const std:
   constexpr double without_bound = 1e4;
   const double largest = without_bound * point.acceleration.max_abs();
   std::erase_if(closed, [&](int i) {
-    return point.friction[at(i)] == 0.0 || !slips(modes[at(i)]) || forces.forces(i) * point.influence(i, i) <= largest;
+    return point.friction[at(i)] == 0.0 || !slips(modes[at(i)]) || forces.z(i) * point.influence(i, i) <= largest;
   });
   if (closed.empty()) return std::nullopt;
   return fmt::format(

@@ -191,11 +191,13 @@ class Contacts {
   [[nodiscard]] std::optional<std::string> find_modes(const ContactMoment& moment, const std::vector<int>& touching,
                                                       std::vector<std::vector<ContactMode>> excluded,
                                                       ContactPoint& point, std::vector<double>& x);
+  void read_ahead(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
+                  const ContactForces& found, const std::vector<double>& x, ContactPoint& later);
   [[nodiscard]] std::size_t best_ahead(const ContactMoment& moment, const ContactPoint& point,
                                        const std::vector<int>& resting, std::vector<ContactForces>& found,
                                        const std::vector<double>& x);
-  void enter(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found,
-             std::vector<double>& x);
+  void enter(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
+             const ContactForces& found, std::vector<double>& x);
   void set_units(const ContactMoment& moment, const ContactPoint& point, int i, std::vector<double>& x) const;
   void enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
                   bool is_free, std::vector<double>& x);

@@ -47,13 +47,14 @@ double Contacts::no_gap(int contact, const std::vector<double>& x) const {
 
 /// What closes a gap again: an acceleration of its own, or one by the forces of those that rest beside it.
 double Contacts::pull_on(int contact, const ContactPoint& point, const std::vector<double>& x) const {
-  HeldRows rows(point.velocity.size());
+  switching::HeldRows rows(point.velocity.size());
   for (int i = 0; i < point.contacts(); ++i) {
     if (i != contact && point.has_gap[at(i)] && point.velocity(i) == 0.0 && touches(i, x, {})) rows.hold(i);
   }
   double acceleration = point.acceleration(contact);
   linalg::Vector forces;
-  if (!rows.held().empty() && rows.solve(point.influence, point.acceleration, forces) != HeldRows::Solution::none)
+  if (!rows.held().empty() &&
+      rows.solve(point.influence, point.acceleration, forces) != switching::HeldRows::Solution::none)
     acceleration = std::min(acceleration, acceleration + point.influence.row(contact).dot(forces));
   return std::max(0.0, -acceleration);
 }

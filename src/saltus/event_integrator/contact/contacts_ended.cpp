@@ -9,11 +9,19 @@
 
 namespace saltus::event_integrator {
 
-/// By contact. Where others keep a gap closed, too, its force may end and the contact go on without it.
+/// By contact. Where others keep a gap closed, too, its force may end and the contact go on without it. Where forces
+/// are not unique a mode ends only if none of them hold it: else what has come to an edge is how they are shared.
 std::vector<std::vector<ContactMode>> Contacts::modes_that_end(const ContactMoment& moment, const ContactPoint& point,
                                                                const std::vector<int>& ended,
                                                                const std::vector<double>& x) const {
   std::vector<std::vector<ContactMode>> result(contacts_.size());
+  const auto [modes, closed] = modes_at(x);
+  const auto is_at_rest = [&](int i) { return contains(closed, i) && !slips(modes[at(i)]); };
+  if (std::all_of(ended.begin(), ended.end(), is_at_rest)) {
+    constexpr double clear = 1e-6;
+    ContactForces others;
+    if (forces_in(point, closed, modes, others) && others.is_open && others.margin > clear) return result;
+  }
   const auto is_shared = [&](int contact) {
     RowBasis others(values_.rows);
     for (int i = 0; i < point.contacts(); ++i) {

@@ -70,9 +70,9 @@ bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>
     if (modes[at(i)] != ContactMode::slip) return false;
     const Vector velocity = point.along(point.velocity, i);
     const int first = point.tangent_row(i, 0), second = point.tangent_row(i, 1);
-    const double push = point.friction[at(i)] * forces.forces(i) *
-                        std::max(point.influence(first, first), point.influence(second, second));
-    const double growth = std::abs(point.along(forces.acceleration, i).dot(velocity)) / velocity.norm();
+    const double push =
+        point.friction[at(i)] * forces.z(i) * std::max(point.influence(first, first), point.influence(second, second));
+    const double growth = std::abs(point.along(forces.y, i).dot(velocity)) / velocity.norm();
     return push > steps * growth && push * moment.time_scale > limit * velocity.norm();
   });
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "saltus/base/rounding_unit.hpp"
+#include "saltus/event_integrator/contact/contact_forces.hpp"
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::event_integrator {
@@ -37,6 +38,7 @@ class Process {
         releasing_(touching.size(), false),
         options_(touching.size()),
         branches_(touching.size()),
+        problem_(problem_of(point, touching)),
         rows_(velocity_.size()),
         none_(Vector::zero(velocity_.size())) {
     for (const int i : touching) {
@@ -154,7 +156,7 @@ class Process {
       const Vector needed = solved ? Vector(-point_.along(rate_, i)) : Vector::zero(2);
       directions[static_cast<std::size_t>(i)] = needed.norm() > 0.0 ? Vector(needed.normalized()) : Vector{1.0, 0.0};
     }
-    return find_directions(point_, beginning, directions, rate_, change_, [&] {
+    return switching::find_directions(problem_, beginning, directions, rate_, change_, [&] {
       for (std::size_t k = 0; k < touching_.size(); ++k) {
         if (branches[k].begins) branches[k].direction = directions[static_cast<std::size_t>(touching_[k])];
       }
@@ -169,7 +171,7 @@ class Process {
       const auto& branch = branches[k];
       if (branch.normal == Branch::Normal::open) continue;
       const bool pushed = branch.normal == Branch::Normal::pushed;
-      if (pushed) rows_.give(i);
+      if (pushed) rows_.give(i, 1.0);
       const int normal = pushed ? -1 : rows_.hold(i);
       for (int tangent = 0; tangent < tangents(i); ++tangent) {
         const int row = point_.tangent_row(i, tangent);
@@ -180,7 +182,7 @@ class Process {
         }
       }
     }
-    return rows_.solve(point_.influence, none_, rate_) != HeldRows::Solution::none;
+    return rows_.solve(point_.influence, none_, rate_) != switching::HeldRows::Solution::none;
   }
 
   void find_change() {
@@ -216,6 +218,8 @@ class Process {
       const bool at_rest = velocity_(i) == 0.0 && !pushes(k);
       if (branch.normal == Branch::Normal::open && at_rest && change_(i) < -slow) return false;
       if (branch.normal == Branch::Normal::pushed && at_rest && change_(i) > slow) return false;
+      // Its own push presses it on, against what it does to all others: else it would open by work from nowhere.
+      if (forced_ == i && !(change_(i) < -slow)) return false;
       const bool from_rest = branch.normal != Branch::Normal::open && friction(i) > 0.0 && !branch.sticks;
       if (from_rest && slip(i).is_zero() && branch.direction.dot(point_.along(change_, i)) < -slow) return false;
     }
@@ -423,7 +427,8 @@ class Process {
   std::vector<std::vector<Branch>> options_;  ///< by touching contact
   std::vector<std::size_t> numbers_;          ///< of those that are tried
   std::vector<Branch> branches_;
-  HeldRows rows_;
+  switching::PointProblem problem_;
+  switching::HeldRows rows_;
   Vector none_;  ///< nothing is given but the impulses
   std::optional<int> forced_;
   double size_ = 0.0, strength_ = 0.0;  ///< of velocities; of the influence of a normal impulse

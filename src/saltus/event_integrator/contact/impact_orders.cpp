@@ -33,6 +33,7 @@ class Orders {
       point_.friction.push_back(friction(i));
       point_.restitution.push_back(point.restitution[at(i)]);
       point_.tangents.push_back(point.tangents[at(i)]);
+      point_.has_gap.push_back(point.has_gap[at(i)]);
     }
     size_ = start_.max_abs();
     find_involved();

@@ -6,9 +6,9 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
-#include "saltus/fesd_integrator/decide/nonnegative_solution.hpp"
 #include "saltus/fesd_integrator/decide/transition.hpp"
 #include "saltus/linalg/factors.hpp"
+#include "saltus/switching/point/nonnegative_solution.hpp"
 
 namespace saltus::fesd_integrator {
 namespace {
@@ -132,7 +132,7 @@ std::optional<Transition::Weights> Transition::find_weights(const Decision& deci
   const auto active = active_regions(parts_, set);
   const auto [matrix, right, negligible] = weight_equations(decision, t, x, set, active);
   if (!matrix.all_finite() || !right.all_finite()) return std::nullopt;
-  const Vector found = nonnegative_solution(matrix, right);
+  const Vector found = switching::nonnegative_solution(matrix, right);
   if (linalg::any_beyond(matrix * found - right, negligible)) return std::nullopt;
   for (std::size_t c = 0; c < active.size(); ++c) weights.selections[at(active[c])] = found[index(c)];
   kernel_.field(t, x.data(), weights.selections.data(), decision.held, weights.motion.data());

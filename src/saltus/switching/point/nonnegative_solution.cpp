@@ -1,4 +1,4 @@
-#include "saltus/fesd_integrator/decide/nonnegative_solution.hpp"
+#include "saltus/switching/point/nonnegative_solution.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "saltus/base/contains.hpp"
 #include "saltus/linalg/factors.hpp"
 
-namespace saltus::fesd_integrator {
+namespace saltus::switching {
 namespace {
 
 using linalg::Index;
@@ -79,7 +79,8 @@ linalg::Vector nonnegative_solution(const linalg::Matrix& A, const linalg::Vecto
   std::iota(order.begin(), order.end(), 0);
   const linalg::Vector lengths = A.col_norms();
   // Equal but for roundings: in the order of their numbers.
-  const double unit = 1e-9 * lengths.max();
+  constexpr double equal = 1e-9;
+  const double unit = equal * lengths.max();
   std::stable_sort(order.begin(), order.end(),
                    [&](int i, int j) { return std::round(lengths[i] / unit) < std::round(lengths[j] / unit); });
   FreeUnknowns unknowns(A, b);
@@ -95,4 +96,4 @@ linalg::Vector nonnegative_solution(const linalg::Matrix& A, const linalg::Vecto
   return unknowns.x();
 }
 
-}  // namespace saltus::fesd_integrator
+}  // namespace saltus::switching

@@ -1,4 +1,4 @@
-#include "saltus/event_integrator/contact/contact_point.hpp"
+#include "saltus/switching/point/held_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/linalg/factors.hpp"
 
-namespace saltus::event_integrator {
+namespace saltus::switching {
 
 void HeldRows::clear() {
   given_.set_zero();
@@ -35,40 +35,40 @@ void HeldRows::add(const Unknowns& unknowns, Forces& forces) const {
   for (const auto& share : shares_) forces.row(share.row) += share.part * unknowns.row(share.unknown);
 }
 
-auto HeldRows::solve(const linalg::Matrix& influence, const linalg::Vector& start, linalg::Vector& forces) -> Solution {
-  forces = given_;
+auto HeldRows::solve(const linalg::Matrix& effects, const linalg::Vector& constant, linalg::Vector& z) -> Solution {
+  z = given_;
   if (held_.empty()) return Solution::one;
   const auto n = index(held_.size());
   right_.resize(n);
   for (linalg::Index k = 0; k < n; ++k) {
     const int row = held_[at(k)];
-    right_(k) = -(start(row) + influence.row(row).dot(given_));
+    right_(k) = -(constant(row) + effects.row(row).dot(given_));
   }
-  if (const auto solution = eliminate(influence)) {
-    if (*solution != Solution::none) add(unknowns_, forces);
+  if (const auto solution = eliminate(effects)) {
+    if (*solution != Solution::none) add(unknowns_, z);
     return *solution;
   }
-  const linalg::Matrix rows = rows_of(influence);
+  const linalg::Matrix rows = rows_of(effects);
   linalg::OrthogonalFactors factors;
   factors.set_threshold(dependent);
   factors.compute(rows);
   unknowns_ = factors.solve(right_);
   const double size = rows.max_abs() * unknowns_.max_abs() + right_.max_abs();
   if (!((rows * unknowns_ - right_).max_abs() <= contradiction * size)) return Solution::none;
-  add(unknowns_, forces);
+  add(unknowns_, z);
   return factors.rank() < n ? Solution::open : Solution::one;
 }
 
 /// By complete pivoting, in the memory that is there; nothing where the rank is not clear.
-auto HeldRows::eliminate(const linalg::Matrix& influence) -> std::optional<Solution> {
+auto HeldRows::eliminate(const linalg::Matrix& effects) -> std::optional<Solution> {
   const std::size_t n = held_.size(), width = n + 1;
   table_.resize(n * width);
   order_.resize(n);
   const auto row_of = [&](std::size_t i) { return table_.data() + i * width; };
   for (std::size_t i = 0; i < n; ++i) {
     double* row = row_of(i);
-    for (std::size_t k = 0; k < n; ++k) row[k] = influence(held_[i], held_[k]);
-    for (const auto& share : shares_) row[at(share.unknown)] += share.part * influence(held_[i], share.row);
+    for (std::size_t k = 0; k < n; ++k) row[k] = effects(held_[i], held_[k]);
+    for (const auto& share : shares_) row[at(share.unknown)] += share.part * effects(held_[i], share.row);
     row[n] = right_(index(i));
     order_[i] = static_cast<int>(i);
   }
@@ -122,18 +122,17 @@ auto HeldRows::solve_least(std::size_t rank, double largest) -> Solution {
   return rank < n ? Solution::open : Solution::one;
 }
 
-linalg::Matrix HeldRows::rows_of(const linalg::Matrix& influence) const {
-  linalg::Matrix rows = influence.selected(held_, held_);
-  for (const auto& share : shares_)
-    rows.col(share.unknown) += share.part * influence.col(share.row).selected_rows(held_);
+linalg::Matrix HeldRows::rows_of(const linalg::Matrix& effects) const {
+  linalg::Matrix rows = effects.selected(held_, held_);
+  for (const auto& share : shares_) rows.col(share.unknown) += share.part * effects.col(share.row).selected_rows(held_);
   return rows;
 }
 
-linalg::Matrix HeldRows::open(const linalg::Matrix& influence) const {
+linalg::Matrix HeldRows::open(const linalg::Matrix& effects) const {
   const auto n = index(held_.size());
   linalg::FullLu factors;
   factors.set_threshold(dependent);
-  if (n > 0) factors.compute(rows_of(influence));
+  if (n > 0) factors.compute(rows_of(effects));
   if (n == 0 || factors.rank() == n) return linalg::Matrix(given_.size(), 0);
   const linalg::Matrix kernel = factors.kernel();
   linalg::Matrix forces = linalg::Matrix::zero(given_.size(), kernel.cols());
@@ -141,35 +140,4 @@ linalg::Matrix HeldRows::open(const linalg::Matrix& influence) const {
   return forces;
 }
 
-bool find_directions(const ContactPoint& point, const std::vector<int>& free, std::vector<linalg::Vector>& directions,
-                     const linalg::Vector& forces, const linalg::Vector& rates, FunctionRef<bool()> solve) {
-  // A step along the rate, as long as would turn friction around: one contact without other influences needs one. Where
-  // the normal force depends on the direction, too, that may be too long.
-  constexpr int most_steps = 500;
-  constexpr double settled = 1e-15, found = 1e-9;
-  double change = 0.0, length = 1.0;
-  for (int step = 0; step < most_steps; ++step) {
-    if (!solve()) return false;
-    const double last = change;
-    change = 0.0;
-    for (const int i : free) {
-      const int first = point.tangent_row(i, 0), second = point.tangent_row(i, 1);
-      const double push = point.friction[static_cast<std::size_t>(i)] * forces(i) *
-                          std::max(point.influence(first, first), point.influence(second, second));
-      auto& direction = directions[static_cast<std::size_t>(i)];
-      const linalg::Vector rate = point.along(rates, i);
-      const auto behind = [&](double part) {
-        return push > 0.0 ? linalg::Vector(direction + part * rate / push) : rate;
-      };
-      const linalg::Vector next = behind(length);
-      if (!(next.norm() > 0.0)) continue;
-      change = std::max(change, (behind(1.0).normalized() - direction).norm());
-      direction = next.normalized();
-    }
-    if (change <= settled) break;
-    if (step > 0 && change >= last) length *= 0.5;
-  }
-  return change <= found && solve();
-}
-
-}  // namespace saltus::event_integrator
+}  // namespace saltus::switching
