@@ -1,10 +1,12 @@
 // Problems of complementarity at a point: known answers, friction, dependent rows, several solutions, many blocks.
-#include <gtest/gtest.h>
+#include "saltus/switching/point/point_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 #include "saltus/base/at.hpp"
 #include "saltus/switching/point/faces_by_pivots.hpp"
@@ -14,7 +16,6 @@
 #include "saltus/switching/point/open_unknowns_internal.hpp"
 #include "saltus/switching/point/pivoting.hpp"
 #include "saltus/switching/point/point_problem.hpp"
-#include "saltus/switching/point/point_solver.hpp"
 
 namespace saltus::switching::testing {
 namespace {
@@ -51,8 +52,12 @@ void expect_solution(const std::vector<Block>& blocks, const Matrix& effects, co
     if (block.kind == Block::Kind::box) {
       EXPECT_GE(z, block.lower - force);
       EXPECT_LE(z, block.upper + force);
-      if (own > speed) { EXPECT_NEAR(z, block.lower, force); }
-      if (own < -speed) { EXPECT_NEAR(z, block.upper, force); }
+      if (own > speed) {
+        EXPECT_NEAR(z, block.lower, force);
+      }
+      if (own < -speed) {
+        EXPECT_NEAR(z, block.upper, force);
+      }
       continue;
     }
     EXPECT_GE(z, -force);
@@ -62,8 +67,12 @@ void expect_solution(const std::vector<Block>& blocks, const Matrix& effects, co
     const double friction = solution.z(block.tangents[0]), limit = block.friction * z;
     const double slip = block.velocity[0] != 0.0 ? block.velocity[0] : y(block.tangents[0]);
     EXPECT_LE(std::abs(friction), limit + force);
-    if (slip > speed) { EXPECT_NEAR(friction, -limit, force); }
-    if (slip < -speed) { EXPECT_NEAR(friction, limit, force); }
+    if (slip > speed) {
+      EXPECT_NEAR(friction, -limit, force);
+    }
+    if (slip < -speed) {
+      EXPECT_NEAR(friction, limit, force);
+    }
   }
 }
 
@@ -239,7 +248,8 @@ TEST(PointSolver, WhatIsFoundIsASolutionAndPivotsFindOneWhereThereIsOne) {
 TEST(PointSolver, SixtyContactsWithFriction) {
   std::mt19937 random(11);
   for (int instance = 0; instance < 5; ++instance) {
-    const auto [blocks, effects, constant] = pile(random, 60, instance % 2 == 0 ? 130 : 60, instance % 2 == 0 ? 0.2 : 0.0);
+    const auto [blocks, effects, constant] =
+        pile(random, 60, instance % 2 == 0 ? 130 : 60, instance % 2 == 0 ? 0.2 : 0.0);
     const auto found = solve(blocks, effects, constant);
     ASSERT_FALSE(found.all.empty()) << instance;
     EXPECT_FALSE(found.complete);

@@ -39,8 +39,7 @@ class StandardForm {
   [[nodiscard]] std::optional<std::vector<Face>> faces() const {
     const Matrix of_y = of_y_.top_rows(unknowns_), of_u = of_u_.left_cols(unknowns_);
     const Matrix effects = of_y * (problem_.effects * of_u) + own_.block(0, 0, unknowns_, unknowns_);
-    const Vector constant =
-        of_y * (problem_.constant + problem_.effects * given_) + right_.head(unknowns_);
+    const Vector constant = of_y * (problem_.constant + problem_.effects * given_) + right_.head(unknowns_);
     std::vector<bool> basic;
     if (!complementary_pivots(effects, constant, &basic)) return std::nullopt;
     std::vector<Face> faces(problem_.blocks.size(), Face::open);
@@ -54,7 +53,7 @@ class StandardForm {
 
  private:
   struct Places {
-    Index normal = -1;                ///< of the unknown of z, or of its normal part; -1: it is known
+    Index normal = -1;                   ///< of the unknown of z, or of its normal part; -1: it is known
     std::array<Index, 2> above{-1, -1};  ///< by tangent, of z_t + friction z_n; -1: z_t follows
   };
 

@@ -201,9 +201,7 @@ std::vector<int> by_size(const PointProblem& problem, const PointSolution& solut
   }
   constexpr double equal = 1e-9;
   const double unit = equal * solution.z.max_abs();
-  const auto size = [&](int b) {
-    return unit > 0.0 ? std::round(solution.z(problem.blocks[at(b)].row) / unit) : 0.0;
-  };
+  const auto size = [&](int b) { return unit > 0.0 ? std::round(solution.z(problem.blocks[at(b)].row) / unit) : 0.0; };
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size(a) < size(b); });
   return order;
 }

@@ -121,7 +121,8 @@ void search_all(const PointProblem& problem, const Options& options, PointSoluti
   PointSolution solution;
   for (;;) {
     for (std::size_t b = 0; b < options.size(); ++b) faces[b] = options[b][number[b]];
-    if (solve_least(problem, faces, solution) && (found.all.size() < enough || moves_otherwise(problem, found, solution)))
+    if (solve_least(problem, faces, solution) &&
+        (found.all.size() < enough || moves_otherwise(problem, found, solution)))
       take_if_held(problem, solution, found);
     std::size_t b = 0;
     while (b < options.size() && ++number[b] == options[b].size()) number[b++] = 0;

@@ -18,7 +18,7 @@ using linalg::Matrix;
 using linalg::Vector;
 
 /// A face as a polytope of its own, in differences from its first region along a basis of them.
-struct Face {
+struct TiedFace {
   std::vector<int> active;
   RegionPolytope polytope;
   Matrix rates;  ///< of the coordinates along the basis, for the regions of the face
@@ -27,7 +27,7 @@ struct Face {
 /// Part of a difference that the ones before do not span, relative to it, below which it depends on them.
 constexpr double independent_difference = 1e-6;
 
-std::optional<Face> face_of(const RegionTie& tie, const std::vector<int>& active) {
+std::optional<TiedFace> face_of(const RegionTie& tie, const std::vector<int>& active) {
   const Matrix& points = tie.polytope.points();
   const auto count = index(active.size());
   Matrix differences(count, points.cols());
@@ -60,7 +60,7 @@ std::optional<Face> face_of(const RegionTie& tie, const std::vector<int>& active
   }
   auto polytope = RegionPolytope::make(std::move(coordinates));
   if (!polytope) return std::nullopt;
-  return Face{active, std::move(*polytope), std::move(rates)};
+  return TiedFace{active, std::move(*polytope), std::move(rates)};
 }
 
 /// The smallest of what is to be positive: weights off the facets of the face, and how fast the others fall behind.
@@ -78,7 +78,7 @@ double margin_of_tie(const RegionTie& tie, const RegionWeights& weights, const R
   return margin;
 }
 
-bool solve_on(const RegionTie& tie, const Face& face, RegionWeights& weights, const std::vector<double>& near,
+bool solve_on(const RegionTie& tie, const TiedFace& face, RegionWeights& weights, const std::vector<double>& near,
               RegionSet& set) {
   set.active = face.active;
   set.weights = near;
@@ -88,7 +88,7 @@ bool solve_on(const RegionTie& tie, const Face& face, RegionWeights& weights, co
 }
 
 /// Whether the weights return to those of the set where they follow the indicators.
-bool face_attracts(const Face& face, const RegionSet& set) {
+bool face_attracts(const TiedFace& face, const RegionSet& set) {
   const auto m = face.rates.rows();
   if (m == 0) return true;
   const linalg::ConstView theta(set.weights.data(), index(set.weights.size()));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "saltus/linalg/spectra.hpp"
+#include "saltus/switching/point/point_solver.hpp"
 
 namespace saltus::switching {
 namespace {
@@ -12,40 +13,19 @@ using linalg::Index;
 using linalg::Matrix;
 using linalg::Vector;
 
-constexpr int most_iterations = 20000;
-
-/// Sweeps of lambda_i := clip(lambda_i - y_i / W_ii); whether they came to rest.
-bool sweep(const Matrix& effects, const Vector& constant, Vector& lambda) {
-  if (!(effects.diagonal().max() < 0.0)) return false;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    double change = 0.0;
-    for (Index i = 0; i < lambda.size(); ++i) {
-      const double y = constant[i] + effects.row(i).dot(lambda);
-      const double next = std::clamp(lambda[i] - y / effects(i, i), 0.0, 1.0);
-      change = std::max(change, std::abs(next - lambda[i]));
-      lambda[i] = next;
-    }
-    if (change <= 1e-14) return true;
+/// lambda as z of boxes, with -y for y; in the middle where nothing is found.
+Vector lambda_in_boxes(const Matrix& effects, const Vector& constant) {
+  const Matrix against = -1.0 * effects;
+  const Vector start = -1.0 * constant;
+  PointProblem problem{{}, against, start, start.max_abs()};
+  for (Index i = 0; i < constant.size(); ++i) {
+    problem.blocks.push_back({.kind = Block::Kind::box, .row = static_cast<int>(i)});
   }
-  return false;
-}
-
-/// Extragradient steps, for monotone W whatever its diagonal.
-void descend(const Matrix& effects, const Vector& constant, Vector& lambda) {
-  const double size = effects.norm();
-  if (size == 0.0) {
-    for (Index i = 0; i < lambda.size(); ++i) lambda[i] = constant[i] > 0.0 ? 1.0 : constant[i] < 0.0 ? 0.0 : lambda[i];
-    return;
-  }
-  const double step = 0.7 / size;
-  const auto clipped = [](const Vector& values) { return values.at_least(0.0).at_most(1.0); };
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const Vector ahead = clipped(lambda + step * (constant + effects * lambda));
-    const Vector next = clipped(lambda + step * (constant + effects * ahead));
-    const double change = (next - lambda).max_abs();
-    lambda = next;
-    if (change <= 1e-14) return;
-  }
+  const std::vector<std::vector<Face>> none(problem.blocks.size());
+  const auto found = solve_point(problem, {none, {}}).all;
+  const auto better = [](const PointSolution& a, const PointSolution& b) { return a.margin < b.margin; };
+  const auto best = std::max_element(found.begin(), found.end(), better);
+  return best == found.end() ? Vector::constant(constant.size(), 0.5) : best->z;
 }
 
 /// A positive diagonal D with D W symmetric; false if there is none.
@@ -91,12 +71,9 @@ bool velocity_is_unique(const Matrix& all) {
 
 Complementarity solve_complementarity(const Matrix& effects, const Vector& constant, double tolerance) {
   Complementarity found;
-  found.lambda = Vector::constant(constant.size(), 0.5);
   // Each surface in units of its own.
   const Vector sizes = (constant.abs() + effects.abs().row_sums()).at_least(1e-300).inverses();
-  const Matrix scaled = linalg::scaled_rows(sizes, effects);
-  const Vector offset = sizes.times_each(constant);
-  if (!sweep(scaled, offset, found.lambda)) descend(scaled, offset, found.lambda);
+  found.lambda = lambda_in_boxes(linalg::scaled_rows(sizes, effects), sizes.times_each(constant));
   const Vector y = constant + effects * found.lambda;
   for (Index i = 0; i < y.size(); ++i) {
     const double terms = std::abs(constant[i]) + effects.row(i).sum_abs();

@@ -15,10 +15,9 @@ struct Complementarity {
   bool unique_velocity = false;  ///< y is the same for all solutions: D W + W^T D <= 0 for a positive diagonal D
 };
 
-/// Solves that, by projections on the box (Gauss–Seidel where the diagonal of W is negative, else by extragradient
-/// steps), and reads the mode from it: surfaces whose y is below `tolerance` relative to its terms are slid on.
-/// Not every W has a solution that this finds: the caller checks the mode by its own field.
-/// Cost: m^2 operations an iteration, 20000 iterations at most.
+/// Solves that as a problem of boxes, and reads the mode from it: surfaces whose y is below `tolerance` relative to its
+/// terms are slid on. Not every W has a solution that this finds: the caller checks the mode by its own field.
+/// Cost: that of solve_point with m boxes.
 [[nodiscard]] Complementarity solve_complementarity(const linalg::Matrix& effects, const linalg::Vector& constant,
                                                     double tolerance);
 
