@@ -8,6 +8,7 @@
 
 #include "run_model.hpp"
 #include "saltus/event_integrator/contact/contact_forces.hpp"
+#include "saltus/event_integrator/contact/impact.hpp"
 #include "saltus/event_integrator/contact/shared_friction.hpp"
 
 namespace saltus::event_integrator::testing {
@@ -145,6 +146,54 @@ TEST(ContactForces, WhatTouchesWithoutAForceMayBeOpenAndClosed) {
     point.acceleration = linalg::Vector{0.0, 0.0, 0.0, 1.0} - point.influence * linalg::Vector{1.0, 0.0, 0.5, 0.0};
     expect_the_same_modes(point);
   }
+}
+
+/// m contacts with friction of a chain of bodies, all of them at rest or closing.
+ContactPoint falling_pile(int contacts, std::mt19937& dice) {
+  std::uniform_real_distribution<double> number(-1.0, 1.0);
+  const int n = contacts + 2;
+  linalg::Matrix rows = linalg::Matrix::zero(2 * contacts, n);
+  for (int i = 0; i < 2 * contacts; ++i) {
+    for (int k = i % contacts; k < std::min(n, i % contacts + 3); ++k) rows(i, k) = number(dice);
+  }
+  ContactPoint point;
+  point.influence = rows * rows.transpose();
+  linalg::Vector velocity(n);
+  for (double& one : velocity) one = number(dice);
+  point.velocity = rows * velocity;
+  point.acceleration = linalg::Vector::zero(2 * contacts);
+  const auto m = static_cast<std::size_t>(contacts);
+  for (int i = 0; i < contacts; ++i) {
+    point.velocity(i) = -std::abs(point.velocity(i));
+    if (i % 2 == 0) point.velocity(i) = point.velocity(contacts + i) = 0.0;
+    point.friction.push_back(0.3 * std::abs(number(dice)));
+  }
+  point.restitution.assign(m, 0.0);
+  point.tangents.assign(m, 1);
+  point.has_gap.assign(m, true);
+  return point;
+}
+
+/// By all combinations where contacts are few, by pivots where they are many.
+TEST(Impacts, NothingClosesBehindThemAndNoEnergyIsGained) {
+  std::mt19937 dice(3);
+  int ended = 0;
+  for (int run = 0; run < 60; ++run) {
+    const ContactPoint point = falling_pile(1 + run % 12, dice);
+    std::vector<int> touching;
+    for (int i = 0; i < point.contacts(); ++i) touching.push_back(i);
+    const auto impulse = impact(point, touching);
+    if (!impulse) continue;
+    ++ended;
+    const linalg::Vector behind = point.velocity + point.influence * *impulse;
+    const double gained = 0.5 * impulse->dot(point.velocity + behind);
+    EXPECT_LE(gained, 1e-9) << run;
+    for (int i = 0; i < point.contacts(); ++i) {
+      EXPECT_GE(behind(i), -1e-8) << run;
+      EXPECT_GE((*impulse)(i), -1e-9) << run;
+    }
+  }
+  EXPECT_GE(ended, 55);
 }
 
 /// Two feet at one height: of their friction one part is open, and follows the share of one of them.

@@ -236,8 +236,8 @@ TEST(PointSolver, WhatIsFoundIsASolutionAndPivotsFindOneWhereThereIsOne) {
         options.back() = {block.velocity[0] > 0.0 ? Face::slip_up : Face::slip_down, Face::open};
     }
     PointSolution solution;
-    const auto faces = faces_by_pivots(problem, options);
-    if (!faces || !solve_on(problem, *faces, solution) || solution.margin < face_holds) continue;
+    const auto vertex = vertex_by_pivots(problem, options);
+    if (!vertex || !solve_on(problem, vertex->faces, solution) || solution.margin < face_holds) continue;
     ++by_pivots;
     expect_solution(blocks, effects, constant, solution);
   }

@@ -382,7 +382,7 @@ void Contacts::forget_impulses(std::vector<double>& x) const {
 
 std::optional<int> Contacts::jump_to_tell(const std::vector<double>& x) const {
   for (const auto& contact : contacts_) {
-    if (x[at(contact.impulse)] != 0.0 || (!why_open_.empty() && x[at(contact.closed)] != 0.0)) return contact.jump;
+    if (x[at(contact.impulse)] != 0.0 || (!why_open_.text.empty() && x[at(contact.closed)] != 0.0)) return contact.jump;
   }
   return std::nullopt;
 }

@@ -9,6 +9,7 @@
 #include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/contact/contact_forces.hpp"
+#include "saltus/event_integrator/contact/open_motion.hpp"
 #include "saltus/linalg/factors.hpp"
 #include "saltus/linalg/matrix.hpp"
 #include "saltus/model/layout.hpp"
@@ -79,8 +80,8 @@ class Contacts {
   /// mode ends here; x is at the zero of what ended it. Returns what is wrong if nothing follows.
   [[nodiscard]] std::optional<std::string> resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                                    std::vector<double>& x);
-  /// Returns why more than one motion follows what was last resolved or settled; nothing if only one does.
-  [[nodiscard]] const std::string& why_open() const { return why_open_; }
+  /// Returns why more than one motion follows what was last resolved or settled.
+  [[nodiscard]] const OpenMotion& why_open() const { return why_open_; }
   /// Returns, by their jumps, the contacts whose bounces the last impact has ended: the next one would be nothing.
   [[nodiscard]] const std::vector<int>& last_bounces() const { return last_bounces_; }
   /// Returns the contacts that do not slip, to the rounding of their velocities.
@@ -235,7 +236,7 @@ class Contacts {
     std::vector<double> magnitude, slope;
   };
   Terms terms_;  ///< likewise
-  std::string why_open_;
+  OpenMotion why_open_;
   std::vector<int> last_bounces_;
 };
 

@@ -79,10 +79,10 @@ void Contacts::compare_orders(const ContactPoint& before, const std::vector<int>
   if (!other) return;
   const std::string axis =
       other->tangent && before.in_plane(other->contact) ? fmt::format(" {}", *other->tangent + 1) : "";
-  why_open_ = fmt::format("one behind the other ({}{}) they would end elsewhere: {} of {} is {:.6g}, not {:.6g}",
-                          names(other->order), other->are_more ? ", …" : "",
-                          other->tangent ? "the velocity along tangent" + axis : "the rate of the gap",
-                          names({other->contact}), other->velocity, other->together);
+  why_open_.text = fmt::format("one behind the other ({}{}) they would end elsewhere: {} of {} is {:.6g}, not {:.6g}",
+                               names(other->order), other->are_more ? ", …" : "",
+                               other->tangent ? "the velocity along tangent" + axis : "the rate of the gap",
+                               names({other->contact}), other->velocity, other->together);
 }
 
 /// An impact. What would rise by nothing has no restitution: its impulses, too, are those of bodies that come to rest.

@@ -45,9 +45,11 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
         names(touching), moment.t);
   }
   const std::size_t chosen = best_ahead(moment, point, resting, found.all, x);
-  if (switching::is_one_motion(problem_of(point, resting), found, chosen) == false) {
-    if (!why_open_.empty()) why_open_ += "; ";
-    why_open_ += "the forces of what touches leave more than one motion open";
+  const auto one = switching::is_one_motion(problem_of(point, resting), found, chosen);
+  why_open_.is_undecided = why_open_.is_undecided || !one;
+  if (one == false) {
+    if (!why_open_.text.empty()) why_open_.text += "; ";
+    why_open_.text += "the forces of what touches leave more than one motion open";
   }
   put_at_rest(point, resting, x);
   enter(moment, point, resting, found.all[chosen], x);

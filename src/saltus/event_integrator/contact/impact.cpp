@@ -208,8 +208,11 @@ class Process {
     return true;
   }
 
-  [[nodiscard]] bool admits(std::vector<Branch>& branches) {
-    if (!rates(branches) || !has_possible_impulses(branches)) return false;
+  [[nodiscard]] bool admits(std::vector<Branch>& branches) { return rates(branches) && fits(branches); }
+
+  /// Whether branches are those of the rates that have been found.
+  [[nodiscard]] bool fits(const std::vector<Branch>& branches) {
+    if (!has_possible_impulses(branches)) return false;
     find_change();
     const double slow = share_rounding * strength_;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
@@ -226,19 +229,57 @@ class Process {
     return true;
   }
 
-  /// The branches that hold from here on, the first admissible ones of all combinations.
+  /// The branches that hold from here on: the first admissible ones of all combinations where these are few.
   bool choose() {
-    for (std::size_t k = 0; k < options_.size(); ++k) note_options(k);
+    constexpr double most = 20000.0;
+    double combinations = 1.0;
+    for (std::size_t k = 0; k < options_.size(); ++k) {
+      note_options(k);
+      combinations *= static_cast<double>(options_[k].size());
+    }
+    if (combinations > most) return choose_by_pivots();
     numbers_.assign(options_.size(), 0);
-    constexpr long most = 20000;
-    for (long tried = 0; tried < most; ++tried) {
+    for (;;) {
       for (std::size_t k = 0; k < options_.size(); ++k) branches_[k] = options_[k][numbers_[k]];
       if (admits(branches_)) return true;
       std::size_t k = 0;
       while (k < options_.size() && ++numbers_[k] == options_[k].size()) numbers_[k++] = 0;
       if (k == options_.size()) return false;
     }
-    return false;
+  }
+
+  bool choose_by_pivots() {
+    std::vector<bool> pushing(static_cast<std::size_t>(m_), false);
+    for (std::size_t k = 0; k < touching_.size(); ++k) pushing[static_cast<std::size_t>(touching_[k])] = pushes(k);
+    const auto vertex = rates_by_pivots(point_, touching_, velocity_, pushing);
+    if (!vertex) return false;
+    for (std::size_t k = 0; k < touching_.size(); ++k) branches_[k] = branch_of(k, *vertex);
+    if (std::any_of(branches_.begin(), branches_.end(), [](const Branch& branch) { return branch.begins; }))
+      return admits(branches_);
+    // Where rows depend on each other these branches leave more rates open than the vertex.
+    rate_ = vertex->z;
+    return fits(branches_);
+  }
+
+  [[nodiscard]] Branch branch_of(std::size_t k, const switching::PointVertex& vertex) const {
+    using switching::Face;
+    const int i = touching_[k];
+    const Face face = vertex.faces[static_cast<std::size_t>(i)];
+    const bool is_pushed = pushes(k) || vertex.at_upper[static_cast<std::size_t>(i)];
+    Branch branch{face == Face::open && !is_pushed ? Branch::Normal::open
+                  : is_pushed                      ? Branch::Normal::pushed
+                                                   : Branch::Normal::held};
+    if (friction(i) == 0.0 || branch.normal == Branch::Normal::open) return branch;
+    const Vector along = slip(i);
+    branch.sticks = face == Face::stick;
+    if (!along.is_zero()) {
+      branch.direction = along.normalized();
+    } else if (face == Face::slip) {
+      branch.begins = true;
+    } else if (!branch.sticks) {
+      branch.direction = Vector{face == Face::slip_up ? 1.0 : -1.0, 0.0};
+    }
+    return branch;
   }
 
   /// Up to the next change of a sign, or to where all stored work is given back.

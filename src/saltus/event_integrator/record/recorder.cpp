@@ -344,10 +344,11 @@ void Recorder::jumped(double t, std::span<const ExecutedJump> jumps, const ModeS
     entry.of_jumps = true;
     add_surface(entry, entry.entry);
     set_states(entry, jumps[k].x, jumps[k].x_after);
-    const std::string& open = jumps[k].why_open;
+    const std::string& open = jumps[k].why_open.text;
     add_reason(entry, open.empty() ? why_executed(layout_.jumps[entry.entry]) : std::string_view(open));
     if (k == 0 && before != nullptr) entry.mode = number(*before);
     if (k + 1 == jumps.size()) add_transition(entry, transition);
+    if (jumps[k].why_open.is_undecided) entry.unique = std::nullopt;
     if (!open.empty()) entry.unique = false;
   }
 }

@@ -12,6 +12,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/contact/open_motion.hpp"
 #include "saltus/event_integrator/decide/transition.hpp"
 #include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
@@ -33,7 +34,7 @@ struct Passage {
 struct ExecutedJump {
   int jump = 0;
   std::vector<double> x, x_after;
-  std::string why_open;  ///< of contacts: why more than one motion follows; empty if only one does
+  OpenMotion why_open;  ///< of contacts
 };
 
 class Recorder {

@@ -24,7 +24,7 @@ class StandardForm {
  public:
   StandardForm(const PointProblem& problem, const std::vector<std::vector<Face>>& options)
       : problem_(problem), options_(options) {
-    const Index r = problem.constant.size(), most = 3 * r;
+    const Index r = problem.constant.size(), most = 4 * r;
     of_u_.set_zero(r, most);
     given_.set_zero(r);
     of_y_.set_zero(most, r);
@@ -36,19 +36,23 @@ class StandardForm {
     }
   }
 
-  [[nodiscard]] std::optional<std::vector<Face>> faces() const {
+  [[nodiscard]] std::optional<PointVertex> vertex() const {
     const Matrix of_y = of_y_.top_rows(unknowns_), of_u = of_u_.left_cols(unknowns_);
     const Matrix effects = of_y * (problem_.effects * of_u) + own_.block(0, 0, unknowns_, unknowns_);
     const Vector constant = of_y * (problem_.constant + problem_.effects * given_) + right_.head(unknowns_);
     std::vector<bool> basic;
-    if (!complementary_pivots(effects, constant, &basic)) return std::nullopt;
-    std::vector<Face> faces(problem_.blocks.size(), Face::open);
-    for (std::size_t b = 0; b < faces.size(); ++b) {
-      if (problem_.blocks[b].kind == Block::Kind::absent) continue;
-      const Face face = face_of(problem_.blocks[b], options_[b], places_[b], basic);
-      faces[b] = contains(options_[b], face) ? face : options_[b].front();
+    const auto u = complementary_pivots(effects, constant, &basic);
+    if (!u) return std::nullopt;
+    const std::size_t blocks = problem_.blocks.size();
+    PointVertex found{std::vector<Face>(blocks, Face::open), std::vector<bool>(blocks, false), of_u * *u + given_};
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const Block& block = problem_.blocks[b];
+      if (block.kind == Block::Kind::absent) continue;
+      const Face face = face_of(block, options_[b], places_[b], basic);
+      found.faces[b] = contains(options_[b], face) ? face : options_[b].front();
+      found.at_upper[b] = block.is_bounded && places_[b].normal >= 0 && basic[at(places_[b].normal + 1)];
     }
-    return faces;
+    return found;
   }
 
  private:
@@ -63,47 +67,50 @@ class StandardForm {
     return largest > 0.0 ? 1.0 / std::sqrt(largest) : 1.0;
   }
 
+  Index take(int row, double factor) {
+    of_u_(row, unknowns_) = of_y_(unknowns_, row) = factor;
+    return unknowns_++;
+  }
+
   void add(const Block& block, const std::vector<Face>& options, Places& places) {
     const double unit = unit_of(block);
-    const auto take = [&](int row, double sign) {
-      of_u_(row, unknowns_) = of_y_(unknowns_, row) = sign * unit;
-      return unknowns_++;
-    };
     switch (block.kind) {
       case Block::Kind::absent:
         return;
       case Block::Kind::free:
-        take(block.row, 1.0);
-        take(block.row, -1.0);
+        take(block.row, unit);
+        take(block.row, -unit);
         return;
       case Block::Kind::box:
-        bound(places.normal = take(block.row, 1.0), (block.upper - block.lower) / unit);
+        bound(places.normal = take(block.row, unit), (block.upper - block.lower) / unit);
         given_(block.row) = block.lower;
         return;
       case Block::Kind::half_line:
-        if (contains(options, Face::closed)) places.normal = take(block.row, 1.0);
-        return;
       case Block::Kind::friction:
         break;
     }
     if (options == std::vector{Face::open}) return;
-    const Index normal = places.normal = block.is_given ? -1 : take(block.row, 1.0);
-    if (block.is_given) given_(block.row) = 1.0;
+    if (block.is_given) {
+      given_(block.row) = 1.0;
+    } else {
+      places.normal = take(block.row, unit);
+      if (block.is_bounded) bound(places.normal, block.upper / unit);
+    }
+    if (block.kind == Block::Kind::friction) add_friction(block, options, unit, places);
+  }
+
+  void add_friction(const Block& block, const std::vector<Face>& options, double unit, Places& places) {
     for (std::size_t k = 0; k < 2 && block.tangents[k] >= 0; ++k) {
       const double slip = slip_part(block, options, k);
       const int row = block.tangents[k];
       const bool turns = std::isnan(slip);
       const double share = -block.friction * (turns ? 1.0 : slip);
-      if (normal < 0) {
-        given_(row) = share;
-      } else {
-        of_u_(row, normal) = share * unit;
-      }
+      (block.is_given ? given_(row) : of_u_(row, places.normal)) = block.is_given ? share : share * unit;
       if (!turns) continue;
-      const Index above = places.above[k] = take(row, 1.0);
+      const Index above = places.above[k] = take(row, unit);
       const double edge = 2.0 * block.friction;
-      bound(above, normal < 0 ? edge / unit : 0.0);
-      if (normal >= 0) own_(above + 1, normal) = edge;
+      bound(above, block.is_given ? edge / unit : 0.0);
+      if (!block.is_given) own_(above + 1, places.normal) = edge;
     }
   }
 
@@ -151,9 +158,9 @@ class StandardForm {
 
 }  // namespace
 
-std::optional<std::vector<Face>> faces_by_pivots(const PointProblem& problem,
-                                                 const std::vector<std::vector<Face>>& options) {
-  return StandardForm(problem, options).faces();
+std::optional<PointVertex> vertex_by_pivots(const PointProblem& problem,
+                                            const std::vector<std::vector<Face>>& options) {
+  return StandardForm(problem, options).vertex();
 }
 
 }  // namespace saltus::switching

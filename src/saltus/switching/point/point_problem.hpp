@@ -38,7 +38,8 @@ struct Block {
   double friction = 0.0;
   bool is_given = false;             ///< of friction: the normal part is 1, whatever its y
   std::array<double, 2> velocity{};  ///< of slip; 0: at rest
-  double lower = 0.0, upper = 1.0;
+  double lower = 0.0, upper = 1.0;   ///< of a box, and of a normal part that is bounded
+  bool is_bounded = false;           ///< of friction and half lines: z_n <= upper; only pivots know of it
 
   [[nodiscard]] bool in_plane() const { return tangents[1] >= 0; }
   [[nodiscard]] bool is_at_rest() const { return velocity[0] == 0.0 && velocity[1] == 0.0; }

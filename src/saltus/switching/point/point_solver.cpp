@@ -7,7 +7,6 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
-#include "saltus/switching/point/faces_by_pivots.hpp"
 #include "saltus/switching/point/open_unknowns_internal.hpp"
 
 namespace saltus::switching {
@@ -164,8 +163,8 @@ void search_some(const PointProblem& problem, const Options& options, const Face
     return true;
   };
   if (are_options()) static_cast<void>(add(hints.before));
-  auto faces = faces_by_pivots(problem, options);
-  if (!faces || !add(*faces)) return;
+  const auto pivoted = vertex_by_pivots(problem, options);
+  if (!pivoted || !add(pivoted->faces)) return;
   const PointSolution vertex = solution;
   static_cast<void>(add(widest_faces(problem, options, vertex)));
   std::stable_partition(found.all.begin(), found.all.end(),

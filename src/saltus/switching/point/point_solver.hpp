@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "saltus/switching/point/faces_by_pivots.hpp"
 #include "saltus/switching/point/on_faces.hpp"
 #include "saltus/switching/point/point_problem.hpp"
 
