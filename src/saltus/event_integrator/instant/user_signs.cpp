@@ -66,7 +66,7 @@ void turn_by_mode_behind(const InstantContext& c, const Located& located) {
   point.at_zero.insert(point.at_zero.end(), point.touched.begin(), point.touched.end());
   std::sort(point.at_zero.begin(), point.at_zero.end());
   const Transition next = decide_mode(run.switching, here.state, point);
-  if (next.termination != Termination::completed) return;
+  if (next.termination != result::Termination::completed) return;
   const auto turn = [&](std::size_t place, int sign) { run.search.set_user_sign(place, sign, here.t, here.x.data()); };
   for (const std::size_t place : turning) {
     turn(place, side_ahead(run.switching, next.state, point, here.x, functions[place].index));
@@ -88,7 +88,7 @@ std::vector<std::size_t> fire_user_events(const InstantContext& c, const std::ve
   for (const std::size_t event : fired) {
     run.recorder.user(here.t, {x_before, here.x, before, here.state}, static_cast<int>(event));
     if (run.user_events.stops(event) && run.running) {
-      run.end(Termination::stopped_by_event,
+      run.end(result::Termination::stopped_by_event,
               fmt::format("stopped by the event '{}'", run.switching.layout.events[event].name));
     }
   }
