@@ -7,6 +7,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/base/stop.hpp"
 #include "saltus/switching/point/open_unknowns_internal.hpp"
 
 namespace saltus::switching {
@@ -119,6 +120,7 @@ void search_all(const PointProblem& problem, const Options& options, PointSoluti
   std::vector<Face> faces(options.size());
   PointSolution solution;
   for (;;) {
+    heed_stop();
     for (std::size_t b = 0; b < options.size(); ++b) faces[b] = options[b][number[b]];
     if (solve_least(problem, faces, solution) &&
         (found.all.size() < enough || moves_otherwise(problem, found, solution)))
