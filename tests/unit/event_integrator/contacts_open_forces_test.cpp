@@ -449,5 +449,45 @@ TEST(ContactsWithDependentRows, ADiscInACornerStaysThere) {
   }
 }
 
+/// Two boxes of mass 1 on each other, friction 0.5 below, 0.4 between; 3 t pulls the lower one. How the corners share
+/// friction is open: what comes to an edge is the share, and nothing slips before all do.
+TEST(ContactsWithDependentRows, AStackSlipsOnceNoForcesHoldIt) {
+  constexpr double half = 0.25, h = 0.05, fall = 9.81;
+  for (const double until : {4.0, 5.0, 6.5}) {
+    SCOPED_TRACE(until);
+    model::Builder model("stack");
+    std::vector<SX> q;
+    const std::vector<std::string> names{"x1", "x2", "z1", "z2", "q1", "q2"},
+        speeds{"u1", "u2", "v1", "v2", "w1", "w2"};
+    for (const auto& name : names) q.push_back(model.state(name, {name == "z1" ? h : name == "z2" ? 3.0 * h : 0.0}));
+    for (const auto& name : speeds) static_cast<void>(model.state(name, {0.0}));
+    constexpr double inertia = 0.065 / 3.0;
+    model.mechanics({.positions = names,
+                     .velocities = speeds,
+                     .mass = SX::diag(SX(std::vector<double>{1.0, 1.0, 1.0, 1.0, inertia, inertia})),
+                     .force = {{"v1", -fall}, {"v2", -fall}, {"u1", 3.0 * model.time()}}});
+    for (const double side : {-half, half}) {
+      const std::string suffix = side < 0.0 ? "l" : "r";
+      const SX down = side * sin(q[4]) - h * cos(q[4]);
+      model.contact("below_" + suffix, q[2] + down, {.tangent = {{"x1", 1.0}, {"q1", -down}}, .friction = 0.5});
+      const SX x = q[1] + side * cos(q[5]) + h * sin(q[5]) - q[0], z = q[3] + side * sin(q[5]) - h * cos(q[5]) - q[2];
+      const SX along = cos(q[4]), up = sin(q[4]);
+      const SX turn = -along * (side * sin(q[5]) - h * cos(q[5])) + up * (side * cos(q[5]) + h * sin(q[5]));
+      model.contact(
+          "between_" + suffix, along * z - up * x - h,
+          {.tangent =
+               {{"x2", along}, {"z2", up}, {"x1", -along}, {"z1", -up}, {"q2", turn}, {"q1", along * z - up * x}},
+           .friction = 0.4});
+    }
+    const auto run = run_model(model, until, {1e-8, 1e-10});
+    ASSERT_EQ(run.status.termination, result::Termination::completed) << run.status.message;
+    ASSERT_EQ(run.events.size(), until < 5.5 ? 1U : 2U);
+    EXPECT_EQ(run.events[0].kind, EventKind::slip);
+    EXPECT_NEAR(run.events[0].t, fall / 3.0, 1e-7);
+    EXPECT_EQ(run.events[0].surfaces, (std::vector<std::string>{"below_l", "below_r"}));
+    EXPECT_NEAR(run.events.back().t, until < 5.5 ? fall / 3.0 : 0.6 * fall, 1e-7);
+  }
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator::testing
