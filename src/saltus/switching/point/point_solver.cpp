@@ -47,37 +47,6 @@ std::size_t active_blocks(const PointProblem& problem) {
                           [](const Block& block) { return block.kind != Block::Kind::absent; }));
 }
 
-/// The only z of half lines whose rows do not depend on each other, by an active set: who pulls most opens, who closes
-/// most is closed. False where that finds nothing.
-bool find_only(const PointProblem& problem, PointSolution& found) {
-  HeldRows rows(problem.constant.size());
-  const std::size_t blocks = problem.blocks.size();
-  found.faces.assign(blocks, Face::open);
-  found.directions.assign(blocks, linalg::Vector::zero(2));
-  found.idle.clear();
-  for (std::size_t b = 0; b < blocks; ++b) {
-    if (problem.blocks[b].kind == Block::Kind::half_line) found.faces[b] = Face::closed;
-  }
-  for (std::size_t step = 0; step < 4 * blocks; ++step) {
-    if (!solve_rows(problem, rows, found) || found.is_open) return false;
-    const auto [y, z] = sizes_of(problem, found);
-    double worst = -1e-12;
-    Face* changes = nullptr;
-    for (std::size_t b = 0; b < blocks; ++b) {
-      const Block& block = problem.blocks[b];
-      if (block.kind == Block::Kind::absent) continue;
-      Face& face = found.faces[b];
-      const double left = face == Face::open ? found.y(block.row) / y : found.z(block.row) / z;
-      if (!(left < worst)) continue;
-      worst = left;
-      changes = &face;
-    }
-    if (changes == nullptr) return true;
-    *changes = *changes == Face::open ? Face::closed : Face::open;
-  }
-  return false;
-}
-
 /// Half lines whose rows do not depend on each other have one y, by one z: who clearly presses is closed in all
 /// solutions, who clearly leaves is open.
 void drop_impossible(const PointProblem& problem, Options& options) {
@@ -85,9 +54,15 @@ void drop_impossible(const PointProblem& problem, Options& options) {
   const auto is_other = [](const Block& block) {
     return block.kind != Block::Kind::absent && block.kind != Block::Kind::half_line;
   };
-  PointSolution found;
   if (active_blocks(problem) <= few || std::any_of(problem.blocks.begin(), problem.blocks.end(), is_other)) return;
-  if (!find_only(problem, found)) return;
+  std::vector<Face> all;
+  for (const Block& block : problem.blocks) {
+    all.push_back(block.kind == Block::Kind::absent ? Face::open : Face::closed);
+  }
+  PointSolution found;
+  if (!solve_least(problem, all, found) || found.is_open) return;
+  const auto vertex = vertex_by_pivots(problem, options);
+  if (!vertex || !solve_least(problem, vertex->faces, found) || found.margin < face_holds) return;
   const auto [y, z] = sizes_of(problem, found);
   constexpr double clear = 1e-3;
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
