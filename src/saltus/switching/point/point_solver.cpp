@@ -107,17 +107,19 @@ void search_all(const PointProblem& problem, const Options& options, PointSoluti
   found.complete = true;
 }
 
-/// Of a solution: what does not move is held, as far as its options go.
+/// Of a solution: what does not move is held, as far as its options go; what slips does so along its y.
 std::vector<Face> widest_faces(const PointProblem& problem, const Options& options, const PointSolution& solution) {
-  constexpr double moved = 1e-9;
+  constexpr double moved = 1e-8;
   const double still = moved * sizes_of(problem, solution).y;
   auto faces = solution.faces;
   for (std::size_t b = 0; b < faces.size(); ++b) {
     const Block& block = problem.blocks[b];
     if (block.kind == Block::Kind::absent || std::abs(solution.y(block.row)) > still) continue;
-    const bool slides = block.along(solution.y).max_abs() > still;
-    for (const Face wider : {Face::closed, Face::stick, Face::inside}) {
-      if (contains(options[b], wider) && (wider != Face::stick || !slides)) faces[b] = wider;
+    const linalg::Vector along = block.along(solution.y);
+    const bool slides = along.max_abs() > still;
+    const Face slip = block.in_plane() ? Face::slip : along[0] > 0.0 ? Face::slip_up : Face::slip_down;
+    for (const Face wider : {Face::closed, Face::inside, slides ? slip : Face::stick}) {
+      if (contains(options[b], wider)) faces[b] = wider;
     }
   }
   return faces;
@@ -141,8 +143,12 @@ void search_some(const PointProblem& problem, const Options& options, const Face
   };
   if (are_options()) static_cast<void>(add(hints.before));
   const auto pivoted = vertex_by_pivots(problem, options);
-  if (!pivoted || !add(pivoted->faces)) return;
-  const PointSolution vertex = solution;
+  if (!pivoted) return;
+  PointSolution vertex;
+  vertex.faces = pivoted->faces;
+  vertex.z = pivoted->z;
+  vertex.y = problem.constant + problem.effects * vertex.z;
+  static_cast<void>(add(vertex.faces));
   static_cast<void>(add(widest_faces(problem, options, vertex)));
   std::stable_partition(found.all.begin(), found.all.end(),
                         [](const PointSolution& one) { return one.margin > -face_holds; });
