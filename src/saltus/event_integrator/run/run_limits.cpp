@@ -186,19 +186,23 @@ bool Run::follow_spiral(const SeriesLimit& limit, Behind wanted) {
 }
 
 /// If the jumps up to here have a limit that nothing else precedes, the run goes on from there. Where the last bounce
-/// has come to rest at once, as no more was left of it than rounding, that is the limit: it is no term of the sequence,
+/// has come to rest at once, as no more was left of it than rounding, the limit is here: it is no term of the sequence,
 /// and what would be extrapolated with it has another momentum.
 void Run::accumulate_jumps() {
   if (run_.jumps.none()) return;
-  if (auto& last_bounces = event().last_bounces; !last_bounces.empty()) {
-    jump_accumulation_.clear();
-    drop_repeats(last_bounces);
-    const Position& here = run_.here;
-    return run_.recorder.accumulated(here.t, last_bounces, {here.x, here.x, here.state, here.state},
-                                     "no more is left of these impacts than rounding");
+  const Position& here = run_.here;
+  auto& last_bounces = event().last_bounces;
+  auto limit = jump_accumulation_.limit();
+  if (limit && !last_bounces.empty()) {
+    limit->t = here.t;
+    limit->x = here.x;
   }
-  const auto limit = jump_accumulation_.limit();
-  if (limit && limit->t <= std::min(run_.options.until, run_.jumps.next_time())) follow_limit_of_jumps(*limit);
+  if (limit && limit->t <= std::min(run_.options.until, run_.jumps.next_time())) return follow_limit_of_jumps(*limit);
+  if (last_bounces.empty()) return;
+  jump_accumulation_.clear();
+  drop_repeats(last_bounces);
+  run_.recorder.accumulated(here.t, last_bounces, {here.x, here.x, here.state, here.state},
+                            "no more is left of these impacts than rounding");
 }
 
 /// The limit of jumps comes next, with the guards that were at 0 at each of them last.

@@ -28,8 +28,8 @@ struct Numbers {
   std::vector<double> values_;
 };
 
-/// x' = A x + b + sum_j c_j sgn(n_j . x - d_j), with jumps that throw x_i back where it leaves a ball; surfaces and jumps
-/// in the order that is given.
+/// x' = A x + b + sum_j c_j sgn(n_j . x - d_j), with jumps that throw x_i back where it leaves a ball; surfaces and
+/// jumps in the order that is given.
 Integration run(const Numbers& numbers, const std::vector<int>& order) {
   model::Builder model("permuted");
   std::vector<SX> x;
