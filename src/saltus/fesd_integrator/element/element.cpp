@@ -1,9 +1,11 @@
 #include "saltus/fesd_integrator/element/element.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/base/contracts.hpp"
 #include "saltus/base/stop.hpp"
 #include "saltus/fesd_integrator/element/element_equations_internal.hpp"
@@ -18,6 +20,34 @@ using ConstVector = linalg::ConstView;
 using linalg::Index;
 
 constexpr int most_newton_steps = 40;
+constexpr double negligible_defect = 1e-13;  // a few roundings of the largest terms of a stage
+
+constexpr double stalls = 0.25;  // of the step before: roundings do not shrink
+
+/// Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are
+/// roundings. With the matrix of the step before, a step leaves 2 change / before of itself.
+bool is_converged(double change, double before, bool again, double rounding) {
+  const bool quadratic =
+      again ? change * change <= 1e-17 * before && std::isfinite(before) : change <= 1e-9 && before <= 1e-3;
+  return change <= 1e-15 || quadratic || (change <= rounding && change >= stalls * before);
+}
+
+/// How far the stages are from x_0 + h sum_l a_ml f_l, in sizes of the states. Newton steps measure states: where what
+/// slides holds them, selections may still be far from theirs.
+double defect_of(const Element& element, const discretization::ButcherTableau& tableau) {
+  const Index n_x = index(element.x.size()), n_s = tableau.stages();
+  double defect = 0.0;
+  for (Index m = 0; m < n_s; ++m) {
+    for (Index i = 0; i < n_x; ++i) {
+      double sum = element.x[at(i)] - element.stage_states[at(m * n_x + i)];
+      for (Index l = 0; l < n_s; ++l) {
+        sum += element.h * tableau.A(m, l) * element.stage_slopes[at(l * n_x + i)];
+      }
+      defect = std::max(defect, std::abs(sum));
+    }
+  }
+  return element.size > 0.0 ? defect / element.size : defect;
+}
 
 }  // namespace
 
@@ -65,18 +95,19 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     equations.forget_matrix();
     return outcome;
   };
-  double before = std::numeric_limits<double>::infinity();
+  double before = std::numeric_limits<double>::infinity(), defect_before = before;
   Matrix matrix = equations.first_matrix(h);
   for (int iteration = 0;; ++iteration) {
     if (iteration == most_newton_steps) return failed(Outcome::not_converged);
     const auto change = equations.step(held, matrix, element);
     if (!change) return failed(Outcome::not_finite);
-    // Quadratic convergence: a step of 1e-9 leaves 1e-18 times the curvature; and steps that no longer shrink are
-    // roundings. With the matrix of the step before, a step leaves 2 change / before of itself.
     const bool again = matrix == Matrix::of_the_step_before;
-    const bool quadratic =
-        again ? *change * *change <= 1e-17 * before && std::isfinite(before) : *change <= 1e-9 && before <= 1e-3;
-    if (*change <= 1e-15 || quadratic || (*change <= equations.rounding() && *change >= 0.25 * before)) break;
+    if (is_converged(*change, before, again, equations.rounding())) {
+      if (!equations.finish(held, element)) return failed(Outcome::not_converged);
+      const double defect = defect_of(element, tableau());
+      if (defect <= negligible_defect || defect >= stalls * defect_before) break;
+      defect_before = defect;
+    }
     constexpr double near = 1e-4, shrinks = 0.1;
     const bool once_more =
         equations.saves_factors() ? !again || *change <= shrinks * before : !again && *change <= near;
@@ -84,7 +115,6 @@ ElementSolver::Outcome ElementSolver::solve(const Point& left, double h, std::sp
     matrix = keep ? Matrix::of_the_step_before : Matrix::its_own;
     before = *change;
   }
-  if (!equations.finish(held, element)) return Outcome::not_converged;
   implementation_->put_to_rest(sets, held, element);
   return ConstVector(element.end.data(), static_cast<Index>(element.end.size())).all_finite() ? Outcome::solved
                                                                                               : Outcome::not_finite;
