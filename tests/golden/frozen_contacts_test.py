@@ -24,6 +24,84 @@ name = "c"
 until = {until}
 """
 
+# Two bodies hit a heavier one from both sides at one time.
+BOTH_SIDES = time_freezing_test.HEAD + """[states]
+a = -4
+b = 0
+c = 4
+va = 2
+vb = 0
+vc = -2
+[mechanics]
+positions = ["a", "b", "c"]
+velocities = ["va", "vb", "vc"]
+mass = [["1", "0", "0"], ["0", "3", "0"], ["0", "0", "1"]]
+[[contacts]]
+name = "left"
+gap = "b - a - 1"
+restitution = 0.7
+[[contacts]]
+name = "right"
+gap = "c - b - 1"
+restitution = 0.7
+[simulate]
+until = 3
+"""
+
+# A box lands flat on two feet of different friction, beside each other and below the centre of mass.
+FLAT_BOX = time_freezing_test.HEAD + """[states]
+x = 0
+z = 0.7371
+phi = 0
+vx = 1.3
+vz = -0.31
+w = 0
+[mechanics]
+positions = ["x", "z", "phi"]
+velocities = ["vx", "vz", "w"]
+mass = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "0.4"]]
+force = {{ vz = -9.81 }}
+[[contacts]]
+name = "l"
+gap = "z - 0.6*phi - 0.1"
+tangent = {{ x = "1", phi = "0.5" }}
+friction = {}
+[[contacts]]
+name = "r"
+gap = "z + 0.8*phi - 0.1"
+tangent = {{ x = "1", phi = "0.5" }}
+friction = {}
+[simulate]
+until = 0.9
+"""
+
+# A disc hits two that touch.
+THREE_DISCS = time_freezing_test.HEAD + """[states]
+x1 = -3.1
+y1 = 0
+x2 = 0
+y2 = 0.5
+x3 = 0
+y3 = -0.5
+u1 = 2
+v1 = 0
+u2 = 0
+v2 = 0
+u3 = 0
+v3 = 0
+[mechanics]
+positions = ["x1", "y1", "x2", "y2", "x3", "y3"]
+velocities = ["u1", "v1", "u2", "v2", "u3", "v3"]
+""" + "".join(f"""[[contacts]]
+name = "c{i}{j}"
+gap = "sqrt((x{i} - x{j})^2 + (y{i} - y{j})^2) - 1"
+restitution = RESTITUTION
+""" for i, j in ((1, 2), (1, 3), (2, 3))) + "[simulate]\nuntil = 3\n"
+
+PULLED_BLOCK = PLANE.format(
+    x=0, z=0, vx=0, vz=0, until=3, mechanics='force = { vx = "15*(0.4*t - x) - 0.3*vx", vz = "-9.81 - 3*cos(2*t)" }',
+    contact='gap = "z"\ntangent = { x = "1" }\nfriction = 0.25')
+
 
 def forced(name, force, horizon):
     """An example of [optimize] with a force as a function of t for its control."""
@@ -34,6 +112,38 @@ def forced(name, force, horizon):
 
 
 class FrozenContacts(time_freezing_test.FrozenTest):
+    def test_contacts_that_close_at_once_are_one_impact(self):
+        # Whatever the rounding, which other steps change. One behind the other they would end elsewhere, which is said.
+        models = [BOTH_SIDES] + [THREE_DISCS.replace("RESTITUTION", e) for e in ("0",)]
+        models += [FLAT_BOX.format(*friction) for friction in ((0.2, 0.6), (0.6, 0.6), (0.3, 0))]
+        for model in tool.some(models, 1):
+            event = self.simulated(model, "event")
+            for steps in (37, 100):
+                with self.subTest(model=model, steps=steps):
+                    frozen = self.simulated(model, "fesd", "--set", f"simulate.fesd.steps={steps}")
+                    for expected, found in zip(event["final"]["x"], frozen["final"]["x"]):
+                        self.assertAlmostEqual(expected, found, delta=1e-9)
+                    first, found = event["events"][0], frozen["events"][0]
+                    self.assertEqual((first["kind"], first["unique"]), (found["kind"], found["unique"]))
+                    for a, b in zip(first["x_after"], found["x_after"]):
+                        self.assertAlmostEqual(a, b, delta=1e-9)
+
+    def test_impacts_of_bodies_apart_at_one_time_are_unique(self):
+        # Neither moves what the other one touches.
+        falling = PLANE.format(x=1, z=1, vx=-1, vz=-1, mechanics="", until=1.5, contact='gap = "x"\nrestitution = 0.5')
+        falling = falling.replace("[simulate]", '[[contacts]]\nname = "d"\ngap = "z"\nrestitution = 0.5\n[simulate]')
+        _, frozen = self.assert_agree(falling, 1e-12)
+        self.assertEqual([e["unique"] for e in frozen["events"]], [True])
+
+    def test_what_sticks_stands_in_every_row(self):
+        # Inside elements, too: from t = 0 to 0.4803 and from 1.9529 to 2.2043.
+        block = self.simulated(PULLED_BLOCK, "fesd", "--set", "simulate.fesd.stages=4", "--set", "simulate.fesd.steps=100",
+                               "--set", "simulate.output.every=0.01")
+        rows = block["trajectory"]
+        sticking = [abs(x[2]) for t, x in zip(rows["t"], rows["x"]) if t < 0.48 or 1.953 < t < 2.204]
+        self.assertGreater(len(sticking), 70)
+        self.assertLess(max(sticking), 1e-12)
+
     def test_bodies_at_rest_at_the_start_beside_what_is_idle(self):
         # What a wall far away, or a hysteresis that waits, does has no equation there.
         bodies = time_freezing_test.HEAD + """[states]

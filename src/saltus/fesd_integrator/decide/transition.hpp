@@ -1,6 +1,7 @@
 // The next active set at a point: by enumeration of the patterns that are possible there.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -55,8 +56,9 @@ struct Decision {
 /// functions than are enumerated those slide on that slid before and did not end; whether others continue the solution,
 /// too, is not decided then.
 ///
-/// The order of the answers: fewest changes from the set before; then, one function after the other, sliding,
-/// above, below (at a start above, below, sliding; regions: fewest active ones, then their numbers).
+/// The order of the answers: fewest functions that came to zero together and do not cross it, or stood there and
+/// change, then fewest changes from the set before; then, one function after the other, sliding, above, below (at a
+/// start above, below, sliding; regions: fewest active ones, then their numbers).
 class Transition {
  public:
   Transition(const discretization::StageKernel& kernel, std::span<const Part> parts, ElementSolver& solver);
@@ -119,8 +121,9 @@ class Transition {
   };
   [[nodiscard]] bool leave_idle_sides(const Group& group, const std::vector<Choice>& choices,
                                       Combination& combination) const;
-  [[nodiscard]] std::pair<int, int> rank(const Decision& decision, const Group& group,
-                                         const std::vector<int>& pattern) const;
+  void find_approaches(const Decision& decision, const std::vector<int>& members);
+  using Rank = std::array<int, 3>;
+  [[nodiscard]] Rank rank(const Decision& decision, const Group& group, const std::vector<int>& pattern) const;
   [[nodiscard]] std::vector<std::vector<int>> combinations(const Group& group, const Decision& decision, Asked asked,
                                                            Rule rule) const;
   void find_patterns(const Decision& decision, Group& group, Rule rule) const;
@@ -196,6 +199,9 @@ class Transition {
   std::vector<Group> groups_;
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
+  /// Comes to zero alone, or not beside others; with others; stands at zero.
+  enum class Approach { alone, together, stands };
+  std::vector<Approach> approaches_;
   std::vector<int> kept_;  ///< functions that slide on unasked
   Rests rests_;
   bool depends_ = false;  ///< whether a group of the current decision is dependent

@@ -162,6 +162,7 @@ bool Transition::find_groups(const Decision& decision, Rule rule, std::vector<in
   if (!members || members->empty()) return members.has_value();
   rests_.find({decision.t, decision.x, decision.held, decision.size}, *members);
   auto groups = find_influences(decision, modes, *members);
+  find_approaches(decision, *members);
   const bool by_parts = kernel_.pattern().is_sparse && decision.before != nullptr && decision.ended >= 0;
   if (by_parts) keep_sliding(decision, groups, modes);
   for (auto& group : groups) {
@@ -269,28 +270,6 @@ std::vector<std::vector<int>> Transition::combinations(const Group& group, const
   return patterns;
 }
 
-/// How many functions, regions or surfaces are in other modes than before, and how many regions are active.
-std::pair<int, int> Transition::rank(const Decision& decision, const Group& group,
-                                     const std::vector<int>& pattern) const {
-  int changes = 0, active = 0;
-  for (std::size_t k = 0; k < pattern.size(); ++k) {
-    const Part& part = parts_[at(part_of_[at(group.members[k])])];
-    active += part.simplex && pattern[k] == 0 ? 1 : 0;
-    if (decision.before == nullptr) continue;
-    if (part.surfaces == 0) {
-      changes += decision.before->modes()[at(group.members[k])] != pattern[k] ? 1 : 0;
-    } else if (k == 0 || part_of_[at(group.members[k - 1])] != part_of_[at(group.members[k])]) {
-      const auto before = modes_before(decision, part);
-      const auto modes = surface_modes(part, [&](int region) {
-        const auto place = std::find(group.members.begin(), group.members.end(), region);
-        return place != group.members.end() && pattern[at(place - group.members.begin())] == 0;
-      });
-      for (std::size_t s = 0; s < modes.size(); ++s) changes += modes[s] != before[s] ? 1 : 0;
-    }
-  }
-  return {changes, active};
-}
-
 /// All combinations, or of too many members those in which what slid before and did not end slides on: others may
 /// continue the solution, too.
 void Transition::find_patterns(const Decision& decision, Group& group, Rule rule) const {
@@ -313,7 +292,7 @@ void Transition::find_patterns(const Decision& decision, Group& group, Rule rule
     }
     return false;
   });
-  std::vector<std::pair<std::pair<int, int>, std::size_t>> order;
+  std::vector<std::pair<Rank, std::size_t>> order;
   for (std::size_t i = 0; i < patterns.size(); ++i) order.emplace_back(rank(decision, group, patterns[i]), i);
   std::sort(order.begin(), order.end());
   std::vector<std::vector<int>> sorted;

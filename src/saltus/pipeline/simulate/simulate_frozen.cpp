@@ -10,6 +10,8 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/symbolic_lock.hpp"
+#include "saltus/evaluation/model_kernel.hpp"
+#include "saltus/event_integrator/impact_ends.hpp"
 #include "saltus/model/decisions.hpp"
 #include "saltus/model/frozen_system.hpp"
 #include "saltus/model/layout_of.hpp"
@@ -103,6 +105,26 @@ void restate_status(double reached, double until, result::Result& run) {
   status.time_reached = ended ? until : reached;
 }
 
+/// Says of impacts whether they are unique, as the event engine says it of the same ones.
+/// @return why the system was not compiled
+std::optional<Error> compare_impacts(const model::System& system, result::Result& run) {
+  const auto is_impact = [](const auto& event) { return event.kind == result::EventKind::impact; };
+  const auto several = system.contacts.contacts.size() > 1;
+  if (!several || std::none_of(run.events.begin(), run.events.end(), is_impact)) return std::nullopt;
+  const auto kernel = evaluation::ModelKernel::compile(system);
+  if (!kernel) return kernel.error();
+  result::Events events;
+  for (result::Event event : run.events) {
+    if (is_impact(event) && event_integrator::may_end_elsewhere(*kernel, event)) {
+      event.unique = false;
+      event.reason += "; impacts one behind the other may end elsewhere";
+    }
+    events.push_back(std::move(event));
+  }
+  run.events = std::move(events);
+  return std::nullopt;
+}
+
 }  // namespace
 
 Expected<result::Result> simulate_frozen(const Simulation& asked) {
@@ -137,6 +159,7 @@ Expected<result::Result> simulate_frozen(const Simulation& asked) {
   restate_status(run->final.x[at(made.freezing->clock)], until, *run);
   const double standing = standing_part * (until - from) / static_cast<double>(options.fesd.steps);
   run->switching_functions = to_physical_time(model::layout_of(made), *made.freezing, standing, *run);
+  if (auto error = compare_impacts(system, *run)) return tl::unexpected(*error);
   std::set<double> event_times;
   const bool has_event_rows = options.event_rows || options.continuous;
   for (std::size_t i = 0; has_event_rows && i < run->events.size(); ++i) event_times.insert(run->events.t(i));

@@ -1,0 +1,67 @@
+#include "saltus/event_integrator/impact_ends.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "saltus/base/at.hpp"
+#include "saltus/evaluation/contact_functions.hpp"
+#include "saltus/event_integrator/contact/contact_point.hpp"
+#include "saltus/event_integrator/contact/impact.hpp"
+#include "saltus/event_integrator/contact/impact_orders.hpp"
+#include "saltus/model/layout.hpp"
+
+namespace saltus::event_integrator {
+namespace {
+
+/// The contacts where the impact is, with the velocities of a state.
+ContactPoint contacts_with(const evaluation::ModelKernel& kernel, const result::Event& event, const std::vector<double>& x,
+                           evaluation::ContactValues& values) {
+  const auto& contacts = kernel.layout().contacts;
+  auto state = event.x;
+  for (const int v : kernel.layout().velocities) state[at(v)] = x[at(v)];
+  state.resize(at(kernel.states()), 0.0);
+  const std::vector<double> alpha(at(kernel.switching_functions()), 0.5);
+  kernel.contacts(event.t, state.data(), alpha.data(), values);
+  ContactPoint point;
+  point.influence = values.rows * values.responses;
+  point.velocity = values.velocity;
+  point.restitution.assign(values.restitution.begin(), values.restitution.end());
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const double friction = contacts[i].has_friction ? values.friction(index(i)) : 0.0;
+    point.friction.push_back(std::max(friction, 0.0));
+    point.tangents.push_back(friction > 0.0 ? contacts[i].tangents() : 0);
+    point.has_gap.push_back(contacts[i].has_gap);
+  }
+  return point;
+}
+
+/// Those whose gap is 0 to the errors of a located time.
+std::vector<int> touching_in(const result::Event& event, const linalg::Vector& gaps) {
+  constexpr double located = 1e-12;
+  double size = 0.0;
+  for (const double value : event.x) size = std::max(size, std::abs(value));
+  std::vector<int> touching;
+  for (linalg::Index i = 0; i < gaps.size(); ++i) {
+    if (gaps(i) <= located * size) touching.push_back(static_cast<int>(i));
+  }
+  return touching;
+}
+
+}  // namespace
+
+bool may_end_elsewhere(const evaluation::ModelKernel& kernel, const result::Event& event) {
+  evaluation::ContactValues values;
+  const auto before = contacts_with(kernel, event, event.x, values);
+  const auto touching = touching_in(event, values.gap);
+  if (touching.size() < 2) return false;
+  const auto impulses = impact(before, touching);
+  if (!impulses) return false;
+  if (find_other_end(before, touching, *impulses)) return true;
+  const linalg::Vector together = before.velocity + before.influence * *impulses;
+  const auto after = contacts_with(kernel, event, event.x_after, values);
+  constexpr double same = 1e-5;  // slips in a plane end at eps_t, and elements have errors
+  return (after.velocity - together).max_abs() > same * before.velocity.max_abs();
+}
+
+}  // namespace saltus::event_integrator
