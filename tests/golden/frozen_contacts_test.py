@@ -135,6 +135,23 @@ class FrozenContacts(time_freezing_test.FrozenTest):
         _, frozen = self.assert_agree(falling, 1e-12)
         self.assertEqual([e["unique"] for e in frozen["events"]], [True])
 
+    def test_a_ball_rests_on_the_floor_between_walls(self):
+        # While it hits a wall nothing presses it down, and nothing but second derivatives holds it there.
+        walls = "".join(f'[[contacts]]\nname = "{name}"\ngap = "{gap}"\nrestitution = {{1}}\n'
+                        for name, gap in (("left", "x"), ("right", "1.2 - x")))
+        model = PLANE.format(x=0.4, z=0.8, vx=1.7, vz=0, mechanics='potential = "9.81*z"', until=4,
+                             contact='gap = "z"\nrestitution = {0}')
+        lid = '[[contacts]]\nname = "lid"\ngap = "1.6 - z"\nrestitution = {0}\n'
+        model = model.replace("[simulate]", walls + lid + "[simulate]")
+        for restitution in tool.some(((0.6, 0.85), (0.55, 0.85), (0.55, 0.9), (0.65, 0.9)), 1):
+            with self.subTest(restitution=restitution):
+                bodies = model.format(*restitution)
+                event = self.simulated(bodies, "event")
+                frozen = self.simulated(bodies, "fesd", "--set", "simulate.fesd.stages=4", "--set", "simulate.fesd.steps=200")
+                self.assertEqual(frozen["events"][-1]["surfaces"], event["events"][-1]["surfaces"])
+                for expected, found in zip(event["final"]["x"], frozen["final"]["x"]):
+                    self.assertAlmostEqual(expected, found, delta=1e-9)
+
     def test_what_sticks_stands_in_every_row(self):
         # Inside elements, too: from t = 0 to 0.4803 and from 1.9529 to 2.2043.
         block = self.simulated(PULLED_BLOCK, "fesd", "--set", "simulate.fesd.stages=4", "--set", "simulate.fesd.steps=100",

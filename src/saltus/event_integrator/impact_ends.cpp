@@ -15,8 +15,8 @@ namespace saltus::event_integrator {
 namespace {
 
 /// The contacts where the impact is, with the velocities of a state.
-ContactPoint contacts_with(const evaluation::ModelKernel& kernel, const result::Event& event, const std::vector<double>& x,
-                           evaluation::ContactValues& values) {
+ContactPoint contacts_with(const evaluation::ModelKernel& kernel, const result::Event& event,
+                           const std::vector<double>& x, evaluation::ContactValues& values) {
   const auto& contacts = kernel.layout().contacts;
   auto state = event.x;
   for (const int v : kernel.layout().velocities) state[at(v)] = x[at(v)];

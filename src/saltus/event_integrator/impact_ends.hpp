@@ -7,8 +7,8 @@
 namespace saltus::event_integrator {
 
 /// Returns whether an impact of several contacts may end elsewhere than it does. Its end is compared with the limit of
-/// stiff contacts, dv/dp = M^-1 sum_i lambda_i (n_i - mu_i s_i t_i) over all that touch. That is compared with impacts of
-/// one contact behind the other.
+/// stiff contacts, dv/dp = M^-1 sum_i lambda_i (n_i - mu_i s_i t_i) over all that touch. That is compared with impacts
+/// of one contact behind the other.
 /// @param kernel  of a system with contacts
 /// @param event   an impact, with the states of a result
 /// Cost: that of the impacts in all orders of up to three contacts.

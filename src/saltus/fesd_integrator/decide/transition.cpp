@@ -19,8 +19,11 @@ std::vector<bool> mask_of(const std::vector<int>& members, std::size_t n) {
   return mask;
 }
 
-bool are_near(const std::vector<double>& a, const std::vector<double>& b) {
-  constexpr double near = 1e-7;
+constexpr double same = 1e-7;
+/// Of a selection that is at its bound as the double root of its equations.
+constexpr double same_at_double_root = 1e-4;
+
+bool are_near(const std::vector<double>& a, const std::vector<double>& b, double near = same) {
   if (a.empty() || a.size() != b.size()) return false;
   double size = 1.0;  // of selections
   for (std::size_t i = 0; i < a.size(); ++i) size = std::max({size, std::abs(a[i]), std::abs(b[i])});
@@ -54,6 +57,9 @@ bool Transition::stands_still(const Option& beside, const Option& sliding, const
 /// where psi does not move at all on a side: nothing may determine its selections a little later.
 bool Transition::stands_for(const Option& option, const Option& other, const Group& group) {
   const bool regular = option.regular && other.regular;
+  if (option.regular && !other.regular && slides_beside(other, option) && stands_still(option, other, group)) {
+    return are_near(option.selections, other.selections, same_at_double_root);
+  }
   if (!(regular ? are_near(option.selections, other.selections) : are_near(option.motion, other.motion))) return false;
   if (option.regular != other.regular) return option.regular;
   if (slides_beside(other, option)) return regular && stands_still(option, other, group);

@@ -37,8 +37,7 @@ void Transition::find_approaches(const Decision& decision, const std::vector<int
 
 /// How many functions do not what their approach says. Then how many functions, regions or surfaces are in other modes
 /// than before, and how many regions are active.
-Transition::Rank Transition::rank(const Decision& decision, const Group& group,
-                                  const std::vector<int>& pattern) const {
+Transition::Rank Transition::rank(const Decision& decision, const Group& group, const std::vector<int>& pattern) const {
   int unlikely = 0, changes = 0, active = 0;
   for (std::size_t k = 0; k < pattern.size(); ++k) {
     const Part& part = parts_[at(part_of_[at(group.members[k])])];
