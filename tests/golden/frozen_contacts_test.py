@@ -1,5 +1,6 @@
 """Several contacts at once where time stands still: the method fesd. Event-driven runs are the truth."""
 
+import json
 import math
 
 import time_freezing_test
@@ -103,6 +104,27 @@ PULLED_BLOCK = PLANE.format(
     contact='gap = "z"\ntangent = { x = "1" }\nfriction = 0.25')
 
 
+def pile(count):
+    """Blocks on each other that are shaken from below, with friction."""
+    names = [f"{axis}{i}" for i in range(count) for axis in "xz"]
+    states = "".join(f"{name} = {name[1:] if name[0] == 'z' else 0}\nv{name} = 0\n" for name in names)
+    contacts = "".join(f"""[[contacts]]
+name = "c{i}"
+gap = "z{i}{f' - z{i - 1} - 1' if i else ''}"
+tangent = {{ x{i} = "1"{f', x{i - 1} = "-1"' if i else ''} }}
+friction = 0.4
+""" for i in range(count))
+    return time_freezing_test.HEAD + f"""[states]
+{states}[mechanics]
+positions = {json.dumps(names)}
+velocities = {json.dumps(["v" + name for name in names])}
+potential = "9.81*({" + ".join(name for name in names if name[0] == "z")})"
+force = {{ vx0 = "{8 * count}*sin(3*t)" }}
+{contacts}[simulate]
+until = 2
+"""
+
+
 def forced(name, force, horizon):
     """An example of [optimize] with a force as a function of t for its control."""
     text = (tool.SOURCE / "models/optima" / name).read_text(encoding="utf-8")
@@ -151,6 +173,15 @@ class FrozenContacts(time_freezing_test.FrozenTest):
                 self.assertEqual(frozen["events"][-1]["surfaces"], event["events"][-1]["surfaces"])
                 for expected, found in zip(event["final"]["x"], frozen["final"]["x"]):
                     self.assertAlmostEqual(expected, found, delta=1e-9)
+
+    @tool.not_sanitized
+    def test_blocks_in_a_pile_stick_and_slip(self):
+        # All joints above the first one reach their bounds at once.
+        for count in (2, 4):
+            with self.subTest(count=count):
+                event, frozen = self.simulated(pile(count), "event"), self.simulated(pile(count), "fesd", *FINE)
+                for expected, found in zip(event["final"]["x"], frozen["final"]["x"], strict=True):
+                    self.assertAlmostEqual(expected, found, delta=1e-7)
 
     def test_what_sticks_stands_in_every_row(self):
         # Inside elements, too: from t = 0 to 0.4803 and from 1.9529 to 2.2043.

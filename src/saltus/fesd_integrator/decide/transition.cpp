@@ -230,7 +230,8 @@ std::vector<Continuation> Transition::continuations(const Decision& decision) {
     all.ended = -1;
     return continuations(all);
   }
-  if (found.empty() && (depends_ || rests_.any())) found = continuations(decision, Rule::enumeration);
+  const bool all_decided = std::all_of(groups_.begin(), groups_.end(), [](const auto& group) { return group.decided; });
+  if (found.empty() && (depends_ || rests_.any() || !all_decided)) found = continuations(decision, Rule::enumeration);
   return found.empty() && skipped_ ? continuations(decision, Rule::everything) : found;
 }
 

@@ -52,9 +52,9 @@ struct Decision {
 /// each other, with selections that enter additively, are not enumerated: a complementarity problem says which are slid
 /// on and which are left [ADR 20]; where it leaves that open, the one just behind the point does. In a system of some
 /// size (discretization::StagePattern) only functions that influence the one whose sign ended are asked, and those
-/// whose conditions do not clearly hold; the others slide on. Where nothing continues so, all are asked. Of more
-/// functions than are enumerated those slide on that slid before and did not end; whether others continue the solution,
-/// too, is not decided then.
+/// whose conditions do not clearly hold; the others slide on. Where nothing continues so, all are asked. Of many
+/// functions those slide on at first that slid before and whose selections are not at their bounds. Whether others
+/// continue the solution, too, is not decided then.
 ///
 /// The order of the answers: fewest functions that came to zero together and do not cross it, or stood there and
 /// change, then fewest changes from the set before; then, one function after the other, sliding, above, below (at a
@@ -199,8 +199,8 @@ class Transition {
   std::vector<Group> groups_;
   std::vector<int> part_of_;
   std::vector<int> modes_at_zero_;
-  /// Comes to zero alone, or not beside others; with others; stands at zero.
-  enum class Approach { alone, together, stands };
+  /// Comes to zero alone, or not beside others; with others; stands at zero; slides, with a selection at its bound.
+  enum class Approach { alone, together, stands, at_bound };
   std::vector<Approach> approaches_;
   std::vector<int> kept_;  ///< functions that slide on unasked
   Rests rests_;

@@ -15,6 +15,8 @@ namespace saltus::fesd_integrator {
 namespace {
 
 constexpr std::size_t most_patterns = 20000;
+/// Of more patterns those are asked first in which what slid before and did not end slides on.
+constexpr std::size_t few_patterns = 243;
 
 /// Regions meet where surfaces do: with those on both sides of some of them all that these separate.
 void add_regions_between(const Part& part, std::vector<bool>& meet) {
@@ -187,7 +189,8 @@ std::vector<Transition::Choice> Transition::choices_of(const Decision& decision,
     const bool was_fixed = decision.before != nullptr && decision.before->modes()[at(j)] != 0;
     if (part.surfaces == 0) {
       const auto kind = part.simplex ? Choice::Kind::region : Choice::Kind::function;
-      choices.push_back({kind, k, 0, part.simplex ? -1 : j, j == decision.ended || was_fixed});
+      const bool ends = j == decision.ended || approaches_[at(j)] == Approach::at_bound;
+      choices.push_back({kind, k, 0, part.simplex ? -1 : j, ends || was_fixed});
       continue;
     }
     if (k > 0 && part_of_[at(group.members[k - 1])] == part_of_[at(j)]) continue;
@@ -274,7 +277,8 @@ std::vector<std::vector<int>> Transition::combinations(const Group& group, const
 /// continue the solution, too.
 void Transition::find_patterns(const Decision& decision, Group& group, Rule rule) const {
   group.patterns = combinations(group, decision, Asked::all, rule);
-  if (group.patterns.empty() && decision.before != nullptr && decision.ended >= 0) {
+  const bool are_few = !group.patterns.empty() && (group.patterns.size() <= few_patterns || rule != Rule::dependent);
+  if (!are_few && decision.before != nullptr && decision.ended >= 0) {
     group.patterns = combinations(group, decision, Asked::changed, rule);
     group.decided = false;
   }

@@ -17,8 +17,8 @@ void Transition::find_approaches(const Decision& decision, const std::vector<int
   approaches_.assign(kernel_.selections(), Approach::alone);
   if (decision.before == nullptr) return;
   const ActiveSet& before = *decision.before;
-  const auto is_beside = [&](int j) { return !parts_[at(part_of_[at(j)])].simplex && before.modes()[at(j)] != 0; };
-  if (std::count_if(members.begin(), members.end(), is_beside) < 2) return;
+  const auto is_step = [&](int j) { return !parts_[at(part_of_[at(j)])].simplex; };
+  if (std::count_if(members.begin(), members.end(), is_step) < 2) return;
   std::vector<double> selections(kernel_.selections());
   const auto middle = before.middle();
   before.selections(middle.data(), selections.data());
@@ -27,7 +27,12 @@ void Transition::find_approaches(const Decision& decision, const std::vector<int
   projected_.rates(rate_);
   std::vector<int> arrived;
   for (const int j : members) {
-    if (!is_beside(j)) continue;
+    if (!is_step(j)) continue;
+    if (before.modes()[at(j)] == 0) {
+      const double selection = selections[at(j)];
+      if (!(std::min(selection, 1.0 - selection) > undecided)) approaches_[at(j)] = Approach::at_bound;
+      continue;
+    }
     const double moved = before.modes()[at(j)] * rate_[at(j)] * decision.trial_length;
     if (moved < -noise_[at(j)]) arrived.push_back(j);
     if (std::abs(moved) <= noise_[at(j)]) approaches_[at(j)] = Approach::stands;
