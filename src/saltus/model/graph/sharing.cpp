@@ -64,16 +64,18 @@ void draw_cells(const Tape& tape, std::span<const int> cone, int k, Point& point
 }  // namespace
 
 std::optional<double> constant_value(const Tape& whole, int asked) {
+  const KindSet written = whole[asked].written;
+  const bool is_number = written == 0 || written == kind_bit(VariableKind::parameter);
+  if (!is_number && !whole[asked].polynomial) return std::nullopt;
   const Tape tape = whole.part(std::span(&asked, 1));
   const int node = tape.size() - 1;
   const auto cone = tape.cone(std::span(&node, 1), Links::written);
   TapeValues values;
   Point point = blank_point(tape);
-  if (tape[node].written == 0 || tape[node].written == kind_bit(VariableKind::parameter)) {
+  if (is_number) {
     evaluate(tape, cone, point, values);
     return values.value[at(node)];
   }
-  if (!is_polynomial(tape, cone)) return std::nullopt;
   // Two values differ if they differ by more than rounding; 24 points with the alphas at random corners.
   std::optional<double> first;
   int finite = 0;

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <casadi/core/sx_elem.hpp>
 
@@ -129,6 +130,7 @@ int Tape::cell(int argument, const std::shared_ptr<const CellTable>& table, int 
 
 void Tape::set_kinds(TapeNode& node) const {
   node.written = node.reached = 0;
+  node.polynomial = true;
   if (node.operation == cell_operation) {
     const auto& [table, column] = cells_[at(variables_[at(node.variable)].index)];
     const TapeNode& operand = (*this)[node.left];
@@ -136,6 +138,7 @@ void Tape::set_kinds(TapeNode& node) const {
     const bool jumps = table->change == CellTable::Change::jump && (operand.reached & changing_kinds) != 0;
     node.written = jumps ? kind_bit(VariableKind::cell) : operand.written;
     node.reached = jumps ? kind_bit(VariableKind::cell) : operand.reached;
+    node.polynomial = (node.written & changing_kinds) == 0;
     return;
   }
   if (node.variable >= 0) node.written = node.reached = kind_bit(variables_[at(node.variable)].kind);
@@ -144,7 +147,11 @@ void Tape::set_kinds(TapeNode& node) const {
     if (child < 0) continue;
     node.written |= (*this)[child].written;
     node.reached |= (*this)[child].reached;
+    node.polynomial = node.polynomial && (*this)[child].polynomial;
   }
+  if ((node.written & changing_kinds) == 0) return;
+  const bool by_a_constant = node.operation == casadi::OP_DIV && ((*this)[node.right].written & changing_kinds) == 0;
+  node.polynomial = node.polynomial && (is_polynomial_operation(node.operation) || by_a_constant);
 }
 
 void Tape::restate_as_state(int variable, int index) {
@@ -165,14 +172,35 @@ double Tape::operate(const TapeNode& node, double left, double right) const {
   return value;
 }
 
+namespace {
+
+/// Which nodes of a tape a walk has met: a mark for each, used again by the next walk.
+class Met {
+ public:
+  explicit Met(int size) {
+    if (marks_.size() < at(size)) marks_.resize(at(size), 0);
+    if (++walk_ != 0) return;
+    std::fill(marks_.begin(), marks_.end(), 0U);  // the numbers of walks begin anew
+    walk_ = 1;
+  }
+  /// Returns whether this is the first time.
+  bool meet(int node) { return std::exchange(marks_[at(node)], walk_) != walk_; }
+
+ private:
+  inline static thread_local std::vector<unsigned> marks_;
+  inline static thread_local unsigned walk_ = 0;
+};
+
+}  // namespace
+
 std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
   std::vector<int> nodes;
-  std::unordered_map<int, bool> seen;
+  Met met(size());
   std::vector<int> open(roots.begin(), roots.end());
   while (!open.empty()) {
     const int current = open.back();
     open.pop_back();
-    if (current < 0 || !seen.emplace(current, true).second) continue;
+    if (current < 0 || !met.meet(current)) continue;
     nodes.push_back(current);
     const TapeNode& node = (*this)[current];
     open.push_back(node.left);
@@ -185,10 +213,13 @@ std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
 
 Tape Tape::part(std::span<const int> roots) const {
   Tape result;
+  // Links go to smaller numbers, which have their places by then.
+  std::vector<int> places(at(size()), -1);
   for (const int number : cone(roots, Links::through_alpha)) {
     TapeNode node = (*this)[number];
+    places[at(number)] = result.size();
     for (int* link : {&node.left, &node.right, &node.psi}) {
-      if (*link >= 0) *link = result.place_of((*this)[*link].number);
+      if (*link >= 0) *link = places[at(*link)];
     }
     if (node.variable >= 0) {
       Variable variable = variables_[at(node.variable)];
@@ -212,14 +243,6 @@ int Tape::place_of(int number) const {
 
 void Tape::renumber() {
   for (int place = 0; place < size(); ++place) nodes_[at(place)].number = place;
-}
-
-bool is_polynomial(const Tape& tape, std::span<const int> cone) {
-  return std::all_of(cone.begin(), cone.end(), [&](int i) {
-    const TapeNode& node = tape[i];
-    if ((node.written & changing_kinds) == 0 || is_polynomial_operation(node.operation)) return true;
-    return node.operation == casadi::OP_DIV && (tape[node.right].written & changing_kinds) == 0;
-  });
 }
 
 Point blank_point(const Tape& tape) {

@@ -55,6 +55,7 @@ struct TapeNode {
   KindSet written = 0;            ///< kinds of the variables in the expression
   KindSet reached = 0;            ///< the same, with those in the switching functions of its alphas
   bool may_be_nonfinite = false;  ///< can overflow or be NaN for moderate arguments
+  bool polynomial = true;         ///< the expression as written is one in what changes
   int number = -1;                ///< its own; in a part that of the whole tape
 };
 
@@ -111,10 +112,6 @@ class Tape {
   std::vector<CellConstant> cells_;  ///< by the index of their variables
   std::unordered_map<std::uint64_t, std::vector<int>> by_key_;
 };
-
-/// Returns whether the nodes of a cone are polynomials in t, x, u (for fixed selections): two that agree at seeded
-/// points are then the same, which a narrow bell exp(-(x - 30)^2) is not to a constant.
-[[nodiscard]] bool is_polynomial(const Tape& tape, std::span<const int> cone);
 
 /// One value per variable of a tape. NaN for an alpha means: the step of its switching function at this point; for a
 /// constant of a cell: that of the cell in which the argument lies at this point.

@@ -21,6 +21,10 @@ std::vector<int> moving_variables(const Tape& tape, std::span<const int> roots) 
 
 std::vector<int> alpha_nodes(const Tape& tape, std::span<const int> roots, Links links) {
   std::vector<int> found;
+  const auto has_alpha = [&](int root) {
+    return root >= 0 && (tape[root].written & kind_bit(VariableKind::alpha)) != 0;
+  };
+  if (std::none_of(roots.begin(), roots.end(), has_alpha)) return found;
   for (const int node : tape.cone(roots, links)) {
     if (tape[node].psi >= 0) found.push_back(node);
   }

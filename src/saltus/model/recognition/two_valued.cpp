@@ -65,6 +65,7 @@ Expected<bool> Recognition::changes_by_jumps_only(const SXElem& expression) {
   if (!node) return tl::unexpected(node.error());
   const Tape& tape = graph.tape();
   if ((tape[*node].reached & moving_kinds) == 0) return true;
+  if (two_valued_.empty()) return false;
   const auto cone = tape.cone(std::span(&*node, 1), Links::through_alpha);
   return std::none_of(cone.begin(), cone.end(), [&](int leaf) {
     if (tape[leaf].variable < 0 || tape[leaf].operation == cell_operation) return false;
