@@ -54,7 +54,8 @@ def find_mechanisms(root, _table):
                 yield mechanism, path
     for solver in SOLVERS:
         path = root / "src" / "saltus" / solver
-        if path.exists() and ONE_SOLVER not in path.read_text(encoding="utf-8"):
+        parts = [part for part in (path, path.with_suffix(".hpp")) if part.exists()]
+        if path.exists() and not any(ONE_SOLVER in part.read_text(encoding="utf-8") for part in parts):
             yield COMPLEMENTARITY, f"src/saltus/{solver}"
 
 

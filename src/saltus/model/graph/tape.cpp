@@ -213,8 +213,9 @@ std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
 
 Tape Tape::part(std::span<const int> roots) const {
   Tape result;
-  // Links go to smaller numbers, which have their places by then.
-  std::vector<int> places(at(size()), -1);
+  // Links go to smaller numbers of the cone, whose places are written by then; others are never read.
+  thread_local std::vector<int> places;
+  if (places.size() < at(size())) places.resize(at(size()));
   for (const int number : cone(roots, Links::through_alpha)) {
     TapeNode node = (*this)[number];
     places[at(number)] = result.size();
