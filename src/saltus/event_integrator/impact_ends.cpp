@@ -17,22 +17,13 @@ namespace {
 /// The contacts where the impact is, with the velocities of a state.
 ContactPoint contacts_with(const evaluation::ModelKernel& kernel, const result::Event& event,
                            const std::vector<double>& x, evaluation::ContactValues& values) {
-  const auto& contacts = kernel.layout().contacts;
   auto state = event.x;
   for (const int v : kernel.layout().velocities) state[at(v)] = x[at(v)];
   state.resize(at(kernel.states()), 0.0);
   const std::vector<double> alpha(at(kernel.switching_functions()), 0.5);
   kernel.contacts(event.t, state.data(), alpha.data(), values);
   ContactPoint point;
-  point.influence = values.rows * values.responses;
-  point.velocity = values.velocity;
-  point.restitution.assign(values.restitution.begin(), values.restitution.end());
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const double friction = contacts[i].has_friction ? values.friction(index(i)) : 0.0;
-    point.friction.push_back(std::max(friction, 0.0));
-    point.tangents.push_back(friction > 0.0 ? contacts[i].tangents() : 0);
-    point.has_gap.push_back(contacts[i].has_gap);
-  }
+  read_contacts(kernel.layout().contacts, values, point);
   return point;
 }
 

@@ -3,7 +3,9 @@
 
 #include <vector>
 
+#include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/linalg/matrix.hpp"
+#include "saltus/model/layout.hpp"
 
 namespace saltus::event_integrator {
 
@@ -30,5 +32,9 @@ struct ContactPoint {
     return {vector(tangent_row(i, 0)), in_plane(i) ? vector(tangent_row(i, 1)) : 0.0};
   }
 };
+
+/// Reads all but the accelerations and the sizes of terms from the values of contacts at a point.
+void read_contacts(const std::vector<model::Contact>& contacts, const evaluation::ContactValues& values,
+                   ContactPoint& point);
 
 }  // namespace saltus::event_integrator

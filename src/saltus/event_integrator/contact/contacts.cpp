@@ -103,22 +103,8 @@ void Contacts::read_point(double t, const std::vector<double>& alpha, const std:
 void Contacts::read_motion(double t, const std::vector<double>& alpha, const std::vector<double>& x,
                            ContactPoint& point) {
   kernel_.contacts(t, x.data(), alpha.data(), values_);
-  point.influence.resize(values_.rows.rows(), values_.responses.cols());
-  linalg::multiply(values_.rows, values_.responses, point.influence);
-  point.velocity = values_.velocity;
+  read_contacts(contacts_, values_, point);
   point.acceleration = values_.acceleration;
-  point.restitution.assign(values_.restitution.begin(), values_.restitution.end());
-  point.friction.clear();
-  point.has_gap.clear();
-  point.tangents.clear();
-  for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const auto& contact = contacts_[i];
-    const double friction = contact.has_friction ? values_.friction(static_cast<linalg::Index>(i)) : 0.0;
-    const bool is_smooth = contact.friction_varies ? friction <= model::no_friction : !contact.has_friction;
-    point.friction.push_back(is_smooth ? 0.0 : friction);
-    point.has_gap.push_back(contact.has_gap);
-    point.tangents.push_back(is_smooth ? 0 : contact.tangents());
-  }
 }
 
 ContactMode Contacts::mode_of(int contact, const std::vector<double>& x) const {

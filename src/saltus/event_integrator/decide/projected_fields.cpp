@@ -8,6 +8,7 @@
 #include "saltus/event_integrator/mode/at_surface.hpp"
 #include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/event_integrator/sliding/normal_rows.hpp"
 #include "saltus/linalg/sparse_factors.hpp"
 #include "saltus/switching/table/independent_rows.hpp"
 
@@ -206,8 +207,7 @@ std::optional<bool> ProjectedFields::sparse_gradients_depend(const std::vector<d
 }
 
 bool ProjectedFields::gradients_depend(const std::vector<double>& alpha, const std::vector<int>& surfaces) const {
-  constexpr std::size_t many = 16;  // from here on a sparse factorisation costs less
-  if (surfaces.size() >= many) {
+  if (surfaces.size() >= sparse_from) {
     if (const auto depend = sparse_gradients_depend(alpha, surfaces)) return *depend;
   }
   std::vector<HeldFunction> functions;

@@ -13,9 +13,7 @@ struct InstantContext {
   JumpCascade& cascade;
   Outcome& out;
 
-  [[nodiscard]] JumpPoint jump_point() const {
-    return {run.here.t, run.here.x, run.here.state.alpha, run.search.user_signs(), cascade.zeros()};
-  }
+  [[nodiscard]] JumpPoint jump_point() const { return cascade.jump_point(); }
 };
 
 }  // namespace saltus::event_integrator

@@ -2,8 +2,6 @@
 
 #include <limits>
 
-#include "saltus/event_integrator/mode/undefined.hpp"
-
 namespace saltus::event_integrator {
 namespace {
 
@@ -41,13 +39,10 @@ void row_behind(const InstantContext& c) {
 
 void arrive(const InstantContext& c, bool row_is_written) {
   auto& [run, cascade, out] = c;
-  Position& here = run.here;
-  run.field(here.t, here.x.data(), here.slope.data());
-  // 0/0 in the last bit where both fields are tangent: the selections that the mode began with are as good.
-  if (!here.state.sliding.empty() && is_finite(run.field.alpha())) here.state.alpha = run.field.alpha();
+  run.evaluate_here();
   out.begin();
-  out.before = here.state;
-  out.x_before = here.x;
+  out.before = run.here.state;
+  out.x_before = run.here.x;
   out.cells_before = run.cells.indices();
   out.events_before = run.recorder.events();
   out.row = row_is_written ? OutputRows::Arrival::written : OutputRows::Arrival::missing;

@@ -50,6 +50,10 @@ class JumpCascade {
   /// Returns the transition into the mode behind.
   [[nodiscard]] Transition& transition() { return transition_; }
   [[nodiscard]] const std::vector<int>& zeros() const { return zeros_; }
+  /// Returns where conditions and values of jumps are read.
+  [[nodiscard]] JumpPoint jump_point() const {
+    return {here_.t, here_.x, here_.state.alpha, search_.user_signs(), zeros_};
+  }
   void add_zero(int function) {
     if (!contains(zeros_, function)) zeros_.push_back(function);
   }
@@ -95,9 +99,6 @@ class JumpCascade {
   [[nodiscard]] std::vector<HeldGuard> guards_kept_by_sliding(const RestingGuards& others);
 
  private:
-  [[nodiscard]] JumpPoint jump_point() const {
-    return {here_.t, here_.x, here_.state.alpha, search_.user_signs(), zeros_};
-  }
   [[nodiscard]] SwitchingPoint at_this_time() const;
   void find_values();
   [[nodiscard]] bool is_open_at_zero(int function);

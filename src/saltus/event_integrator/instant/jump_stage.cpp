@@ -20,6 +20,13 @@ using result::Termination;
 /// Executions at one time before the run stops (rule 5).
 constexpr std::size_t most_rounds = 10000;
 
+/// Whether the conditions or values of jumps are wrong, which ends the run.
+bool jumps_have_problem(RunState& run) {
+  const auto reason = run.jumps.came_to_forbidden() ? Termination::outside_class : Termination::evaluation_failed;
+  if (!run.jumps.problem().empty() && run.running) run.end(reason, run.jumps.problem());
+  return !run.jumps.problem().empty();
+}
+
 /// Ends a run in which jumps trigger each other at one time without an end.
 void end_by_rounds(const InstantContext& c) {
   auto& [run, cascade, out] = c;
@@ -55,17 +62,14 @@ std::string jump_names(const model::Layout& layout, const std::vector<int>& jump
   return text;
 }
 
-bool jumps_have_problem(RunState& run) {
-  const auto reason = run.jumps.came_to_forbidden() ? Termination::outside_class : Termination::evaluation_failed;
-  if (!run.jumps.problem().empty() && run.running) run.end(reason, run.jumps.problem());
-  return !run.jumps.problem().empty();
-}
-
 bool update_jumps(const InstantContext& c) {
   c.run.jumps.update(c.jump_point());
   return !jumps_have_problem(c.run);
 }
 
+namespace {
+
+/// One execution: the state behind it, and what that triggers.
 bool execute_jump(const InstantContext& c) {
   auto& [run, cascade, out] = c;
   if (cascade.executed().size() >= most_rounds) {
@@ -89,6 +93,8 @@ bool execute_jump(const InstantContext& c) {
   cascade.read_user_signs(*gaps);
   return update_jumps(c);
 }
+
+}  // namespace
 
 bool execute_due_jumps(const InstantContext& c) {
   auto& [run, cascade, out] = c;

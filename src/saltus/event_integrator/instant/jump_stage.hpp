@@ -11,13 +11,9 @@ namespace saltus::event_integrator {
 
 /// Returns their names, for messages.
 [[nodiscard]] std::string jump_names(const model::Layout& layout, const std::vector<int>& jumps);
-/// Returns whether the conditions or values of jumps are wrong, which ends the run.
-bool jumps_have_problem(RunState& run);
 /// Reads the conditions of jumps at the point as it is; returns false where they are wrong.
 bool update_jumps(const InstantContext& c);
-/// Executes one jump: the state behind it, and what that triggers.
-bool execute_jump(const InstantContext& c);
-/// Executes all jumps that are due.
+/// Executes all jumps that are due, one after the other, with what they trigger.
 bool execute_due_jumps(const InstantContext& c);
 /// Reads conditions for the first time, before the first mode is decided (rule 3), and executes what is due.
 bool begin_jumps(const InstantContext& c);

@@ -156,8 +156,10 @@ Resolver::Stage Resolver::record_switch() {
 Resolver::Stage Resolver::follow_changes() {
   const Position& here = run_.here;
   if (here.state.mode != out_.before.mode) {
-    static_cast<void>(jump_from_here(false));
-    if (contacts_jump(context())) return Stage::before_jumps;
+    if (!run_.contacts.none()) {
+      const Stage jumps = jump_from_here(false);  // from the point before they jump
+      if (contacts_jump(context())) return jumps;
+    }
     if (!run_.jumps.none()) cascade_.leave_guards(out_.transition.zero_order);
   }
   fire_user_events(context(), here.x, out_.before);
@@ -239,7 +241,7 @@ bool Resolver::resolve(const Instant& instant) {
     return true;
   }
   if (instant.is_limit()) {
-    instant.cause == Cause::limit_of_jumps ? resolve_limit_of_jumps(instant) : resolve_limit_of_switches(instant);
+    resolve_limit(instant);
     return true;
   }
   arrive(context(), instant.row_is_written);
@@ -260,22 +262,26 @@ bool Resolver::resolve(const Instant& instant) {
   return true;
 }
 
-/// Behind the limit of switches its mode begins. What has become due there is an instant of its own.
-void Resolver::resolve_limit_of_switches(const Instant& instant) {
+/// What has become due behind a limit is an instant of its own.
+void Resolver::resolve_limit(const Instant& instant) {
+  const ModeState before_last = out_.before;
   arrive(context(), true);
-  pass_to(run_, instant.limit.t, instant.x);
-  run(enter(instant.transition, Stage::done));
+  is_limit_of_jumps() ? resolve_limit_of_jumps(instant, before_last) : resolve_limit_of_switches(instant);
   if (!run_.running) return;
-  record_limit_of_switches(context(), instant);
   take_over_events();
   static_cast<void>(update_jumps(context()));
 }
 
+/// Behind the limit of switches its mode begins.
+void Resolver::resolve_limit_of_switches(const Instant& instant) {
+  pass_to(run_, instant.limit.t, instant.x);
+  run(enter(instant.transition, Stage::done));
+  if (run_.running) record_limit_of_switches(context(), instant);
+}
+
 /// Behind the limit of jumps their guards are at rest, gaps are closed, and the mode is decided as behind jumps.
-void Resolver::resolve_limit_of_jumps(const Instant& instant) {
+void Resolver::resolve_limit_of_jumps(const Instant& instant, const ModeState& before_last) {
   const SeriesLimit& limit = instant.limit;
-  const ModeState before_last = out_.before;
-  arrive(context(), true);
   bool begins = false;
   if (instant.of_contacts) {
     begins = settle_contacts(context(), limit, before_last);
@@ -293,9 +299,6 @@ void Resolver::resolve_limit_of_jumps(const Instant& instant) {
                         : limit.kind == SeriesKind::chattering
                             ? "these jumps follow each other faster than their guards are resolved"
                             : "the intervals of these jumps shrink geometrically: the state is their limit");
-  if (!run_.running) return;
-  take_over_events();
-  static_cast<void>(update_jumps(context()));
 }
 
 }  // namespace saltus::event_integrator

@@ -127,7 +127,8 @@ class Resolver {
   [[nodiscard]] Start decide_first();
   bool stop_at_start();
   void record_start(std::vector<int> listed);
-  void resolve_limit_of_jumps(const Instant& instant);
+  void resolve_limit(const Instant& instant);
+  void resolve_limit_of_jumps(const Instant& instant, const ModeState& before_last);
   void resolve_limit_of_switches(const Instant& instant);
 
   RunState& run_;

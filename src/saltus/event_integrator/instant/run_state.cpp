@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
 
@@ -24,6 +25,11 @@ RunState::RunState(evaluation::ModelKernel& model, const IntegrationOptions& wan
       recorder(kernel),
       rows(kernel, options, here, field, holding, recorder) {
   holding.keep(&contacts);
+}
+
+void RunState::evaluate_here() {
+  field(here.t, here.x.data(), here.slope.data());
+  if (!here.state.sliding.empty() && is_finite(field.alpha())) here.state.alpha = field.alpha();
 }
 
 void RunState::end(result::Termination termination, std::string message) {

@@ -47,6 +47,9 @@ struct RunState {
   bool running = true;
   double last_event = -std::numeric_limits<double>::infinity();  ///< time of the last one that was recorded
 
+  /// Evaluates the field here, and takes the selections of what slides; where these are 0/0 in the last bit, as both
+  /// fields are tangent, those that the mode began with are as good.
+  void evaluate_here();
   /// Ends the run here.
   void end(result::Termination termination, std::string message);
   /// Writes a row in the mode here.

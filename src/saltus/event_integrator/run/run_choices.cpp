@@ -2,7 +2,6 @@
 #include <utility>
 
 #include "saltus/event_integrator/decide/continuations.hpp"
-#include "saltus/event_integrator/mode/undefined.hpp"
 #include "saltus/event_integrator/run/run_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -11,9 +10,8 @@ namespace saltus::event_integrator {
 void Run::leave_later() {
   const auto* family = choices_.departing();
   if (family == nullptr) return;
-  Position& here = run_.here;
-  run_.field(here.t, here.x.data(), here.slope.data());
-  if (!here.state.sliding.empty() && is_finite(run_.field.alpha())) here.state.alpha = run_.field.alpha();
+  run_.evaluate_here();
+  const Position& here = run_.here;
   SwitchingPoint point;
   point.begin(here.t, here.x.data(), here.time_scale);
   point.at_zero = here.state.sliding;

@@ -62,10 +62,7 @@ void Run::pass(const Instant& instant) {
   if (way_ == Way::full_twice) resolve_again();
   start_steps(instant);
   if (!instant.is_limit()) return look_for_limits();
-  if (run_.jumps.due(run_.here.t)) {
-    come_to(Instant::Cause::due);
-    next_.instant->row_is_written = true;
-  }
+  if (run_.jumps.due(run_.here.t)) come_to(Instant::Cause::due);
 }
 
 /// What has come of an instant is what comes of it.

@@ -135,7 +135,6 @@ class Run : private ResolverClient {
   [[nodiscard]] std::string advice_on_steps();
   void accumulates();
   bool stopped_by_two_fold();
-  bool stopped_by_mass();
   bool stopped_by_singularity();
   bool shorten(double factor);
   void rows_until(double t_end);

@@ -19,9 +19,7 @@ void Run::arrive_at_nested_roots(Located located) {
     }
   });
   // Selections are 0/0 at the end: those of the last step are theirs to what changes over this way.
-  std::vector<double> slope(run_.here.x.size());
-  run_.field(run_.here.t, run_.here.x.data(), slope.data());
-  if (is_finite(run_.field.alpha())) run_.here.state.alpha = run_.field.alpha();
+  run_.evaluate_here();
   // The last steps may have been short because of rounding.
   constexpr double part = 1e-3;
   run_.here.time_scale =

@@ -56,19 +56,13 @@ bool Run::stopped_by_two_fold() {
   return message.has_value();
 }
 
-/// Whether the steps got short because the mass matrix is positive definite up to here only.
-bool Run::stopped_by_mass() {
-  auto message = indefinite_mass_beyond(run_);
-  if (message) run_.end(Termination::outside_class, *message);
-  return message.has_value();
-}
-
 /// Whether the steps got short because switches accumulate here, because of a two-fold point, of bodies that jam, or of
 /// their masses.
 bool Run::stopped_by_singularity() {
-  if (stopped_by_mass()) return true;
-  if (auto jam = run_.contacts.jam(run_.contact_moment(), run_.here.x)) {
-    run_.end(Termination::outside_class, std::move(*jam));
+  auto message = indefinite_mass_beyond(run_);
+  if (!message) message = run_.contacts.jam(run_.contact_moment(), run_.here.x);
+  if (message) {
+    run_.end(Termination::outside_class, std::move(*message));
     return true;
   }
   if (!switches_.series().shrinks(run_.here.t)) return stopped_by_two_fold();

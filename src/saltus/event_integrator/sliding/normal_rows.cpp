@@ -11,8 +11,6 @@ namespace saltus::event_integrator {
 namespace {
 
 constexpr std::size_t no_row = std::numeric_limits<std::size_t>::max();
-/// From so many rows on a sparse factorisation costs less than a dense one.
-constexpr std::size_t sparse_from = 16;
 
 }  // namespace
 

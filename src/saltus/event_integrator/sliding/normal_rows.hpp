@@ -10,6 +10,9 @@
 
 namespace saltus::event_integrator {
 
+/// Holds from how many rows on a sparse factorisation costs less than a dense one.
+inline constexpr std::size_t sparse_from = 16;
+
 /// Holds the entries of a gradient that are not 0, by ascending column.
 struct SparseRow {
   std::vector<std::size_t> column;
