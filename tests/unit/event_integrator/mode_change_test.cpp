@@ -57,7 +57,8 @@ struct Parts {
   Parts(evaluation::ModelKernel& kernel, const ModeState& before)
       : field(kernel, true),
         here(1.0, {0.0, 0.0, 1.0}),
-        search(kernel, field, ode::Method::dopri5, tolerances),
+        ledger(kernel),
+        search(kernel, field, ledger, ode::Method::dopri5, tolerances),
         recorder(kernel) {
     here.change_mode(before);
     field.enter(before);
@@ -81,6 +82,7 @@ struct Parts {
   ode::Tolerances tolerances{1e-6, 1e-8};
   ModeField field;
   Position here;
+  Ledger ledger;
   EventSearch search;
   Recorder recorder;
   StepMemory memory;

@@ -1,5 +1,6 @@
 // The parts of a run, each alone: tolerances, rates, rows, attempts, zeros, accumulation.
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -7,6 +8,7 @@
 
 #include "saltus/event_integrator/approach/zero_approach.hpp"
 #include "saltus/event_integrator/record/output_rows.hpp"
+#include "saltus/event_integrator/search/search_values.hpp"
 #include "saltus/event_integrator/sequences/switch_accumulation.hpp"
 #include "saltus/event_integrator/steps/step_attempt.hpp"
 #include "saltus/event_integrator/steps/step_tolerances.hpp"
@@ -37,7 +39,8 @@ struct Scene {
   ModeField field{kernel, true};
   Position here{options.from, system.initial_state};
   StepTolerances tolerances{options.tolerances};
-  EventSearch search{kernel, field, options.method, tolerances.step()};
+  Ledger ledger{kernel};
+  EventSearch search{kernel, field, ledger, options.method, tolerances.step()};
 };
 
 TEST(StepTolerances, AreTheProductOfTheirParts) {
@@ -156,6 +159,17 @@ TEST(SwitchAccumulation, FollowsCyclesToTheirLimit) {
   switches.limit_tolerances(SwitchAccumulation::Roots::none);
   EXPECT_EQ(scene.tolerances.part(Reason::cycles).atol, 1.0);
   EXPECT_FALSE(switches.cycle().has_value());
+}
+
+// Tolerances leave at least what rounding leaves; a level that is not finite says nothing.
+TEST(FunctionLevels, AccuracyIsAtLeastTheRounding) {
+  FunctionLevels levels;
+  levels.reset(2);
+  levels.set(0, 1e-14, 1e-15);
+  EXPECT_EQ(levels.accuracy[0], 1e-14);
+  levels.set(1, std::numeric_limits<double>::quiet_NaN(), 1e-9);
+  EXPECT_EQ(levels.noise[1], 0.0);
+  EXPECT_EQ(levels.accuracy[1], 1e-9);
 }
 
 TEST(SwitchAccumulation, EndsWhereLimitsFollowEachOtherAtOnce) {

@@ -67,7 +67,7 @@ bool decide_in_cells(const InstantContext& c) {
                         (out.cell_change == CellChange::jump ? "jump of " : "kink of ") +
                         run.cells.moved_names(run.switching.layout);
   }
-  run.search.forget_user_zeros();
+  run.ledger.forget_users();
   return true;
 }
 

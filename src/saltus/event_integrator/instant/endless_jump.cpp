@@ -23,7 +23,7 @@ bool sets_the_same(const ExecutedJump& executed, std::size_t state, double left)
 /// once.
 bool JumpCascade::is_taken_back(const ExecutedJump& executed, int guard) {
   const int function = kernel_.jump_guard(executed.jump, guard);
-  if (!contains(zeros_, function) || holding_.holds(function) || jumps_.is_discrete_guard(function)) return false;
+  if (!ledger_.has(function) || holding_.holds(function) || jumps_.is_discrete_guard(function)) return false;
   const auto& entry = switching_context_.layout.jumps[at(executed.jump)];
   const double left = 64.0 * rounding_unit * std::abs(here_.t) * rate(function);
   const auto kept = [&](int state) { return sets_the_same(executed, at(state), left); };

@@ -34,8 +34,11 @@ void JumpCascade::begin() {
   if (jumps_.none()) return;
   executed_.clear();
   left_.clear();
-  zeros_ = here_.state.sliding;
-  zeros_.insert(zeros_.end(), here_.state.resting.begin(), here_.state.resting.end());
+  ledger_.begin(here_.t);
+  ledger_.forget_surfaces();
+  for (const auto* held : {&here_.state.sliding, &here_.state.resting}) {
+    for (const int j : *held) ledger_.add(j);
+  }
   const auto n = at(kernel_.event_functions());
   for (auto* values : {&zero_values_, &values_.value, &values_.magnitude, &values_.slope}) values->resize(n);
   kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), zero_values_.data());
@@ -52,12 +55,7 @@ void JumpCascade::begin(const Located& located) {
   if (jumps_.none()) return;
   for (const auto function : located.functions) {
     const auto& entry = search_.functions()[function];
-    if (entry.kind == FunctionKind::surface || entry.kind == FunctionKind::user) zeros_.push_back(entry.index);
-  }
-  // Where no time has passed since the last jumps what they have left at zero still is.
-  const auto& vanish = search_.user_zeros();
-  for (std::size_t user = 0; user < vanish.size(); ++user) {
-    if (vanish[user]) add_zero(kernel_.switching_functions() + static_cast<int>(user));
+    if (entry.kind == FunctionKind::surface) ledger_.add(entry.index);
   }
 }
 
@@ -82,7 +80,7 @@ void JumpCascade::note_guards() {
 double JumpCascade::time_resolution() const {
   const double rounding = rounding_unit * std::abs(here_.t);
   double left = 0.0;
-  for (const int zero : zeros_) {
+  for (const int zero : ledger_.zeros()) {
     const double rate = largest_rates_[at(zero)].value;
     if (rate > 0.0) left = std::max(left, std::abs(zero_values_[at(zero)]) / rate);
   }
@@ -108,32 +106,31 @@ bool JumpCascade::stays_at_zero(int function) const {
 }
 
 void JumpCascade::drop_zeros() {
-  if (zeros_.empty()) return;
+  if (ledger_.zeros().empty()) return;
   find_values();
-  std::erase_if(zeros_, [&](int function) { return !stays_at_zero(function); });
+  ledger_.drop([&](int function) { return !stays_at_zero(function); });
 }
 
 void JumpCascade::read_user_signs(Gaps gaps) {
   find_values();
-  auto& signs = user_signs_ = search_.user_signs();
-  auto& vanish = user_zeros_;
-  vanish.assign(signs.size(), false);
-  for (std::size_t user = 0; user < signs.size(); ++user) {
-    const int function = kernel_.switching_functions() + static_cast<int>(user);
+  for (std::size_t user = 0; user < ledger_.signs().size(); ++user) {
+    const int function = user_of(user);
     const double value = values_.value[at(function)];
-    const bool located = contains(zeros_, function);
     const bool unchanged = is_unchanged(function);
     const double of_gap = gaps == Gaps::begun ? contacts_.tolerated(function, here_.x)
                                               : left_by_opening(contacts_, function, executed_.items(), here_.x);
     const double rounding =
         std::max(unchanged ? rounding_of(values_.magnitude[at(function)]) : resolution(function), of_gap);
-    vanish[user] = located || holding_.holds(function) || std::abs(value) <= rounding;
-    if (holding_.holds(function) || (vanish[user] && !located)) signs[user] = 0;
-    const bool turns = signs[user] * value < 0.0;
+    const bool held = holding_.holds(function);
+    if (held || ledger_.has(function) || std::abs(value) <= rounding) {
+      const bool keeps_sign = ledger_.has(function) && !held;
+      ledger_.put(function, keeps_sign ? ledger_.sign(function) : 0);
+      continue;
+    }
+    const bool turns = ledger_.sign(function) * value < 0.0;
     const bool keeps_sign = turns && unchanged && search_.is_within_errors(function, value, here_.t, here_.x.data());
-    if (!vanish[user] && !keeps_sign) signs[user] = value > 0.0 ? 1 : value < 0.0 ? -1 : 0;
+    if (!keeps_sign) ledger_.set_sign(function, value > 0.0 ? 1 : value < 0.0 ? -1 : 0);
   }
-  search_.set_user_signs(signs, vanish);
 }
 
 /// Of the terms of an event function here.
@@ -193,34 +190,24 @@ Motion JumpCascade::find_motion(int function) {
 void JumpCascade::give_directions() {
   auto& values = values_.value;
   kernel_.functions(here_.t, here_.x.data(), here_.state.alpha.data(), values.data());
-  auto& signs = user_signs_ = search_.user_signs();
-  auto& vanish = user_zeros_ = search_.user_zeros();
-  std::vector<int> orders(signs.size(), 1);
-  for (std::size_t user = 0; user < signs.size(); ++user) {
-    const int function = kernel_.switching_functions() + static_cast<int>(user);
-    if (!vanish[user] || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
+  for (const int function : std::vector<int>(ledger_.zeros())) {
+    if (function < user_of(0) || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
     const Motion motion = motion_of(function);
-    signs[user] = static_cast<int>(motion.side.drift);
+    const int side = static_cast<int>(motion.side.drift);
+    // A jump that leaves it here leaves it this sign.
+    zero_values_[at(function)] = values[at(function)];
     if (contacts_.guards(function)) {
       // Its mode holds from here on, whatever the roundings of its derivatives say. A gap opens as its force comes to
       // 0, with an acceleration of 0: it goes like t^3, and its first derivatives are what the steps leave of them.
       const bool opens = left_by_opening(contacts_, function, executed_.items(), here_.x) > 0.0;
-      orders[user] = opens ? 3 : signs[user] < 0 ? std::clamp(motion.order, 1, 2) : 2;
-      signs[user] = -1;
-      add_zero(function);
-      zero_values_[at(function)] = values[at(function)];
+      ledger_.put(function, -1, opens ? 3 : side < 0 ? std::clamp(motion.order, 1, 2) : 2);
       continue;
     }
     // What is left of a rate that was held at 0, and of its derivative where holding ends, is rounding.
     const int ahead =
         motion.order > 1 ? side_ahead(switching_context_, here_.state, at_this_time(), here_.x, function) : 0;
-    if (ahead != 0) signs[user] = ahead;
-    orders[user] = std::clamp(motion.order, 1, 2);  // as many as the search divides out
-    // A jump that leaves it here leaves it this sign.
-    add_zero(function);
-    zero_values_[at(function)] = values[at(function)];
+    ledger_.put(function, ahead != 0 ? ahead : side, std::clamp(motion.order, 1, 2));  // as many as are divided out
   }
-  search_.set_user_signs(signs, vanish, orders);
   search_.enter(here_.state, transition_.zero_order, here_.t, here_.x.data());
 }
 
@@ -249,12 +236,11 @@ std::vector<HeldGuard> JumpCascade::guards_kept_by_sliding(const RestingGuards& 
   std::vector<HeldGuard> kept;
   std::vector<int> surfaces;
   if (here_.state.sliding.empty() || !holding_.guards().empty()) return kept;
-  const auto& vanish = search_.user_zeros();
   for (int jump = 0; jump < static_cast<int>(switching_context_.layout.jumps.size()); ++jump) {
     if (contacts_.owns(jump)) continue;
     for (int g = 0; g < static_cast<int>(switching_context_.layout.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
-      if (!vanish[at(function - kernel_.switching_functions())] || jumps_.is_discrete_guard(function)) continue;
+      if (!ledger_.has(function) || jumps_.is_discrete_guard(function)) continue;
       const Motion motion = motion_of(function);
       const int inward = jumps_.trigger_sign(jump, g, jump_point(), static_cast<int>(motion.side.drift));
       if (motion.order == 1 || inward == 0) continue;
@@ -287,13 +273,11 @@ JumpCascade::RestingGuards JumpCascade::pressed_guards() {
   for (const auto& guard : held_before_) {
     if (!contains(jumps, guard.hold.jump)) jumps.push_back(guard.hold.jump);
   }
-  const auto& vanish = search_.user_zeros();
   for (const int jump : jumps) {
     if (contacts_.owns(jump)) continue;
     for (int g = 0; g < static_cast<int>(switching_context_.layout.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
-      const bool at_zero = vanish[at(function - kernel_.switching_functions())];
-      if (!at_zero || jumps_.is_discrete_guard(function)) continue;
+      if (!ledger_.has(function) || jumps_.is_discrete_guard(function)) continue;
       // The derivatives along fixed selections are not those of a motion that slides.
       if (!surfaces_keeping(function).empty()) continue;
       const Motion motion = motion_of(function);
@@ -317,30 +301,22 @@ bool JumpCascade::is_open_at_zero(int function) {
 }
 
 void JumpCascade::leave_guards(const std::vector<int>& zero_order) {
-  auto signs = search_.user_signs();
-  auto vanish = search_.user_zeros();
-  std::vector<int> orders(signs.size(), 1);
   bool any = false;
   for (int jump = 0; jump < static_cast<int>(switching_context_.layout.jumps.size()); ++jump) {
     for (int g = 0; g < static_cast<int>(switching_context_.layout.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
-      const auto user = at(function - kernel_.switching_functions());
       const bool by_contact = contacts_.owns(jump);
-      const bool leaves = by_contact ? signs[user] >= 0 && is_open_at_zero(function) : signs[user] == 0;
+      const int sign = ledger_.sign(function);
+      const bool leaves = by_contact ? sign >= 0 && is_open_at_zero(function) : sign == 0;
       if (!leaves || holding_.holds(function) || jumps_.is_discrete_guard(function)) continue;
       const int side = by_contact ? -1 : side_ahead(switching_context_, here_.state, at_this_time(), here_.x, function);
       if (side == 0) continue;
-      add_zero(function);
       if (!by_contact) left_.push_back({function, side});
-      signs[user] = side;
-      vanish[user] = true;
-      orders[user] = 2;  // at least: its rate was held at 0
+      ledger_.put(function, side, 2);  // at least: its rate was held at 0
       any = true;
     }
   }
-  if (!any) return;
-  search_.set_user_signs(signs, vanish, orders);
-  search_.enter(here_.state, zero_order, here_.t, here_.x.data());
+  if (any) search_.enter(here_.state, zero_order, here_.t, here_.x.data());
 }
 
 }  // namespace saltus::event_integrator

@@ -12,6 +12,7 @@
 #include "saltus/event_integrator/jumps/jumps.hpp"
 #include "saltus/event_integrator/mode/field_rates.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
+#include "saltus/event_integrator/point/ledger.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
 #include "saltus/event_integrator/search/event_search.hpp"
 #include "saltus/event_integrator/search/locate.hpp"
@@ -24,12 +25,13 @@ namespace saltus::event_integrator {
 class JumpCascade {
  public:
   JumpCascade(const SwitchingContext& switching_context, const Position& here, ModeField& field, EventSearch& search,
-              const Jumps& jumps, const Contacts& contacts, Holding& holding)
+              Ledger& ledger, const Jumps& jumps, const Contacts& contacts, Holding& holding)
       : switching_context_(switching_context),
         kernel_(switching_context.kernel),
         here_(here),
         field_(field),
         search_(search),
+        ledger_(ledger),
         jumps_(jumps),
         contacts_(contacts),
         holding_(holding),
@@ -49,15 +51,11 @@ class JumpCascade {
   [[nodiscard]] const std::vector<int>& resting() const { return resting_; }
   /// Returns the transition into the mode behind.
   [[nodiscard]] Transition& transition() { return transition_; }
-  [[nodiscard]] const std::vector<int>& zeros() const { return zeros_; }
   /// Returns where conditions and values of jumps are read.
   [[nodiscard]] JumpPoint jump_point() const {
-    return {here_.t, here_.x, here_.state.alpha, search_.user_signs(), zeros_};
+    return {here_.t, here_.x, here_.state.alpha, ledger_.signs(), ledger_.zeros()};
   }
-  void add_zero(int function) {
-    if (!contains(zeros_, function)) zeros_.push_back(function);
-  }
-  /// Returns what is left of a function that is at zero.
+  /// Returns what is left of a function that is at zero, or its value where the cascade began.
   [[nodiscard]] double zero_value(int function) const { return zero_values_[at(function)]; }
   [[nodiscard]] const Contacts& contacts() const { return contacts_; }
   /// Returns the largest |dg/dt| of a guard at this time.
@@ -100,6 +98,7 @@ class JumpCascade {
 
  private:
   [[nodiscard]] SwitchingPoint at_this_time() const;
+  [[nodiscard]] int user_of(std::size_t place) const { return kernel_.switching_functions() + static_cast<int>(place); }
   void find_values();
   [[nodiscard]] bool is_open_at_zero(int function);
   [[nodiscard]] double time_resolution() const;
@@ -127,13 +126,13 @@ class JumpCascade {
   const Position& here_;
   ModeField& field_;
   EventSearch& search_;
+  Ledger& ledger_;
   const Jumps& jumps_;
   const Contacts& contacts_;
   Holding& holding_;
   FieldRates rates_;
   ReusedList<ExecutedJump> executed_;
-  std::vector<int> zeros_;           ///< event functions that are at zero here whatever is left of their value
-  std::vector<double> zero_values_;  ///< what is left
+  std::vector<double> zero_values_;  ///< what is left of functions at zero; of others their values at the beginning
   std::vector<Rate> largest_rates_;  ///< by event function: of guards of jumps at this time
   std::vector<std::optional<Motion>> motions_;  ///< by event function: found since the mode here was decided
   Contacts::Along along_;                       ///< the motion here
@@ -142,9 +141,7 @@ class JumpCascade {
   std::vector<int> resting_;
   Transition transition_;
   FunctionValues values_;
-  std::vector<double> slope_;     ///< of the field without what slides
-  std::vector<int> user_signs_;   ///< under construction, as are
-  std::vector<bool> user_zeros_;  ///< these
+  std::vector<double> slope_;  ///< of the field without what slides
 };
 
 }  // namespace saltus::event_integrator

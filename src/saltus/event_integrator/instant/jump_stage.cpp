@@ -126,7 +126,7 @@ bool decide_behind_jumps(const InstantContext& c) {
     return true;
   }
   std::vector<int> surfaces;
-  for (const int function : cascade.zeros()) {
+  for (const int function : run.ledger.zeros()) {
     if (function < run.kernel.switching_functions()) surfaces.push_back(function);
   }
   RestingSurfaces resting;

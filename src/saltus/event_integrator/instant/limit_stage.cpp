@@ -19,8 +19,7 @@ using result::Termination;
 
 /// Whether the guards of a jump whose values change nothing come true by the motion that the jumps do not set: they
 /// are added to the zeros then.
-bool comes_true(const InstantContext& c, int jump, FieldRates& rates, const std::vector<double>& slope,
-                std::vector<bool>& vanish) {
+bool comes_true(const InstantContext& c, int jump, FieldRates& rates, const std::vector<double>& slope) {
   auto& [run, cascade, out] = c;
   const ode::Tolerances& tolerances = run.tolerances.step();
   const auto& guards = run.switching.layout.jumps[at(jump)].guards;
@@ -32,8 +31,7 @@ bool comes_true(const InstantContext& c, int jump, FieldRates& rates, const std:
     if (run.jumps.is_discrete_guard(function) || !(std::abs(cascade.zero_value(function)) <= resolved)) continue;
     any = run.jumps.trigger_sign(jump, g, c.jump_point(), 0) * rate.value > 0.0;
     if (!any) return false;
-    cascade.add_zero(function);
-    vanish[at(function - run.kernel.switching_functions())] = true;
+    run.ledger.add(function);
   }
   return any;
 }
@@ -47,7 +45,6 @@ bool change_nothing(const InstantContext& c, const std::vector<int>& jumps) {
   FieldRates rates(run.kernel, here);
   std::vector<double> slope(here.x.size());
   run.kernel.field(here.t, here.x.data(), here.state.alpha.data(), slope.data());
-  std::vector<bool> vanish = run.search.user_zeros();
   for (const int jump : jumps) {
     const auto& targets = run.switching.layout.jumps[at(jump)].targets;
     std::vector<double> values(targets.size());
@@ -57,9 +54,8 @@ bool change_nothing(const InstantContext& c, const std::vector<int>& jumps) {
       if (!(std::abs(values[i] - x) <= tolerances.atol + tolerances.rtol * std::abs(x))) return false;
       slope[at(targets[i])] = 0.0;
     }
-    if (!comes_true(c, jump, rates, slope, vanish)) return false;
+    if (!comes_true(c, jump, rates, slope)) return false;
   }
-  run.search.set_user_signs(run.search.user_signs(), vanish);
   return true;
 }
 
@@ -143,7 +139,7 @@ bool settle_contacts(const InstantContext& c, const SeriesLimit& limit, const Mo
   rows_to_limit(run, t_last, x_last, out.x_before, out.before);
   if (!run.running) return false;
   cascade.drop_zeros();
-  for (const int j : slid_on) cascade.add_zero(j);
+  for (const int j : slid_on) run.ledger.add(j);
   cascade.read_user_signs();
   return true;
 }

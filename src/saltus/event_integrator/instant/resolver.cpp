@@ -24,7 +24,7 @@ using result::Termination;
 Resolver::Resolver(RunState& run, ResolverClient& client)
     : run_(run),
       client_(client),
-      cascade_(run.switching, run.here, run.field, run.search, run.jumps, run.contacts, run.holding),
+      cascade_(run.switching, run.here, run.field, run.search, run.ledger, run.jumps, run.contacts, run.holding),
       single_(run.switching),
       pair_(run.switching) {}
 
@@ -75,6 +75,7 @@ Resolver::Stage Resolver::read_signs() {
   const Located& located = *instant_->located;
   flip_user_functions(context(), located);
   turn_by_mode_behind(context(), located);
+  run_.search.turn_users(run_.here.t, run_.here.x.data());
   cascade_.begin(located);
   if (!update_jumps(context())) return Stage::done;
   if (!run_.jumps.due(run_.here.t)) return Stage::cells;
@@ -223,7 +224,7 @@ void Resolver::record_jumps() {
 /// What is true behind a start or a limit fires no events.
 void Resolver::take_over_events() {
   const Position& here = run_.here;
-  static_cast<void>(run_.user_events.update(here.t, here.x.data(), here.state.alpha, run_.search.user_signs()));
+  static_cast<void>(run_.user_events.update(here.t, here.x.data(), here.state.alpha, run_.ledger.signs()));
 }
 
 void Resolver::settle_signs() {

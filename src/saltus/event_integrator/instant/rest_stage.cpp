@@ -30,9 +30,7 @@ bool hold_guards(const InstantContext& c, std::vector<HeldGuard> guards, std::ve
   auto& [run, cascade, out] = c;
   Position& here = run.here;
   for (const auto* list : {&guards, &loose}) {
-    for (const auto& guard : *list) {
-      cascade.add_zero(guard.hold.function);
-    }
+    for (const auto& guard : *list) run.ledger.add(guard.hold.function);
   }
   if (const auto problem = run.holding.hold(std::move(guards), std::move(loose), here.t, here.state.alpha, here.x)) {
     run.end(Termination::outside_class, fmt::format("at t = {:.17g} {}", here.t, *problem));
@@ -74,7 +72,7 @@ bool free_passing(const InstantContext& c) {
   if (passed == 0) return true;
   RestingSurfaces resting;
   if (!find_resting(c, resting)) return false;
-  for (const int j : resting.surfaces) cascade.add_zero(j);
+  for (const int j : resting.surfaces) run.ledger.add(j);
   return hold_guards(c, std::move(guards), {});
 }
 
@@ -134,12 +132,8 @@ bool release(const InstantContext& c, const Located& located) {
   out.freed.clear();
   if (run.holding.guards().empty()) return false;
   std::vector<HeldGuard> guards = run.holding.guards();
-  auto signs = run.search.user_signs();
-  std::vector<bool> vanish(signs.size(), false);
-  std::vector<int> orders(signs.size(), 1);
   for (const auto function : located.functions) {
     const auto& entry = run.search.functions()[function];
-    if (entry.kind == FunctionKind::user) vanish[at(entry.index - run.kernel.switching_functions())] = true;
     if (entry.kind != FunctionKind::release) continue;
     std::erase_if(guards, [&](const HeldGuard& guard) { return guard.hold.function == entry.index; });
   }
@@ -151,13 +145,9 @@ bool release(const InstantContext& c, const Located& located) {
   for (const auto& guard : before) {
     if (run.holding.holds(guard.hold.function)) continue;
     // It moves outward from here, whatever the roundings of its derivatives say.
-    const auto user = at(guard.hold.function - run.kernel.switching_functions());
-    signs[user] = -guard.inward;
-    vanish[user] = true;
-    orders[user] = 2;  // at least: nothing presses on it
+    run.ledger.put(guard.hold.function, -guard.inward, 2);  // at least: nothing presses on it
   }
   run.search.set_held(run.holding.held());
-  run.search.set_user_signs(signs, vanish, orders);
   RestingSurfaces resting;
   if (!here.state.resting.empty() && find_resting(c, resting)) {
     std::set_difference(here.state.resting.begin(), here.state.resting.end(), resting.surfaces.begin(),

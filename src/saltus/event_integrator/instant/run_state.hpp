@@ -11,6 +11,7 @@
 #include "saltus/event_integrator/jumps/jumps.hpp"
 #include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/options.hpp"
+#include "saltus/event_integrator/point/ledger.hpp"
 #include "saltus/event_integrator/record/output_rows.hpp"
 #include "saltus/event_integrator/record/recorder.hpp"
 #include "saltus/event_integrator/search/cells.hpp"
@@ -36,6 +37,7 @@ struct RunState {
   Position here;
   StepTolerances tolerances;
   Cells cells;
+  Ledger ledger;
   EventSearch search;
   UserEvents user_events;
   Jumps jumps;

@@ -27,19 +27,18 @@ std::vector<std::size_t> with_kinks_here(const RunState& run, const std::vector<
 
 void flip_user_functions(const InstantContext& c, const Located& located) {
   auto& [run, cascade, out] = c;
-  Position& here = run.here;
+  const Position& here = run.here;
   const auto each = [&](auto&& set) {
     for (std::size_t k = 0; k < located.functions.size(); ++k) {
-      if (run.search.functions()[located.functions[k]].kind == FunctionKind::user)
-        set(located.functions[k], located.signs[k]);
+      const auto& function = run.search.functions()[located.functions[k]];
+      if (function.kind == FunctionKind::user) set(function.index, located.signs[k]);
     }
   };
+  run.ledger.begin(here.t);
   // The signs before become known now, if they were not; only then do all of them change.
-  each([&](std::size_t function, int sign) {
-    if (run.search.functions()[function].sign != sign) run.search.set_user_sign(function, sign, here.t, here.x.data());
-  });
-  static_cast<void>(run.user_events.update(here.t, here.x.data(), here.state.alpha, run.search.user_signs()));
-  each([&](std::size_t function, int sign) { run.search.set_user_sign(function, -sign, here.t, here.x.data()); });
+  each([&](int function, int sign) { run.ledger.set_sign(function, sign); });
+  static_cast<void>(run.user_events.update(here.t, here.x.data(), here.state.alpha, run.ledger.signs()));
+  each([&](int function, int sign) { run.ledger.put(function, -sign); });
 }
 
 void turn_by_mode_behind(const InstantContext& c, const Located& located) {
@@ -56,10 +55,11 @@ void turn_by_mode_behind(const InstantContext& c, const Located& located) {
     if (user && (run.jumps.is_compared(function.index) || run.user_events.is_compared(function.index)))
       compared.push_back(place);
   }
-  if (point.touched.empty() || run.search.user_signs().empty()) return;
+  if (point.touched.empty() || run.ledger.signs().empty()) return;
   auto turning = with_kinks_here(c.run, point.touched);
-  std::erase_if(turning,
-                [&](std::size_t place) { return functions[place].sign != 0 && !contains(located.functions, place); });
+  std::erase_if(turning, [&](std::size_t place) {
+    return run.ledger.sign(functions[place].index) != 0 && !contains(located.functions, place);
+  });
   if (compared.empty() && turning.empty()) return;
   std::sort(point.touched.begin(), point.touched.end());
   point.at_zero = here.state.sliding;
@@ -67,12 +67,13 @@ void turn_by_mode_behind(const InstantContext& c, const Located& located) {
   std::sort(point.at_zero.begin(), point.at_zero.end());
   const Transition next = decide_mode(run.switching, here.state, point);
   if (next.termination != result::Termination::completed) return;
-  const auto turn = [&](std::size_t place, int sign) { run.search.set_user_sign(place, sign, here.t, here.x.data()); };
   for (const std::size_t place : turning) {
-    turn(place, side_ahead(run.switching, next.state, point, here.x, functions[place].index));
+    const int function = functions[place].index;
+    run.ledger.put(function, side_ahead(run.switching, next.state, point, here.x, function));
   }
   for (const std::size_t place : compared) {
-    if (is_kept_by_sliding(run.kernel, next.state, functions[place].index, here.t, here.x.data())) turn(place, 0);
+    const int function = functions[place].index;
+    if (is_kept_by_sliding(run.kernel, next.state, function, here.t, here.x.data())) run.ledger.put(function, 0);
   }
 }
 
@@ -80,7 +81,7 @@ std::vector<std::size_t> fire_user_events(const InstantContext& c, const std::ve
                                           const ModeState& before, const std::vector<std::size_t>& before_jumps) {
   auto& [run, cascade, out] = c;
   Position& here = run.here;
-  auto fired = run.user_events.update(here.t, here.x.data(), here.state.alpha, run.search.user_signs());
+  auto fired = run.user_events.update(here.t, here.x.data(), here.state.alpha, run.ledger.signs());
   std::erase_if(fired, [&](std::size_t event) {
     const bool again = contains(before_jumps, event);
     return again && !run.switching.layout.events[event].is_condition();

@@ -37,7 +37,7 @@ FollowedChoices::Progress Run::progress() const {
 bool Run::begin() {
   if (!resolver_.start()) return false;
   Position& here = run_.here;
-  if (!run_.jumps.none()) jump_accumulation_.note(resolver_.cascade(), run_.jumps, run_.search.user_signs());
+  if (!run_.jumps.none()) jump_accumulation_.note(resolver_.cascade(), run_.jumps);
   start_step();
   here.time_scale = here.h;
   const auto& orders = event().transition.zero_order;

@@ -45,8 +45,6 @@ void Run::pass_zeros(const Located& located) {
   Instant instant{.cause = Instant::Cause::zeros, .located = &located};
   // A step that ended exactly here has written the row before the event.
   instant.row_is_written = located.t == here.t && run_.recorder.ends_at(here.t) && here.t != run_.last_event;
-  // What was left at zero by the last event has moved away since, also where no step has ended in between.
-  if (located.t > here.t) run_.search.forget_user_zeros();
   const double t_begin = here.t;
   here.move_to(located.t, located.x.data());
   static_cast<void>(run_.holding.project(here.t, here.state.alpha, here.x));
@@ -80,7 +78,7 @@ void Run::start_steps(const Instant& instant) {
   Position& here = run_.here;
   if (outcome.jumped || instant.is_limit()) {
     const bool notes = outcome.jumped && !only_slips_on({run_, resolver_.cascade(), event()});
-    if (notes) jump_accumulation_.note(resolver_.cascade(), run_.jumps, run_.search.user_signs());
+    if (notes) jump_accumulation_.note(resolver_.cascade(), run_.jumps);
     if (instant.cause == Instant::Cause::limit_of_switches) restart_control();
     choose_method();
     start_step();

@@ -100,13 +100,14 @@ EventSearch::Finding EventSearch::not_finite(const EventFunction& function, doub
   return {is_cell_end(function.kind) && !std::isfinite(at_start), {}};
 }
 
-EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
+EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, Ledger& ledger, ode::Method method,
                          const ode::Tolerances& tolerances)
     : kernel_(kernel),
       field_(field),
       five_nodes_suffice_(ode::dense_degree(method) <= 4),
       errors_(kernel, tolerances),
-      mode_(at(kernel.states())) {
+      mode_(at(kernel.states())),
+      ledger_(ledger) {
   for (int j = 0; j < kernel.event_functions(); ++j) nesting_.push_back(!kernel.inner(j).empty());
   any_nesting_ = contains(nesting_, true);
   const auto n_phi = at(kernel.event_functions());
@@ -118,8 +119,6 @@ EventSearch::EventSearch(const evaluation::ModelKernel& kernel, ModeField& field
   mode_.kept_states.resize(at(kernel.switching_functions()));
   turned_.beside.resize(mode_.kept_states.size());
   entered_.assign(at(kernel.cells()), -1);
-  user_.sign.assign(n_phi - at(kernel.switching_functions()) - 2 * entered_.size(), 0);
-  user_.vanishes.assign(user_.sign.size(), false);
 }
 
 void EventSearch::find_pressure(double t, const double* x) {

@@ -12,6 +12,7 @@
 #include "saltus/event_integrator/jumps/holding.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/event_integrator/mode/position.hpp"
+#include "saltus/event_integrator/point/ledger.hpp"
 #include "saltus/event_integrator/search/mode_functions.hpp"
 #include "saltus/event_integrator/search/search_values.hpp"
 #include "saltus/event_integrator/search/step_errors.hpp"
@@ -41,11 +42,11 @@ enum class SearchOutcome {
 /// Owns the work space; allocates in enter() only.
 class EventSearch {
  public:
-  EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, ode::Method method,
+  EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, Ledger& ledger, ode::Method method,
               const ode::Tolerances& tolerances);  ///< those of the steps, kept as a reference
 
-  /// Sets up the functions of a mode at (t, x), behind an evaluation of the field there. `zero_order` (n_psi): zeros
-  /// that surfaces have at this point.
+  /// Sets up the functions of a mode at (t, x), after an evaluation of the field there. `zero_order` (n_psi): zeros
+  /// that surfaces have at this point; those of user functions, and their signs, are in the ledger.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);
   /// Does the same at the position, where a mode begins behind a change. Cost: O(1) where one surface is crossed while
   /// nothing is slid on, and the thresholds of the same state.
@@ -82,25 +83,16 @@ class EventSearch {
   /// Returns whether a value of an expression or guard of [[events]] is no more than the errors of steps, so that its
   /// sign says nothing; false for other functions of the kernel.
   [[nodiscard]] bool is_within_errors(int function, double value, double t, const double* x);
-  /// Returns the signs of the user functions in force, 0 where not known yet.
-  [[nodiscard]] const std::vector<int>& user_signs() const { return user_.sign; }
-  /// Returns which of them vanish at the start of the next step.
-  [[nodiscard]] const std::vector<bool>& user_zeros() const { return user_.vanishes; }
   /// Settles an accepted step that ends at (t, x): zeros at its start are history, unknown signs are read. Returns
   /// whether there were such signs.
   bool settle(double t, const double* x);
-  /// Sets, behind a jump, the signs of all user functions, 0 = not known, whether they vanish here, and with which
-  /// orders (in t; 1 without). Takes effect with the next enter().
-  void set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish,
-                      const std::vector<int>& orders = {});
-  /// Forgets user zeros: time has passed since the user functions were at zero, or they have jumped.
-  void forget_user_zeros() { user_.forget_zeros(); }
+  /// Takes over zeros of user functions at (t, x), and their signs, from the ledger: the mode goes on with them. What
+  /// is left of a value at its zero is subtracted.
+  void turn_users(double t, const double* x);
   /// Holds guards of jumps: they are not searched, their releases are. Takes effect with the next enter().
   void set_held(HeldGuards held) { held_ = std::move(held); }
   /// Tells that the next enter() is at the end of a cell that was just entered there.
   void entered_cell(const EventFunction& reached);
-  /// Sets the sign of a user function that vanishes at (t, x); it is kept there whatever is left of its value.
-  void set_user_sign(std::size_t function, int sign, double t, const double* x);
 
  private:
   struct Finding {
@@ -182,7 +174,7 @@ class EventSearch {
   bool five_nodes_suffice_;  ///< the dense output has degree 4: five samples determine an affine function
   StepErrors errors_;
   ModeFunctions mode_;  ///< of the mode that was entered last
-  UserSigns user_;
+  Ledger& ledger_;
   HeldGuards held_;
   KernelValues values_;
   std::vector<int> entered_;  ///< by cell: event function of the end at which it was entered, or -1

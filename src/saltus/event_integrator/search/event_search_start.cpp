@@ -22,11 +22,11 @@ int arriving_sign(const ExitValues& exit) { return exit.below >= exit.above ? +1
 
 /// A step that led from one event to the next was not settled: the zeros at its start are history.
 void EventSearch::start_at(double t) {
-  if (user_.zeros_at && *user_.zeros_at != t) {
+  if (mode_.start != t) {
     for (const std::size_t i : special_) mode_.functions[i].zero_order = 0;
-    user_.forget_zeros();
   }
-  user_.zeros_at = t;
+  mode_.start = t;
+  ledger_.begin(t);
 }
 
 void EventSearch::begin(const ModeChange& change, const Position& here) {
@@ -254,7 +254,7 @@ void EventSearch::enter_plain_exits(const double* x) {
 void EventSearch::enter_users() {
   mode_.users = mode_.functions.size();
   const int n_psi = kernel_.switching_functions();
-  const int user_end = n_psi + static_cast<int>(user_.sign.size());
+  const int user_end = n_psi + static_cast<int>(ledger_.signs().size());
   for (int u = n_psi; u < user_end; ++u) {
     if (!held_.holds(u)) mode_.functions.push_back({FunctionKind::user, u, 0, 0});
   }
@@ -417,17 +417,24 @@ void EventSearch::sort(std::size_t i) {
 void EventSearch::read_user_signs(double t, const double* x) {
   for (std::size_t i = mode_.users; i < mode_.users_end; ++i) {
     auto& function = mode_.functions[i];
-    const auto user = at(function.index - kernel_.switching_functions());
-    const bool turns = user_.sign[user] * point_[i] < 0.0 && !user_.vanishes[user];
-    const bool keeps_sign = turns && is_within_errors(function.index, point_[i], t, x);
-    function.zero_order = keeps_sign ? 0 : user_.read(user, point_[i], levels_.noise[i]);
-    function.sign = user_.sign[user];
+    const int user = function.index;
+    function.zero_order = ledger_.order(user);
+    if (function.zero_order == 0) {
+      const bool turns = ledger_.sign(user) * point_[i] < 0.0;
+      const bool keeps_sign = turns && is_within_errors(user, point_[i], t, x);
+      if (!keeps_sign && std::abs(point_[i]) <= levels_.noise[i]) {
+        function.zero_order = 1;
+      } else if (!keeps_sign) {
+        ledger_.set_sign(user, sign_of(point_[i]));
+      }
+    }
+    function.sign = ledger_.sign(user);
   }
 }
 
 bool EventSearch::settle(double t, const double* x) {
-  user_.forget_zeros();
-  user_.zeros_at = t;
+  mode_.start = t;
+  ledger_.begin(t);
   if (special_.empty()) return false;
   bool unknown = false;
   const bool offset =
@@ -456,26 +463,26 @@ bool EventSearch::settle(double t, const double* x) {
   return true;
 }
 
-void EventSearch::set_user_signs(const std::vector<int>& signs, const std::vector<bool>& vanish,
-                                 const std::vector<int>& orders) {
-  user_ = {signs, vanish, orders, std::nullopt};
-}
-
-void EventSearch::set_user_sign(std::size_t function, int sign, double t, const double* x) {
-  const bool others_begin_anew = user_.zeros_at && *user_.zeros_at != t;
+void EventSearch::turn_users(double t, const double* x) {
+  const bool others_begin_anew = mode_.start != t;
   start_at(t);
-  auto& entry = mode_.functions[function];
-  const auto user = at(entry.index - kernel_.switching_functions());
-  entry.sign = sign;
-  entry.zero_order = 1;
-  entry.offset = 0.0;
-  inspected_.assign(1, function);
-  read_values(t, x, inspected_);
-  entry.offset = point_[function];
-  user_.put_at_zero(user, sign);
-  if (others_begin_anew) return sort_functions();
-  mode_.forms.ignore(function);
-  if (!contains(special_, function)) special_.push_back(function);
+  inspected_.clear();
+  for (std::size_t i = mode_.users; i < mode_.users_end; ++i) {
+    auto& entry = mode_.functions[i];
+    const int sign = ledger_.sign(entry.index), order = ledger_.order(entry.index);
+    if (order == 0 || (entry.sign == sign && entry.zero_order == order)) continue;
+    entry.sign = sign;
+    entry.zero_order = order;
+    entry.offset = 0.0;
+    inspected_.push_back(i);
+  }
+  if (!inspected_.empty()) read_values(t, x, inspected_);
+  for (const std::size_t i : inspected_) {
+    mode_.functions[i].offset = point_[i];
+    mode_.forms.ignore(i);
+    if (!contains(special_, i)) special_.push_back(i);
+  }
+  if (others_begin_anew) sort_functions();
 }
 
 }  // namespace saltus::event_integrator

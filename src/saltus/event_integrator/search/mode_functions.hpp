@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "saltus/event_integrator/field/mode_field.hpp"
@@ -61,7 +62,8 @@ struct ModeFunctions {
   std::size_t users = 0;  ///< the user functions among them, and their end
   std::size_t users_end = 0;
   bool plain = false;
-  std::size_t present = 0;          ///< functions that are not absent
+  double start = std::numeric_limits<double>::quiet_NaN();  ///< time at which the next step starts
+  std::size_t present = 0;                                  ///< functions that are not absent
   std::vector<double> kept_states;  ///< of plain ones, by surface: what the forms of its exits hold
   std::vector<bool> prefilter;      ///< five samples may show that the function stays away from zero
 

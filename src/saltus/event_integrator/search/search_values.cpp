@@ -8,21 +8,6 @@
 
 namespace saltus::event_integrator {
 
-/// It is at zero, and on that side from here on.
-void UserSigns::put_at_zero(std::size_t user, int side) {
-  sign[user] = side;
-  vanishes[user] = true;
-  if (!order.empty()) order[user] = 1;
-}
-
-/// Takes the sign of a value unless it is zero; returns the order of that zero, 0 if it is none.
-int UserSigns::read(std::size_t user, double value, double noise) {
-  const bool at_zero = vanishes[user] || std::abs(value) <= noise;
-  if (!at_zero) sign[user] = sign_of(value);
-  if (!at_zero) return 0;
-  return vanishes[user] && !order.empty() ? order[user] : 1;
-}
-
 void FunctionLevels::reset(std::size_t functions) {
   noise.assign(functions, 0.0);
   accuracy.assign(functions, 0.0);

@@ -1,9 +1,7 @@
-// What the event search knows about its functions beside the mode: values, levels, signs of user functions, bounds of
-// the states.
+// What the event search knows about its functions beside the mode: values, levels, bounds of the states.
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
@@ -11,18 +9,6 @@
 #include "saltus/ode/stepper.hpp"
 
 namespace saltus::event_integrator {
-
-/// Holds signs of user functions, kept over changes of mode.
-struct UserSigns {
-  std::vector<int> sign;           ///< 0 where not known yet
-  std::vector<bool> vanishes;      ///< at the start of the next step
-  std::vector<int> order;          ///< of those zeros; all 1 if it is empty
-  std::optional<double> zeros_at;  ///< time of that start; nullopt: that of the next mode
-
-  void forget_zeros() { vanishes.assign(vanishes.size(), false); }
-  void put_at_zero(std::size_t user, int side);
-  int read(std::size_t user, double value, double noise);
-};
 
 /// Holds one of the regions that meet at the sliding surfaces inside nested functions.
 struct NestedCorner {

@@ -23,17 +23,17 @@ JumpAccumulation::JumpAccumulation(const SwitchingContext& switching_context, co
       magnitude_(at(kernel_.event_functions())),
       slope_(magnitude_.size()) {}
 
-void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps, const std::vector<int>& user_signs) {
+void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps) {
   if (cascade.executed().empty()) return;
-  const JumpPoint point{here_.t, here_.x, here_.state.alpha, user_signs, cascade.zeros()};
+  const JumpPoint point = cascade.jump_point();
   kernel_.scales(here_.t, here_.x.data(), here_.state.alpha.data(), magnitude_.data(), slope_.data());
   executed_.clear();
   for (const auto& executed : cascade.executed().items()) executed_.push_back(executed.jump);
   for (const int jump : executed_) {
     for (int g = 0; g < static_cast<int>(layout_.jumps[at(jump)].guards.size()); ++g) {
       const int function = kernel_.jump_guard(jump, g);
-      if (!contains(cascade.zeros(), function) || jumps.is_discrete_guard(function)) continue;
-      const int inward = jumps.trigger_sign(jump, g, point, -user_signs[at(function - kernel_.switching_functions())]);
+      if (!contains(point.zeros, function) || jumps.is_discrete_guard(function)) continue;
+      const int inward = jumps.trigger_sign(jump, g, point, -point.signs[at(function - kernel_.switching_functions())]);
       last_guard_[at(jump)] = HeldGuard{{jump, function}, inward};
       const double rate = cascade.rate(function);
       last_rate_[at(jump)] = rate;

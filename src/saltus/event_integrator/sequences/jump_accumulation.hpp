@@ -15,7 +15,7 @@ class JumpAccumulation {
   JumpAccumulation(const SwitchingContext& switching_context, const Position& here);
 
   /// Notes the jumps of a cascade: when, where to, and which guards were at zero.
-  void note(const JumpCascade& cascade, const Jumps& jumps, const std::vector<int>& user_signs);
+  void note(const JumpCascade& cascade, const Jumps& jumps);
   [[nodiscard]] std::optional<SeriesLimit> limit() const { return series_.limit(shortest_cycle_); }
   /// Ends the sequence behind a limit, but for what chatters.
   void end(const SeriesLimit& limit);

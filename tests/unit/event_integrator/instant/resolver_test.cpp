@@ -87,7 +87,7 @@ TEST(Resolver, AJumpIsExecutedAndItsGuardGoesOnFromThere) {
   at.meet(1.0, {0.0}, {{FunctionKind::user, 0}});
   EXPECT_EQ(at.x(), std::vector<double>{1.0});
   EXPECT_TRUE(at.resolver.outcome().jumped);
-  EXPECT_EQ(at.run.search.user_signs(), Signs{1});
+  EXPECT_EQ(at.run.ledger.signs(), Signs{1});
   EXPECT_EQ(at.events(), 1);
 }
 

@@ -45,10 +45,10 @@ TEST(UserSigns, AFunctionThatWasLocatedGoesOnWithTheOtherSign) {
   ASSERT_TRUE(at.resolver.start());
   const Located half = at.located(0.5, {0.5, 0.0}, {{FunctionKind::user, 0}});  // events come first
   ASSERT_EQ(half.functions.size(), 1U);
-  ASSERT_EQ(at.run.search.user_signs()[0], 1);
+  ASSERT_EQ(at.run.ledger.signs()[0], 1);
   at.run.here.move_to(half.t, half.x.data());
   flip_user_functions(at.context(), half);
-  EXPECT_EQ(at.run.search.user_signs()[0], -1);
+  EXPECT_EQ(at.run.ledger.signs()[0], -1);
   EXPECT_EQ(fire_user_events(at.context(), half.x, at.run.here.state), std::vector<std::size_t>{0});
   EXPECT_EQ(at.events(), 1);
   EXPECT_TRUE(fire_user_events(at.context(), half.x, at.run.here.state).empty());  // once
