@@ -38,8 +38,7 @@ Block cone(int row, int tangent, double friction, double velocity = 0.0) {
 }
 
 PointSolutions solve(const std::vector<Block>& blocks, const Matrix& effects, const Vector& constant) {
-  const std::vector<std::vector<Face>> none(blocks.size());
-  return solve_point({blocks, effects, constant, constant.abs().max()}, {none, {}});
+  return solve_point({blocks, effects, constant, constant.abs().max()}, {});
 }
 
 /// Whether z and y are what the blocks ask for, whatever the faces say: y, and tangential parts by their signs.

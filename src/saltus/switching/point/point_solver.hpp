@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "saltus/base/function_ref.hpp"
 #include "saltus/switching/point/faces_by_pivots.hpp"
 #include "saltus/switching/point/on_faces.hpp"
 #include "saltus/switching/point/point_problem.hpp"
@@ -18,14 +19,20 @@ struct PointSolutions {
 /// What the caller knows of the faces.
 struct FaceHints {
   /// By block: faces that are known to end here. Blocks that are open have no say.
-  const std::vector<std::vector<Face>>& excluded;
-  std::vector<Face> before;  ///< by block: faces that have held up to here; empty: none
+  std::vector<std::vector<Face>> excluded = {};
+  std::vector<Face> before = {};  ///< by block: faces that have held up to here; empty: none
+  double holds = face_holds;      ///< the least margin of a solution
 };
 
 /// Finds the solutions of y = w + W z by the faces of the blocks: all of them, by a search over their combinations,
 /// where these are no more than 2^16; else some, by complementary pivots and from the faces before. Cost: an
 /// elimination a combination; beyond, of n rows, 3 n pivots of 9 n^2 operations.
 [[nodiscard]] PointSolutions solve_point(const PointProblem& problem, const FaceHints& hints);
+
+/// Returns the first solution that is accepted, in the order of that search and by the least z of its faces; beyond
+/// 2^16 combinations, that of complementary pivots. Nothing where there is none.
+[[nodiscard]] std::optional<PointSolution> first_solution(const PointProblem& problem,
+                                                          FunctionRef<bool(const PointSolution&)> accepts);
 
 /// Returns whether another solution has the same y and the same faces, but for closed blocks that it leaves open.
 [[nodiscard]] bool is_same_with_open(const PointProblem& problem, const PointSolution& solution,

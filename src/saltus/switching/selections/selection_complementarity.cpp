@@ -21,8 +21,7 @@ Vector lambda_in_boxes(const Matrix& effects, const Vector& constant) {
   for (Index i = 0; i < constant.size(); ++i) {
     problem.blocks.push_back({.kind = Block::Kind::box, .row = static_cast<int>(i)});
   }
-  const std::vector<std::vector<Face>> none(problem.blocks.size());
-  const auto found = solve_point(problem, {none, {}}).all;
+  const auto found = solve_point(problem, {}).all;
   const auto better = [](const PointSolution& a, const PointSolution& b) { return a.margin < b.margin; };
   const auto best = std::max_element(found.begin(), found.end(), better);
   return best == found.end() ? Vector::constant(constant.size(), 0.5) : best->z;
