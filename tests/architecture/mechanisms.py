@@ -27,15 +27,17 @@ FILES = {
     ),
 }
 DEFINES_ZERO = "src/saltus/event_integrator/mode/resolution.hpp"
-# Files that look for faces of 0 in w + W z + N_Z(z): enumerations, pivots and sweeps of their own, until they use one solver.
+# Files that look for faces of 0 in w + W z + N_Z(z): enumerations, pivots and sweeps of their own, until they use one solver. Not among
+# them, as their own top comments say: decide/transition_large.cpp (g(alpha) has products, n is large: sparse Newton steps under a
+# certificate) and decide/sets/find_resting_surfaces.cpp (no z to find: what is kept at zero, and which end of a selection presses most).
 COMPLEMENTARITY = "complementarity is solved"
 SOLVERS = (
     "event_integrator/contact/contact_forces.cpp",
-    "event_integrator/decide/sets/find_resting_surfaces.cpp",
-    "event_integrator/decide/transition_large.cpp",
+    "event_integrator/contact/impact.cpp",
     "event_integrator/jumps/holding.cpp",
-    "fesd_integrator/decide/nonnegative_solution.cpp",
+    "fesd_integrator/decide/transition_regions.cpp",
     "switching/regions/region_decision.cpp",
+    "switching/regions/tied_regions.cpp",
     "switching/selections/selection_complementarity.cpp",
 )
 ONE_SOLVER = '#include "saltus/switching/point/'

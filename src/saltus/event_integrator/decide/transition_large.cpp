@@ -1,4 +1,6 @@
-// Many surfaces of which each depends on few others: part after part, in the order of influence.
+// Many surfaces of which each depends on few others: part after part, in the order of influence. That is no problem of
+// switching/point: velocities are multi-affine in the selections, of which there may be a thousand. Where a comparison
+// matrix certifies that one balance attracts, sparse Newton steps that keep to the bounds find it.
 #include <algorithm>
 #include <cmath>
 #include <span>

@@ -3,13 +3,55 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/switching/point/point_solver.hpp"
 #include "saltus/switching/table/matrix_stability.hpp"
 
 namespace saltus::switching {
 namespace {
+
+/// Stewart's system as a problem of complementarity: theta in half lines with w - mu, and mu free, with sum theta - 1.
+struct StewartSystem {
+  explicit StewartSystem(const RegionRates& rates)
+      : effects(linalg::Matrix::zero(rates.regions + 1, rates.regions + 1)),
+        constant(-linalg::Vector::unit(rates.regions + 1, rates.regions)),
+        problem{{}, effects, constant, 1.0} {
+    const int n = rates.regions;
+    double size = 0.0;
+    for (const double rate : rates.rates) size = std::max(size, std::abs(rate));
+    for (int i = 0; i < n; ++i) {
+      problem.blocks.push_back({.kind = Block::Kind::half_line, .row = i});
+      for (int j = 0; j < n; ++j) effects(i, j) = rates.rate(at(i), at(j)) / (size == 0.0 ? 1.0 : size);
+      effects(i, n) = -1.0;
+      effects(n, i) = 1.0;
+    }
+    problem.blocks.push_back({.kind = Block::Kind::free, .row = n});
+  }
+  linalg::Matrix effects;
+  linalg::Vector constant;
+  PointProblem problem;
+};
+
+/// Nothing where the weights are not determined.
+std::optional<RegionSet> set_of(const PointSolution& solution) {
+  if (solution.is_open || !solution.idle.empty() || !solution.y.all_finite()) return std::nullopt;
+  RegionSet set;
+  set.margin = std::numeric_limits<double>::infinity();
+  for (linalg::Index i = 0; i + 1 < solution.z.size(); ++i) {
+    const bool is_active = solution.faces[at(i)] == Face::closed;
+    if (!is_active) set.margin = std::min(set.margin, solution.y(i));
+    if (!is_active) continue;
+    set.active.push_back(static_cast<int>(i));
+    set.weights.push_back(solution.z(i));
+  }
+  if (set.active.size() > 1)
+    set.margin = std::min(set.margin, *std::min_element(set.weights.begin(), set.weights.end()));
+  return set;
+}
 
 /// d psi' / du of the hidden dynamics u_i = psi_i / eps, psi_i = g_r - g_i, i in I but its first, r: G (diag theta -
 /// theta theta^T).
@@ -37,50 +79,26 @@ bool set_attracts(const RegionRates& rates, const RegionSet& set) {
 }  // namespace
 
 bool solve_region_set(const RegionRates& rates, const std::vector<int>& active, RegionSet& set) {
-  const std::size_t k = active.size();
-  std::vector<double> matrix((k + 1) * (k + 1), 0.0);
-  std::vector<double> right(k + 1, 0.0);
-  double size = 0.0;
-  for (const double rate : rates.rates) size = std::max(size, std::abs(rate));
-  if (!std::isfinite(size)) return false;
-  if (size == 0.0) size = 1.0;
-  for (std::size_t row = 0; row < k; ++row) {
-    for (std::size_t column = 0; column < k; ++column) {
-      matrix[row * (k + 1) + column] = rates.rate(at(active[row]), at(active[column])) / size;
-    }
-    matrix[row * (k + 1) + k] = -1.0;
-    matrix[k * (k + 1) + row] = 1.0;
-  }
-  right[k] = 1.0;
-  LuFactors factors(static_cast<int>(k + 1));
-  if (!factors.factor(matrix)) return false;
-  factors.solve(right.data());
-  set.active = active;
-  set.weights.assign(right.begin(), right.end() - 1);
-  const double mu = right[k];
-  set.margin =
-      k > 1 ? *std::min_element(set.weights.begin(), set.weights.end()) : std::numeric_limits<double>::infinity();
-  for (int i = 0; i < rates.regions; ++i) {
-    if (std::binary_search(active.begin(), active.end(), i)) continue;
-    double w = 0.0;
-    for (std::size_t column = 0; column < k; ++column) w += rates.rate(at(i), at(active[column])) * set.weights[column];
-    set.margin = std::min(set.margin, w / size - mu);
-  }
-  return std::isfinite(mu) && !std::isnan(set.margin);
+  const StewartSystem system(rates);
+  std::vector<Face> faces(system.problem.blocks.size(), Face::open);
+  for (const int i : active) faces[at(i)] = Face::closed;
+  faces.back() = Face::inside;
+  PointSolution solution;
+  if (!system.effects.all_finite() || !solve_least(system.problem, faces, solution)) return false;
+  auto found = set_of(solution);
+  if (found) set = std::move(*found);
+  return found.has_value();
 }
 
 std::vector<RegionSet> admissible_region_sets(const RegionRates& rates, double tolerance) {
+  const StewartSystem system(rates);
+  if (!system.effects.all_finite()) return {};
   std::vector<RegionSet> found;
-  std::vector<int> active;
-  for (std::size_t subset = 1; subset < (std::size_t{1} << at(rates.regions)); ++subset) {
-    active.clear();
-    for (int i = 0; i < rates.regions; ++i) {
-      if ((subset >> at(i) & 1U) != 0) active.push_back(i);
-    }
-    RegionSet set;
-    if (!solve_region_set(rates, active, set) || !(set.margin >= -tolerance)) continue;
-    set.attracts = set_attracts(rates, set);
-    found.push_back(std::move(set));
+  for (const auto& solution : solve_point(system.problem, {.holds = -tolerance}).all) {
+    auto set = set_of(solution);
+    if (!set || !(set->margin >= -tolerance)) continue;
+    set->attracts = set_attracts(rates, *set);
+    found.push_back(std::move(*set));
   }
   return found;
 }

@@ -33,10 +33,10 @@ struct RegionSet {
 };
 
 /// Finds the weights of the set `active` (ascending) as they solve the equalities, admissible or not; nothing if they
-/// are not determined. Cost: one linear system of order |I| + 1.
+/// are not determined. Cost: an elimination of order |I| + 1.
 [[nodiscard]] bool solve_region_set(const RegionRates& rates, const std::vector<int>& active, RegionSet& set);
 
-/// Returns all sets whose margin is at least -tolerance, by enumeration of the 2^n - 1 subsets; n <= 12.
+/// Returns all sets whose margin is at least -tolerance, of the 2^n - 1 that solve_point tries; n <= 12.
 [[nodiscard]] std::vector<RegionSet> admissible_region_sets(const RegionRates& rates, double tolerance);
 
 /// Lets the largest one of marginal sets that move alike, with the same weights, stand for all. At an equilibrium of

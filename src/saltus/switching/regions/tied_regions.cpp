@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/linalg/factors.hpp"
+#include "saltus/switching/point/nonnegative_solution.hpp"
 #include "saltus/switching/regions/region_weights.hpp"
 #include "saltus/switching/table/matrix_stability.hpp"
 
@@ -168,22 +169,13 @@ bool can_be_held(const RegionTie& tie) {
   const auto m = tie.rates.rows();
   const auto n = tie.rates.cols();
   if (n <= m) return false;
-  std::vector<bool> taken(static_cast<std::size_t>(n), false);
-  std::fill(taken.begin(), taken.begin() + m + 1, true);
-  Matrix equations(m + 1, m + 1);
+  const double size = tie.rates.max_abs();
+  Matrix equations(m + 1, n);
+  equations.top_rows(m) = size > 0.0 ? Matrix(tie.rates / size) : tie.rates;
+  equations.bottom_rows(1).set_constant(1.0);
   const Vector sum_is_one = Vector::unit(m + 1, m);
-  do {
-    linalg::Index column = 0;
-    for (linalg::Index i = 0; i < n; ++i) {
-      if (!taken[static_cast<std::size_t>(i)]) continue;
-      equations.col(column).head(m) = tie.rates.col(i);
-      equations(m, column++) = 1.0;
-    }
-    // A corner that is 0 to rounding may be on either side: a face of the others has it, too.
-    const Vector weights = linalg::Lu(equations).solve(sum_is_one);
-    if (weights.all_finite() && weights.min() >= 0.0) return true;
-  } while (std::prev_permutation(taken.begin(), taken.end()));
-  return false;
+  constexpr double rounding = 1e-13;
+  return (equations * nonnegative_solution(equations, sum_is_one) - sum_is_one).max_abs() <= rounding;
 }
 
 bool motion_depends_on_weights(const RegionTie& tie, const RegionSet& set, const Matrix& fields) {

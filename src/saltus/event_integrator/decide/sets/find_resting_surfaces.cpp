@@ -1,3 +1,5 @@
+// That is no problem of switching/point: the motion is known. It is asked which functions have no other value than 0 on
+// what is held, and at which end of its bounds a selection that moves nothing there presses most.
 #include "saltus/event_integrator/decide/sets/find_resting_surfaces.hpp"
 
 #include <algorithm>
