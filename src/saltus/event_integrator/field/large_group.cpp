@@ -97,22 +97,4 @@ void ModeField::find_parts(const std::vector<std::size_t>& group) {
   groups_.large = std::move(large);
 }
 
-/// From the selections of the mode, all of them together: where influence is one-way G is triangular.
-void ModeField::evaluate_large(double t, const double* x, LargeGroup& large) {
-  const auto& rows = large.rows;
-  for (std::size_t k = 0; k < rows.size(); ++k) groups_.selections[k] = start_alpha_[at(sliding_[rows[k]])];
-  const auto velocities = [&](const double* alpha, double* g) {
-    for (std::size_t k = 0; k < rows.size(); ++k) trial_[at(sliding_[rows[k]])] = alpha[k];
-    kernel_.field(t, x, trial_.data(), f_[1].data());
-    for (std::size_t k = 0; k < rows.size(); ++k) g[k] = rows_.velocity(rows[k], f_[1]);
-  };
-  const bool found = large.newton->solve(velocities, groups_.selections.data());
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const auto j = at(sliding_[rows[k]]);
-    alpha_[j] = found ? groups_.selections[k] : not_a_number;
-    exits_[rows[k]] = {alpha_[j], alpha_[j] - 1.0, 0.0, 0.0};
-    trial_[j] = 0.0;
-  }
-}
-
 }  // namespace saltus::event_integrator

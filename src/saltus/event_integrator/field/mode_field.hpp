@@ -144,8 +144,8 @@ class ModeField {
   void evaluate_groups(double t, const double* x);
   void evaluate_pairs(double t, const double* x);
   void solve_pair(const std::array<std::size_t, 2>& rows, const switching::PairCorners& g);
-  void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows);
-  void evaluate_large(double t, const double* x, LargeGroup& group);
+  template <class Newton>
+  void evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows, Newton& newton);
   void find_large_groups();
   void find_parts(const std::vector<std::size_t>& group);
   [[nodiscard]] bool is_in_large(std::size_t row) const {

@@ -239,11 +239,11 @@ void ModeField::evaluate_groups(double t, const double* x) {
     } else if (rows.size() == 2 && !several_regions(rows.front())) {
       groups_.pairs.push_back({rows[0], rows[1]});
     } else if (!is_in_large(rows[0])) {
-      evaluate_many(t, x, rows);
+      evaluate_many(t, x, rows, *groups_.newton[rows[0]]);
     }
   }
   evaluate_pairs(t, x);
-  if (groups_.large) evaluate_large(t, x, *groups_.large);
+  if (groups_.large) evaluate_many(t, x, groups_.large->rows, *groups_.large->newton);
   if (!groups_.moved.empty() && constants_[0].motion == kernel_.motion()) {
     for (const auto& [state, row] : groups_.moved)
       f_[0][state] += alpha_[at(sliding_[row])] * (f_[1][state] - f_[0][state]);
@@ -337,16 +337,17 @@ void ModeField::find_speeds(switching::ProjectedField velocities, const std::vec
   }
 }
 
-/// More than two surfaces: Newton from the selections of the mode.
-void ModeField::evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows) {
+/// More than two surfaces: Newton from the selections of the mode, of large groups from all of them together.
+template <class Newton>
+void ModeField::evaluate_many(double t, const double* x, const std::vector<std::size_t>& rows, Newton& newton) {
   for (std::size_t k = 0; k < rows.size(); ++k) groups_.selections[k] = start_alpha_[at(sliding_[rows[k]])];
   const auto velocities = [&](const double* alpha, double* g) {
     for (std::size_t k = 0; k < rows.size(); ++k) trial_[at(sliding_[rows[k]])] = alpha[k];
     kernel_.field(t, x, trial_.data(), f_[1].data());
     for (std::size_t k = 0; k < rows.size(); ++k) g[k] = rows_.velocity(rows[k], f_[1]);
   };
-  if (std::isnan(groups_.speed[rows[0]])) find_speeds(velocities, rows);
-  const bool found = groups_.newton[rows[0]]->solve(velocities, groups_.selections.data());
+  if (!is_in_large(rows[0]) && std::isnan(groups_.speed[rows[0]])) find_speeds(velocities, rows);
+  const bool found = newton.solve(velocities, groups_.selections.data());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto j = at(sliding_[rows[k]]);
     alpha_[j] = found ? groups_.selections[k] : not_a_number;

@@ -1,7 +1,6 @@
 #include "saltus/switching/sparse/sparse_newton.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "saltus/base/at.hpp"
@@ -45,27 +44,16 @@ SparseNewton::SparseNewton(const Influence& influence)
     : effects_(influence), g_(index(influence.size())), step_(index(influence.size())) {}
 
 bool SparseNewton::solve(ProjectedField g, double* alpha) {
-  // As in SelectionNewton.
-  constexpr int iterations = 30;
-  constexpr double astray = 1e3;
-  NewtonSteps steps;
-  for (int k = 0; k < iterations; ++k) {
+  return follow_root(alpha, {step_.data(), at(step_.size())}, [&] {
     g(alpha, g_.data());
     effects_.find(g, alpha, g_.data());
     if (!g_.all_finite()) return false;
     if (!analysed_) lu_.analyse(effects_.matrix());
     analysed_ = true;
     if (!lu_.factorise(effects_.matrix())) return false;
-    step_ = lu_.solve(g_);
-    double reach = 0.0;
-    for (linalg::Index j = 0; j < step_.size(); ++j) {
-      alpha[j] -= step_[j];
-      reach = std::max(reach, std::abs(alpha[j]));
-    }
-    if (!step_.all_finite() || !(reach < astray)) return false;
-    if (steps.end_with({step_.max_abs(), reach})) return true;
-  }
-  return false;
+    std::copy_n(lu_.solve(g_).data(), step_.size(), step_.data());
+    return step_.all_finite();
+  });
 }
 
 }  // namespace saltus::switching

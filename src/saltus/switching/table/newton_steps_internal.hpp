@@ -1,7 +1,11 @@
 // When Newton's method has found its root.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <limits>
+#include <span>
 
 namespace saltus::switching {
 
@@ -27,5 +31,30 @@ class NewtonSteps {
  private:
   double previous_ = std::numeric_limits<double>::infinity();
 };
+
+/// Applies Newton's method to selections that are followed from nearby; they may leave the cube, but not for long ways.
+/// @param alpha      m doubles: the start; afterwards the root, or where it stopped
+/// @param step       m doubles
+/// @param find_step  finds the step at alpha; returns false where there is none
+/// @return false where a step is not found, or 30 of them do not settle
+template <class FindStep>
+[[nodiscard]] bool follow_root(double* alpha, std::span<const double> step, FindStep&& find_step) {
+  constexpr int iterations = 30;
+  constexpr double astray = 1e3;
+  NewtonSteps steps;
+  for (int k = 0; k < iterations; ++k) {
+    if (!find_step()) return false;
+    double size = 0.0;
+    double reach = 0.0;
+    for (std::size_t j = 0; j < step.size(); ++j) {
+      alpha[j] -= step[j];
+      size = std::max(size, std::abs(step[j]));
+      reach = std::max(reach, std::abs(alpha[j]));
+    }
+    if (!(reach < astray)) return false;
+    if (steps.end_with({size, reach})) return true;
+  }
+  return false;
+}
 
 }  // namespace saltus::switching
