@@ -28,9 +28,6 @@ class HiddenFace {
 
   [[nodiscard]] int surfaces() const { return surfaces_; }
   [[nodiscard]] const std::vector<int>& free() const { return free_; }
-  /// Returns the velocities at the corners of the zone where two selections vary and g is multi-affine in them; else
-  /// none.
-  [[nodiscard]] const MultiAffine* pair() const { return tabulated_ && free_.size() == 2 ? &face_ : nullptr; }
   [[nodiscard]] double speed(int j) const { return speed_[at(j)]; }  ///< max |v_j| at corners
   [[nodiscard]] long evaluations() const { return evaluations_; }
 

@@ -1,4 +1,4 @@
-// Where two or more selections vary: steps by series or of Runge-Kutta methods that end on the boundaries of zones.
+// Where two or more selections vary: Runge-Kutta steps that end on the boundaries of zones.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,14 +16,6 @@ namespace {
 /// Steps between two looks for a state of rest: each costs some of them, and says nothing on a long way.
 constexpr int shortest_pause = 4;
 constexpr int longest_pause = 32;
-/// Ratio of the speeds of surfaces up to which explicit steps do.
-constexpr double not_stiff = 10.0;
-/// In times that the fastest selection needs for its way at its largest speed: what happens beyond the zone in a step
-/// that ends on its boundary costs digits there.
-constexpr double longest_step = 30.0;
-
-/// Steps by series in a zone without an event.
-constexpr int most_series = 64;
 
 }  // namespace
 
@@ -51,45 +43,18 @@ class HiddenTrajectory::RungeKuttaStep {
   bool is_dense_ = false;
 };
 
-class HiddenTrajectory::SeriesStep {
- public:
-  SeriesStep(const PairSeries& series, const double* slope_new) : series_(series), slope_new_(slope_new) {}
-  [[nodiscard]] const double* slope_new() const { return slope_new_; }
-  void bounds(double* low, double* high) const { series_.bounds(low, high); }
-  void make_dense() const {}
-  void evaluate(double theta, double* u) const { series_.evaluate(theta, u); }
-
- private:
-  const PairSeries& series_;
-  const double* slope_new_;
-};
-
-/// The smallest speed of a component that moves, and the largest.
-std::pair<double, double> HiddenTrajectory::speeds() const {
-  double slowest = infinite;
-  double fastest = 0.0;
-  for (int j = 0; j < m_; ++j) {
-    fastest = std::max(fastest, face_.speed(j));
-    if (face_.speed(j) > 0.0) slowest = std::min(slowest, face_.speed(j));
-  }
-  return {slowest, fastest};
-}
-
 HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
   const auto f = [this](double /*t*/, const double* u, double* v) { face_.velocity(u, v); };
-  const auto [slowest, fastest] = speeds();
+  double fastest = 0.0;
+  for (int j = 0; j < m_; ++j) fastest = std::max(fastest, face_.speed(j));
   if (!(fastest > 0.0)) return settle("no velocity depends on the selections", v_.data());
   looks_ = {0, shortest_pause};
-  int steps = 0;
-  if (face_.pair() != nullptr && fastest <= not_stiff * slowest) {
-    if (const auto status = cross_pair(fastest, steps)) return *status;
-  }
   double h = h_ > 0.0 ? h_ : 0.05 / fastest;
   h_ = 0.0;
   ode::StiffnessWatch watch;
   ode::StepControl control(stiff_ ? ode::Method::radau5 : options_.method);
   if (stiff_stepper_) stiff_stepper_->restart();
-  for (; used_ < options_.budget; ++steps, ++used_) {
+  for (int steps = 0; used_ < options_.budget; ++steps, ++used_) {
     heed_stop();
     if (const auto status = look_for_rest_at(steps)) return *status;
     auto& made = stiff_ ? stiff_stepper_ : stepper_;
@@ -121,28 +86,6 @@ HiddenTrajectory::Status HiddenTrajectory::cross_interior() {
     }
   }
   return Status::goes_on;
-}
-
-/// Two selections vary, at similar speeds: no step is taken in vain. Ends with nothing where that takes many steps: one
-/// of them may be fast next to a slow way to rest, which Runge-Kutta steps notice.
-std::optional<HiddenTrajectory::Status> HiddenTrajectory::cross_pair(double fastest, int& steps) {
-  const double longest = longest_step / fastest;
-  for (; steps < most_series && used_ < options_.budget; ++steps, ++used_) {
-    heed_stop();
-    if (const auto status = look_for_rest_at(steps)) return *status;
-    series_.series.take(*face_.pair(), face_.free(), u_, v_, tolerance_here(), longest);
-    series_.series.evaluate(1.0, series_.end.data());
-    face_.velocity(series_.end.data(), series_.slope.data());
-    SeriesStep step(series_.series, series_.slope.data());
-    const StepEvent event = first_event(step);
-    end_step(event, series_.series.h(), series_.end.data());
-    if (event.kind == StepEvent::Kind::boundary) return at_boundary(event.component);
-    if (event.kind == StepEvent::Kind::maximum) {
-      return pass_section(static_cast<std::uint64_t>(2 * m_ + event.component));
-    }
-    v_ = series_.slope;
-  }
-  return std::nullopt;
 }
 
 /// Looks for rest where it is time to; what the trajectory does then.
@@ -188,8 +131,7 @@ bool HiddenTrajectory::has_maximum(int j, const double* slope_new) const {
 }
 
 /// The first boundary or maximum within an accepted step, with point_ there.
-template <class Step>
-HiddenTrajectory::StepEvent HiddenTrajectory::first_event(Step& step) {
+HiddenTrajectory::StepEvent HiddenTrajectory::first_event(RungeKuttaStep& step) {
   StepEvent event;
   step.bounds(low_.data(), high_.data());
   const double* slope_new = step.slope_new();
@@ -241,8 +183,7 @@ void HiddenTrajectory::look_for_boundary(int j, StepEvent& event) {
 
 /// v_j passes from + to -: located on the velocity at the dense output, whose own derivative is less accurate. Regula
 /// falsi with halved ends (Illinois); the end at which v_j is not positive any more.
-template <class Step>
-void HiddenTrajectory::look_for_maximum(int j, const Step& step, StepEvent& event) {
+void HiddenTrajectory::look_for_maximum(int j, const RungeKuttaStep& step, StepEvent& event) {
   constexpr double resolution = 0x1p-44;
   double low = 0.0;
   double high = 1.0;

@@ -27,7 +27,6 @@ HiddenTrajectory::HiddenTrajectory(HiddenFace& face, const TrajectoryOptions& op
       v_(at(m_)),
       zone_(at(m_)),
       recurrence_(m_),
-      series_{PairSeries(m_), std::vector<double>(at(m_)), std::vector<double>(at(m_))},
       low_(at(m_)),
       high_(at(m_)),
       point_(at(m_)),

@@ -5,14 +5,12 @@
 #include <limits>
 #include <optional>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "saltus/ode/stepper.hpp"
 #include "saltus/switching/hidden/hidden_dynamics.hpp"
 #include "saltus/switching/hidden/hidden_face_internal.hpp"
 #include "saltus/switching/hidden/hidden_recurrence_internal.hpp"
-#include "saltus/switching/hidden/hidden_series_internal.hpp"
 #include "saltus/switching/hidden/rest_point_internal.hpp"
 #include "saltus/switching/table/matrix_stability.hpp"
 
@@ -58,22 +56,17 @@ class HiddenTrajectory {
   };
 
   class RungeKuttaStep;
-  class SeriesStep;
 
   void enter_zones();
   Status cross_corner();
   Status cross_strip();
-  [[nodiscard]] std::pair<double, double> speeds() const;
   Status cross_interior();
-  std::optional<Status> cross_pair(double fastest, int& steps);
   [[nodiscard]] double tolerance_here() const;
   [[nodiscard]] bool may_cross(int j) const;
   [[nodiscard]] bool has_maximum(int j, const double* slope_new) const;
-  template <class Step>
-  StepEvent first_event(Step& step);
+  StepEvent first_event(RungeKuttaStep& step);
   void look_for_boundary(int j, StepEvent& event);
-  template <class Step>
-  void look_for_maximum(int j, const Step& step, StepEvent& event);
+  void look_for_maximum(int j, const RungeKuttaStep& step, StepEvent& event);
   void end_step(const StepEvent& event, double h, const double* u_new);
   std::optional<Status> look_for_rest_at(int step);
   Status at_boundary(int j);
@@ -106,11 +99,6 @@ class HiddenTrajectory {
   Recurrence recurrence_;
   std::optional<ode::Stepper> stepper_, stiff_stepper_;  ///< made when they are first needed
   ode::DenseStep dense_;
-  struct SeriesPiece {
-    PairSeries series;
-    std::vector<double> end, slope;
-  };
-  SeriesPiece series_;
   struct Looks {
     int next = 0, pause = 0;  ///< of looks for rest, in steps within a zone
   };

@@ -1,5 +1,5 @@
-// That is no problem of switching/point: the motion is known. It is asked which functions have no other value than 0 on
-// what is held, and at which end of its bounds a selection that moves nothing there presses most.
+// That is no problem of switching/point, as the motion is known. Functions are looked for that are 0 wherever it is
+// held, and the end of a selection's bounds at which most presses.
 #include "saltus/event_integrator/decide/sets/find_resting_surfaces.hpp"
 
 #include <algorithm>
