@@ -30,6 +30,7 @@ DEFINES_ZERO = "src/saltus/event_integrator/mode/resolution.hpp"
 # Files that look for faces of 0 in w + W z + N_Z(z): enumerations, pivots and sweeps of their own, until they use one solver. Not among
 # them, as their own top comments say: decide/transition_large.cpp (g(alpha) has products, n is large: sparse Newton steps under a
 # certificate) and decide/sets/find_resting_surfaces.cpp (no z to find: what is kept at zero, and which end of a selection presses most).
+# Left is jumps/holding.cpp: its w = L_f^2 g is at hand, W is in the kernel only, and only for guards that it holds.
 COMPLEMENTARITY = "complementarity is solved"
 SOLVERS = (
     "event_integrator/contact/contact_forces.cpp",

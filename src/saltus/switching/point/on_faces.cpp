@@ -18,7 +18,11 @@ using linalg::Vector;
 Sizes sizes_of(const PointProblem& problem, const PointSolution& solution) {
   // Where what acts on a block vanishes, what is left of it is the rounding of its terms.
   constexpr double rounded = 1e-5;
-  const double largest = (problem.constant.abs() + (problem.effects * solution.z).abs()).max();
+  double largest = 0.0;
+  for (Index i = 0; i < problem.constant.size(); ++i) {
+    const double part = problem.effects.row(i).dot(solution.z);
+    largest = std::max(largest, std::abs(problem.constant(i)) + std::abs(part));
+  }
   const double response = problem.effects.max_abs();
   const double least = response > 0.0 ? rounded * problem.terms / response : 0.0;
   return {std::max(rounded * problem.terms, largest), std::max(least, solution.z.max_abs())};
@@ -78,7 +82,9 @@ bool solve_rows(const PointProblem& problem, HeldRows& rows, PointSolution& solu
   const auto found = rows.solve(problem.effects, problem.constant, solution.z);
   if (found == HeldRows::Solution::none) return false;
   solution.is_open = found == HeldRows::Solution::open;
-  solution.y = problem.constant + problem.effects * solution.z;
+  solution.y.resize(solution.z.size());
+  linalg::multiply(problem.effects, solution.z, solution.y);
+  solution.y += problem.constant;
   return true;
 }
 
