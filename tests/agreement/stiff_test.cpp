@@ -2,6 +2,8 @@
 // they cannot.
 #include <cmath>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -105,6 +107,72 @@ TEST(Stiff, SlidingOfAStiffModelBeginsAndEndsOnTime) {
   EXPECT_NEAR(result.final.x[1], end, 1e-9);
   EXPECT_EQ(events[1].x[1], 0.0);
   EXPECT_LT(result.statistics.steps, 3000);
+}
+
+/// Steps that a method has taken by itself.
+long steps_of(const Result& result, std::string_view method) {
+  for (const auto& use : result.statistics.integrators) {
+    if (use.name == method) return static_cast<long>(use.steps);
+  }
+  return 0;
+}
+
+// The explicit method is left after some dozen steps, and what is stiff is met so again behind each switch.
+TEST(Stiff, TheChoiceTakesImplicitSteps) {
+  for (const char* text : {robertson, sensor}) {
+    const Simulator model = Simulator::from_text(text);
+    const Result exact = model.run(with(model.options(), {Integrator::radau5, 1e-11, 1e-15}));
+    for (const double rtol : {1e-5, 1e-8, 1e-10}) {
+      const Result result = model.run(with(model.options(), {Integrator::automatic, rtol, 1e-4 * rtol}));
+      ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+      EXPECT_EQ(result.status.message, "");
+      ASSERT_EQ(result.events.size(), exact.events.size());
+      EXPECT_LT(result.statistics.steps, 1500) << rtol;
+      EXPECT_LT(steps_of(result, "dopri5") + steps_of(result, "dop853") + steps_of(result, "taylor"), 500) << rtol;
+      for (std::size_t i = 0; i < exact.events.size(); ++i)
+        EXPECT_NEAR(result.events[i].t, exact.events[i].t, 100 * rtol * exact.events[i].t) << rtol;
+      for (std::size_t i = 0; i < exact.final.x.size(); ++i)
+        EXPECT_NEAR(result.final.x[i], exact.final.x[i], 100 * rtol * (0.01 + std::abs(exact.final.x[i]))) << rtol;
+    }
+  }
+}
+
+// Fast at first, slow from t = 1 on: explicit steps come back, and at the end nothing of them is implicit.
+TEST(Stiff, TheChoiceComesBackWhereStiffnessEnds) {
+  const Simulator model = Simulator::from_text(R"toml([model]
+name = "stiff-for-a-while"
+[states]
+x = 0
+y = 1
+[dynamics]
+x = "if(t < 1, 1e5, 1)*(cos(t) - x)"
+y = "-y^3 + sin(3*t)"
+[simulate]
+until = 20
+)toml");
+  const Result exact = model.run(with(model.options(), {Integrator::radau9, 1e-12, 1e-14}));
+  const Result result = model.run(with(model.options(), {Integrator::automatic, 1e-8, 1e-10}));
+  ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(result.final.x[i], exact.final.x[i], 1e-6);
+  double passed = 0.0, of_explicit = 0.0;
+  for (const auto& use : result.statistics.integrators) {
+    passed += use.time;
+    if (use.name == "dopri5") of_explicit = use.time;
+  }
+  EXPECT_NEAR(passed, 20.0, 1e-9);
+  EXPECT_GT(of_explicit, 12.0);
+  EXPECT_LT(of_explicit, 19.5);
+}
+
+// Steps and bits are those of the explicit method where nothing is stiff.
+TEST(Stiff, TheChoiceIsTheExplicitMethodOtherwise) {
+  const Simulator model = Simulator::from_catalogue("stick-slip");
+  for (const auto& [rtol, integrator] : {std::pair{1e-6, Integrator::dopri5}, std::pair{1e-11, Integrator::taylor}}) {
+    const Result chosen = model.run(with(model.options(), {Integrator::automatic, rtol, rtol}));
+    const Result named = model.run(with(model.options(), {integrator, rtol, rtol}));
+    EXPECT_EQ(chosen.final.x, named.final.x);
+    EXPECT_EQ(chosen.statistics.steps, named.statistics.steps);
+  }
 }
 
 TEST(Stiff, ExplicitMethodsPointToRadau5) {

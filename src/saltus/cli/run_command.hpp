@@ -44,7 +44,8 @@ inline constexpr std::array simulate_shortcuts{
     Shortcut{"--method", "simulate.method", "METHOD", "event, fesd, timestepping or smoothed"},
     Shortcut{"--rtol", "simulate.rtol", "R", "relative tolerance"},
     Shortcut{"--atol", "simulate.atol", "A", "absolute tolerance"},
-    Shortcut{"--integrator", "simulate.event.integrator", "I", "dopri5, dop853, radau5, radau9, radau13 or taylor"},
+    Shortcut{"--integrator", "simulate.event.integrator", "I",
+             "auto, dopri5, dop853, radau5, radau9, radau13 or taylor"},
     Shortcut{"--branch", "simulate.event.branches", "report|all|K",
              "report, all or K: follow other admissible motions, at most K trajectories"},
 };

@@ -38,6 +38,9 @@ Command add_simulate(CLI::App& app) {
       ->delimiter(',')
       ->expected(1)
       ->take_all();
+  command->add_flag_callback(
+      "--error-estimate", [arguments] { arguments->settings.emplace_back("simulate.error_estimate=true"); },
+      "estimate errors of rows, event times and end state by a second run");
   command->footer(simulate_footer);
   const auto compute = [](const model::System& system, const pipeline::SimulateOptions& options,
                           const pipeline::Observers& observers) {

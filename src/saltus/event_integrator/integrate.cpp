@@ -7,9 +7,20 @@
 
 namespace saltus::event_integrator {
 
+namespace {
+
+/// The method to begin with, where none is named.
+IntegrationOptions with_first_method(const evaluation::ModelKernel& kernel, IntegrationOptions options) {
+  if (options.chooses_method) options.method = first_method(at(kernel.states()), options.tolerances);
+  return options;
+}
+
+}  // namespace
+
 CompactIntegration integrate_compact(evaluation::ModelKernel& kernel, const IntegrationOptions& options,
                                      const StepObserver& observer) {
-  return Run(kernel, options).to_end(observer);
+  const IntegrationOptions asked = with_first_method(kernel, options);
+  return Run(kernel, asked).to_end(observer);
 }
 
 namespace {
@@ -38,7 +49,8 @@ Integration integrate(evaluation::ModelKernel& kernel, const IntegrationOptions&
     integration.trajectory = {};
     integration.events = {};
   };
-  CompactIntegration run = Run(kernel, options).to_end(observer, take ? TakeRecording(pass_on) : nullptr);
+  const IntegrationOptions asked = with_first_method(kernel, options);
+  CompactIntegration run = Run(kernel, asked).to_end(observer, take ? TakeRecording(pass_on) : nullptr);
   auto& recording = run.recording;
   integration.status = std::move(run.status);
   integration.statistics = run.statistics;

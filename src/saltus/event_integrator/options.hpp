@@ -44,6 +44,7 @@ struct ThinLayers {
 /// Holds options that the pipeline has checked: from < until, rtol > 0, atol >= 0, max_step > 0.
 struct IntegrationOptions {
   ode::Method method = ode::Method::dopri5;
+  bool chooses_method = false;  ///< `method` is what steps begin with; what they are taken by follows from them
   ode::Tolerances tolerances;
   double from = 0.0;
   double until = 1.0;

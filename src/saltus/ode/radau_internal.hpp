@@ -31,6 +31,11 @@ class Radau {
   [[nodiscard]] virtual double error_norm() const = 0;
   /// Evaluates coefficients 1 to s of the nested form of the collocation polynomial of the last attempt, s n doubles.
   virtual void dense(double* coefficients) const = 0;
+  /// Returns the spectral radius of the Jacobian, after two more products with it than at the last call; infinite where
+  /// that is not known.
+  [[nodiscard]] virtual double spectral_radius() = 0;
+  /// Returns the rate of convergence of the last iteration.
+  [[nodiscard]] virtual double contraction() const = 0;
   /// Forgets the Jacobian and the steps before: the right-hand side has changed.
   virtual void restart() = 0;
 };

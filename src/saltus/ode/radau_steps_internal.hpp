@@ -30,6 +30,8 @@ class RadauSteps final : public Radau {
   Attempt attempt(const RadauTrial& trial, double* x_new, double* slope_new, long& evaluations) override;
   [[nodiscard]] double error_norm() const override { return error_norm_; }
   void dense(double* coefficients) const override;
+  [[nodiscard]] double spectral_radius() override;
+  [[nodiscard]] double contraction() const override { return rate_; }
   void restart() override;
 
  private:
@@ -86,6 +88,7 @@ class RadauSteps final : public Radau {
   double rate_ = 0.0;  ///< of convergence of the last iteration
   double next_ = 0.0;  ///< the largest component that is expected of the next correction
   RadauSystems<stages / 2> systems_;
+  Vector direction_;      ///< to which powers of the Jacobian turn; empty before they are asked for
   double largest_ = 0.0;  ///< component of start_
   std::vector<std::size_t> one_column_;
 

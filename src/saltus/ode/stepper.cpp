@@ -1,6 +1,7 @@
 #include "saltus/ode/stepper.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,6 +14,9 @@
 
 namespace saltus::ode {
 namespace {
+
+/// On the negative real axis, as of the code DOP853.
+constexpr double dop853_stability_limit = 6.1;
 
 const ExplicitMethod* explicit_method(Method method, std::size_t n) {
   const bool few = 1 <= n && n <= few_states;
@@ -31,6 +35,12 @@ const ExplicitMethod* explicit_method(Method method, std::size_t n) {
 }
 
 }  // namespace
+
+std::string_view name(Method method) {
+  static constexpr std::array<std::string_view, methods> names{"dopri5", "dop853",  "radau5",
+                                                               "radau9", "radau13", "taylor"};
+  return names[static_cast<std::size_t>(method)];
+}
 
 int order(Method method) {
   switch (method) {
@@ -180,6 +190,12 @@ double Stepper::stability_ratio() const {
   if (took_series_) return series_->stability_ratio();
   return explicit_ != nullptr ? explicit_->stability_ratio(explicit_step()) : 0.0;
 }
+
+double Stepper::stability_ratio_of_explicit() {
+  return std::abs(h_) * radau_->spectral_radius() / dop853_stability_limit;
+}
+
+double Stepper::contraction() const { return radau_->contraction(); }
 
 double Stepper::change(const Tolerances& tolerances) const {
   double largest = 0.0;

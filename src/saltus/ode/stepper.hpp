@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "saltus/base/function_ref.hpp"
@@ -17,6 +18,8 @@ namespace saltus::ode {
 /// and seven stages; the Taylor series of the solution where the right-hand side is affine and its linear part is
 /// known, and dop853 elsewhere.
 enum class Method { dopri5, dop853, radau5, radau9, radau13, taylor };
+inline constexpr std::size_t methods = 6;
+[[nodiscard]] std::string_view name(Method method);
 
 /// Returns whether a method is one of Radau's.
 [[nodiscard]] constexpr bool is_implicit(Method method) {
@@ -160,6 +163,13 @@ class Stepper {
   /// more in step after step means that stability, not accuracy, limits the steps. 0 where that is not known, and for
   /// Radau methods.
   [[nodiscard]] double stability_ratio() const;
+  /// Returns, of a Radau method, the length of the last attempt over that at which dop853 would become unstable: by the
+  /// spectral radius of its Jacobian, which is found better from call to call (power iteration). Cost: two products
+  /// with the Jacobian.
+  [[nodiscard]] double stability_ratio_of_explicit();
+  /// Returns, of a Radau method, the rate of convergence of Newton's iteration in the last attempt; 0 where corrections
+  /// were roundings at once.
+  [[nodiscard]] double contraction() const;
 
   /// Returns the largest change of a component in the last attempt, which was finite, in units of its tolerance.
   [[nodiscard]] double change(const Tolerances& tolerances) const;

@@ -11,6 +11,7 @@
 #include "saltus/model/system.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/simulate/dropped_under_lock_internal.hpp"
+#include "saltus/pipeline/simulate/error_estimate_internal.hpp"
 #include "saltus/pipeline/simulate/methods_internal.hpp"
 #include "saltus/pipeline/simulate/simulation_internal.hpp"
 
@@ -57,7 +58,13 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   if (!asked) return tl::unexpected(asked.error());
   KernelStore of_this_run;
   auto result = by_its_method(*asked, kernels != nullptr ? *kernels : of_this_run);
-  if (result) finish_result(asked->system, *result);
+  if (!result) return result;
+  finish_result(asked->system, *result);
+  if (!options.error_estimate) return result;
+  auto errors = estimate_errors(*result, options,
+                                [&](const SimulateOptions& other) { return simulate(system, other, observers); });
+  if (!errors) return tl::unexpected(errors.error());
+  result->error_estimate = std::move(*errors);
   return result;
 }
 

@@ -178,6 +178,33 @@ std::string family_table(const result::Result& result) {
   return text;
 }
 
+/// "dopri5 120 steps over 0.4, radau9 35 steps over 9.6", in units of t.
+std::string integrators_text(const result::Statistics& statistics) {
+  std::vector<std::string> parts;
+  for (const auto& use : statistics.integrators)
+    parts.push_back(fmt::format("{} {} steps over {:.4g}", use.name, use.steps, use.time));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// The largest errors, and from where on there are none.
+std::string error_text(const result::Result& result, const result::ErrorEstimate& estimate) {
+  std::vector<std::string> parts;
+  for (std::size_t i = 0; i < std::min(estimate.final.size(), result.states.size()); ++i) {
+    if (std::isfinite(estimate.final[i]))
+      parts.push_back(fmt::format("{} {:.2g}", result.states[i], estimate.final[i]));
+  }
+  constexpr std::size_t most = 6;
+  if (parts.size() > most) parts.resize(most);
+  const auto& times = estimate.event_times;
+  const double latest = times.empty() ? 0.0 : *std::max_element(times.begin(), times.end());
+  std::string text = fmt::format("about, at the end: {}; of event times: {:.2g}", fmt::join(parts, ", "), latest);
+  if (estimate.parted_at) {
+    text += fmt::format("; event {} is another one at smaller tolerances: from there on nothing is known",
+                        *estimate.parted_at + 1);
+  }
+  return text;
+}
+
 std::string method_text(const result::Result& result) {
   if (result.optimization) return optimization_method(result);
   const auto value_of = [&](std::string_view key, std::string_view form) -> std::string {
@@ -238,6 +265,8 @@ std::string to_table(const result::Result& result, std::size_t shown_events, con
   text += paragraph("statistics", fmt::format("{} steps, {} rejected, {} evaluations of the right-hand side, {:.3g} s",
                                               statistics.steps, statistics.rejected, statistics.rhs_evaluations,
                                               statistics.wall_seconds));
+  if (!statistics.integrators.empty()) text += paragraph("integrator", integrators_text(statistics));
+  if (result.error_estimate) text += paragraph("errors", error_text(result, *result.error_estimate));
   if (statistics.thinned_from) {
     text += paragraph("rows", fmt::format("those between events are thinned from t = {} on, as there are very many; "
                                           "output = \"steps\" has those of all steps",

@@ -17,6 +17,7 @@
 #include "saltus/result/comparison.hpp"
 #include "saltus/result/drawing.hpp"
 #include "saltus/result/elements.hpp"
+#include "saltus/result/error_estimate.hpp"
 #include "saltus/result/events.hpp"
 #include "saltus/result/optimization.hpp"
 #include "saltus/result/sensitivities.hpp"
@@ -214,6 +215,8 @@ struct Result {
   std::optional<double> penetration;        ///< with contacts: the largest depth -gap of all rows, 0 without any
   std::vector<Surface> surfaces;            ///< empty unless asked for (pipeline::surfaces)
   std::optional<VectorField> vector_field;  ///< of a model with two states, if asked for (pipeline::vector_field)
+
+  std::optional<ErrorEstimate> error_estimate;  ///< if asked for
 
   std::optional<Sensitivities> sensitivities;  ///< of the end state, if asked for
   std::optional<Elements> elements;            ///< of methods made of finite elements, unless there are too many

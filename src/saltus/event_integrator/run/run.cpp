@@ -100,13 +100,16 @@ CompactIntegration Run::finish() {
   if (!run_.recorder.ends_at(here.t)) run_.row(here.t, here.x);
   CompactIntegration result;
   result.status = std::move(run_.status);
-  if (const auto stiff_at = steps_.stiff_at()) {
-    result.status.message +=
-        fmt::format("{}the model looks stiff from t = {:.6g} on: integrator = \"radau5\" may need far fewer steps",
-                    result.status.message.empty() ? "" : "; ", *stiff_at);
+  // Beside a two-fold point steps are short for another reason.
+  const bool limited = result.status.termination != result::Termination::outside_class;
+  if (const auto stiff_at = steps_.choice().stiff_at(); limited && stiff_at) {
+    result.status.message += fmt::format(
+        "{}the model looks stiff from t = {:.6g} on: integrator = \"auto\" or \"radau5\" may need far fewer steps",
+        result.status.message.empty() ? "" : "; ", *stiff_at);
   }
   result.status.time_reached = here.t;
   result.statistics = statistics_;
+  result.statistics.integrators = steps_.choice().uses();
   result.statistics.thinned_from = run_.rows.thinned_from();
   result.statistics.rhs_evaluations = run_.kernel.field_evaluations() - evaluations_before_;
   choices_.families().close(here.t);
@@ -124,8 +127,8 @@ std::string Run::advice_on_steps() {
   const std::string cycles = ContractingCycles(run_.switching, run_.here, run_.recorder).describe();
   const std::string raise = "; raise simulate.max_steps if they are meant";
   if (!cycles.empty()) return "; " + cycles;  // more steps are of no use
-  const bool explicit_steps = run_.options.method == ode::Method::dopri5 || run_.options.method == ode::Method::dop853;
-  const bool is_told = steps_.stiff_at().has_value();  // at the end of the message
+  const bool explicit_steps = !run_.options.chooses_method && !ode::is_implicit(run_.options.method);
+  const bool is_told = steps_.choice().stiff_at().has_value();  // at the end of the message
   return raise + (explicit_steps && !is_told ? ", or try --integrator radau5: the model may be stiff" : "");
 }
 

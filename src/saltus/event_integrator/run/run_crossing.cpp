@@ -191,8 +191,11 @@ bool Run::go_on_behind(const Located& located, const ModeChange& change) {
 
 /// The solution behind the switch of a surface may stay on the dense output of the step before it, but for few states.
 void Run::keep_step(int surface) {
+  // Local steps are those of an explicit method.
   const auto* known =
-      fast_.local.behind(surface, run_.here.t, run_.here.x, steps_.dense(), steps_.last_error(), run_.here.state);
+      ode::is_implicit(steps_.method())
+          ? nullptr
+          : fast_.local.behind(surface, run_.here.t, run_.here.x, steps_.dense(), steps_.last_error(), run_.here.state);
   run_.field.follow_known(known);
   if (known != nullptr) {
     run_.here.h = known->h;

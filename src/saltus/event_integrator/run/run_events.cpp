@@ -152,9 +152,11 @@ void Run::start_step() {
 
 /// Steps through the beginning of a slip in a plane are implicit.
 void Run::choose_method() {
-  if (run_.contacts.none() || ode::is_implicit(run_.options.method)) return;
-  const bool fast = run_.contacts.turns_fast(run_.contact_moment(), run_.here.x);
-  steps_.use(fast ? ode::Method::radau5 : run_.options.method);
+  const ode::Method wanted = steps_.choice().method();
+  const bool may_turn = !run_.contacts.none() && !ode::is_implicit(wanted);
+  const bool turns = may_turn && run_.contacts.turns_fast(run_.contact_moment(), run_.here.x);
+  steps_.use(turns ? ode::Method::radau5 : wanted);
+  run_.search.follow(steps_.method());
 }
 
 bool Run::too_many_events() {

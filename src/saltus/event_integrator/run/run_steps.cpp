@@ -167,7 +167,8 @@ void Run::accept(double t_new) {
   steps_.memory().accepted(here.h);
   switches_.end_if_over(roots_of_cycles());
   // Where steps are as long as they may be there are none longer.
-  if (h < 0.5 * run_.options.max_step.value_or(std::numeric_limits<double>::infinity())) steps_.watch_stiffness();
+  const bool watched = h < 0.5 * run_.options.max_step.value_or(std::numeric_limits<double>::infinity());
+  steps_.choice().accepted(steps_.stepper(), run_.tolerances.step(), watched);
   if (run_.search.settle(here.t, here.x.data())) resolver_.settle_signs();
   come_to_end_of_step(h);
 }
@@ -196,6 +197,7 @@ void Run::come_to_end_of_step(double h) {
 /// An attempt has met points where the right-hand side is undefined: what is there, or a shorter attempt.
 Run::Step Run::beside_undefined(double t_new) {
   steps_.note_undefined();
+  steps_.choice().failed();
   auto located = zeros_.any_ending() ? zeros_.ahead(t_new) : std::nullopt;
   // Not on the way of a long step, which has others to look at.
   constexpr double short_way = 1e3;

@@ -239,7 +239,8 @@ double EventSearch::node_theta(double from, double to, std::size_t node) const {
 /// Whether the samples at every second node show that a curved function stays far from zero.
 bool EventSearch::is_far(std::size_t i) const {
   // NOTE: a dense output of degree 7 dips between five nodes (the relay loses events at loose tolerances).
-  if (!mode_.prefilter[i] || mode_.functions[i].sign == 0 || mode_.functions[i].zero_order != 0) return false;
+  if (!five_nodes_suffice_ || !mode_.prefilter[i] || mode_.functions[i].sign == 0 || mode_.functions[i].zero_order != 0)
+    return false;
   const auto value = [&](std::size_t node) { return samples_[node * mode_.functions.size() + i]; };
   return stays_far({value(0), value(2), value(4), value(6), value(8)}, mode_.functions[i].sign);
 }

@@ -45,6 +45,8 @@ class EventSearch {
   EventSearch(const evaluation::ModelKernel& kernel, ModeField& field, Ledger& ledger, ode::Method method,
               const ode::Tolerances& tolerances);  ///< those of the steps, kept as a reference
 
+  /// Goes on with dense outputs of another method.
+  void follow(ode::Method method) { five_nodes_suffice_ = ode::dense_degree(method) <= 4; }
   /// Sets up the functions of a mode at (t, x), after an evaluation of the field there. `zero_order` (n_psi): zeros
   /// that surfaces have at this point; those of user functions, and their signs, are in the ledger.
   void enter(const ModeState& state, const std::vector<int>& zero_order, double t, const double* x);

@@ -139,7 +139,7 @@ void EventSearch::renew_exits(std::size_t row, const double* x) {
     mode_.put(i, {kind, surface, static_cast<int>(row), sign});
     mode_.forms.replace(i, field_.exit_row(row, side, x));
     mode_.list_curved(i);
-    mode_.prefilter[i] = five_nodes_suffice_;
+    mode_.prefilter[i] = true;
     inspected_.push_back(i);
   };
   const std::size_t first = mode_.exit_of(at(surface));
@@ -390,7 +390,7 @@ void EventSearch::set_forms(const double* x) {
     if (mode_.forms.has(i)) continue;
     mode_.curved.push_back(i);
     // Functions that are not affine in the state may oscillate within a step: five nodes do not speak for them.
-    mode_.prefilter[i] = five_nodes_suffice_ && !uses_phi(function);
+    mode_.prefilter[i] = !uses_phi(function);
   }
   mode_.forms.group();
   mode_.curved_parts = mode_.parts_of(mode_.curved);

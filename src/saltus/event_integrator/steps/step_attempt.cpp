@@ -15,6 +15,7 @@ StepAttempt::StepAttempt(const IntegrationOptions& options, const model::Layout&
       method_(options.method),
       stepper_(options.method, static_cast<int>(here.x.size())),
       control_(options.method),
+      choice_(options, here),
       x_(here.x.size()),
       slope_(x_.size()),
       dense_slope_(x_.size()) {
@@ -36,7 +37,6 @@ void StepAttempt::use(ode::Method method) {
   method_ = method;
   stepper_ = ode::Stepper(method, static_cast<int>(x_.size()));
   control_ = ode::StepControl(method);
-  stiffness_.reset();
 }
 
 bool StepAttempt::remake_dense() {
@@ -90,13 +90,9 @@ void StepAttempt::accepted(double h) {
   last_ = h;
 }
 
-void StepAttempt::watch_stiffness() {
-  if (!stiff_at_ && !stepper_.follows() && stiffness_.looks_stiff(stepper_, tolerances_.step())) stiff_at_ = here_.t;
-}
-
 void StepAttempt::begin_mode() {
   stepper_.restart();
-  stiffness_.reset();
+  choice_.begin_mode();
 }
 
 void StepAttempt::restart_control(Steps steps) {

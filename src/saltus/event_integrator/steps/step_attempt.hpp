@@ -1,12 +1,12 @@
 // One attempt at a step: the method, its error, its dense output, and the length of the next one.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/mode/position.hpp"
 #include "saltus/event_integrator/options.hpp"
+#include "saltus/event_integrator/steps/method_choice.hpp"
 #include "saltus/event_integrator/steps/step_memory.hpp"
 #include "saltus/event_integrator/steps/step_tolerances.hpp"
 #include "saltus/model/layout.hpp"
@@ -54,19 +54,18 @@ class StepAttempt {
   /// Returns the factor of the next length behind an attempt whose error was too large.
   [[nodiscard]] double rejected(double error) { return control_.rejected(error); }
   void follow_method() { control_.follow(stepper_.method()); }
-  /// Takes the steps from here on by a method in place of the one that was asked for, or by that again.
+  /// Takes the steps from here on by a method; that of the choice, or one in its place.
   void use(ode::Method method);
-  /// Returns whether they are taken by another method than that.
-  [[nodiscard]] bool uses_another() const { return method_ != options_.method; }
+  /// Returns whether they are not taken by the method that steps begin with, or are not to be any more.
+  [[nodiscard]] bool uses_another() const { return method_ != options_.method || method_ != choice_.method(); }
+  [[nodiscard]] ode::Method method() const { return method_; }
+  [[nodiscard]] MethodChoice& choice() { return choice_; }
+  [[nodiscard]] const MethodChoice& choice() const { return choice_; }
 
   /// Notes that the last attempt, of length h, was accepted, and the position is at its end.
   void accepted(double h);
   /// Returns what the control proposes behind it.
   [[nodiscard]] double proposed(double h) { return h * control_.accepted(error_norm()); }
-  /// Watches where the explicit method first looked out of place.
-  void watch_stiffness();
-  [[nodiscard]] std::optional<double> stiff_at() const { return stiff_at_; }
-
   /// Begins a mode: the field has become another one.
   void begin_mode();
   /// Begins the control anew behind an event; `repeats`: steps may be like ones before.
@@ -92,7 +91,7 @@ class StepAttempt {
   ode::Method method_;
   ode::Stepper stepper_;
   ode::StepControl control_;
-  ode::StiffnessWatch stiffness_;
+  MethodChoice choice_;
   StepMemory memory_;
   ode::DenseStep dense_;
   const ode::DenseStep* known_ = nullptr;  ///< in its place
@@ -104,8 +103,7 @@ class StepAttempt {
   int doubts_ = 0;  ///< at this step
   double longest_ = 0.0;
   double last_error_ = 1.0;
-  double last_ = 0.0;  ///< the last step since the control began; 0 = none
-  std::optional<double> stiff_at_;
+  double last_ = 0.0;                            ///< the last step since the control began; 0 = none
   std::vector<double> x_, slope_, dense_slope_;  ///< in the middle of a step
 };
 

@@ -236,6 +236,7 @@ result::Result read_whole(JsonReader& reader, const Json& json, const std::strin
   if (!result.optimization) read_part(reader, json, path, "statistics", result.statistics);
   read_with(reader, json, path, "options", read_option_record, result.options);
   read_part_if_there(reader, json, path, "sensitivities", result.sensitivities);
+  read_part_if_there(reader, json, path, "error_estimate", result.error_estimate);
   read_part_if_there(reader, json, path, "elements", result.elements);
   if (has("comparison")) read_with(reader, json, path, "comparison", read_comparison, result.comparison);
   read_part_if_there(reader, json, path, "order", result.order);

@@ -63,11 +63,19 @@ struct RecordMembers<result::Status> {
 };
 
 template <>
+struct RecordMembers<result::IntegratorUse> {
+  using R = result::IntegratorUse;
+  static constexpr auto list =
+      std::make_tuple(field("name", &R::name), field("steps", &R::steps), field("time", &R::time));
+};
+
+template <>
 struct RecordMembers<result::Statistics> {
   using R = result::Statistics;
   static constexpr auto list = std::make_tuple(
       field("steps", &R::steps), field("rejected", &R::rejected), field("rhs_evaluations", &R::rhs_evaluations),
-      field("wall_seconds", &R::wall_seconds), field("thinned_from", &R::thinned_from, Presence::if_any),
+      field("wall_seconds", &R::wall_seconds), field("integrators", &R::integrators, Presence::if_any),
+      field("thinned_from", &R::thinned_from, Presence::if_any),
       field("error_estimate", &R::error_estimate, Presence::if_any));
 };
 
@@ -124,6 +132,14 @@ struct RecordMembers<result::Trajectory> {
       field("t", &R::t), field("x", &R::x), field("u", &R::u), field("alpha", &R::alpha), field("mode", &R::mode),
       field("outputs", &R::outputs), field("regions", &R::regions, Presence::if_any),
       field("theta", &R::theta, Presence::if_any), field("contact_modes", &R::contact_modes, Presence::if_any));
+};
+
+template <>
+struct RecordMembers<result::ErrorEstimate> {
+  using R = result::ErrorEstimate;
+  static constexpr auto list =
+      std::make_tuple(field("ratio", &R::ratio), field("x", &R::x), field("event_times", &R::event_times),
+                      field("final", &R::final), field("parted_at", &R::parted_at, Presence::if_any));
 };
 
 template <>

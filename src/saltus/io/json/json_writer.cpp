@@ -146,6 +146,7 @@ void append_with(AppendLists append_lists, TextStream& stream, const result::Res
   object.member("options", options_json(result.options));
   if (result.sensitivities) object.member("sensitivities", record_json(*result.sensitivities));
   if (result.optimization) object.member("start_values", members_json(*result.optimization, StartValues::list));
+  if (result.error_estimate) object.member("error_estimate", record_json(*result.error_estimate));
   if (result.elements) object.member("elements", record_json(*result.elements));
   if (result.comparison) object.member("comparison", comparison_json(*result.comparison));
   if (result.order) object.member("order", record_json(*result.order));

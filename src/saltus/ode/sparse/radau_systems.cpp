@@ -41,6 +41,21 @@ bool RadauSystems<pairs>::set_column(linalg::Index column, const Vector& differe
 }
 
 template <std::size_t pairs>
+void RadauSystems<pairs>::multiply(const Vector& x, Vector& product) const {
+  product.set_zero();
+  for (linalg::Index j = 0; j < n_; ++j) {
+    if (pattern_ == nullptr) {
+      product.add_scaled(x[j], jacobian_.col(j));
+      continue;
+    }
+    const auto column = static_cast<std::size_t>(j);
+    for (std::size_t k = pattern_->start[column]; k < pattern_->start[column + 1]; ++k) {
+      product[static_cast<linalg::Index>(pattern_->row[k])] += entries_[k] * x[j];
+    }
+  }
+}
+
+template <std::size_t pairs>
 bool RadauSystems<pairs>::factorize(const Shifts& shifts) {
   if (pattern_ != nullptr) {
     Joint shift;

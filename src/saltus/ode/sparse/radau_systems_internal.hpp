@@ -39,6 +39,8 @@ class RadauSystems {
   [[nodiscard]] double* entries() { return pattern_ != nullptr ? entries_.data() : jacobian_.data(); }
   /// Sets column j of J from the difference of slopes that its group gives; false where an entry is not finite.
   [[nodiscard]] bool set_column(linalg::Index column, const Vector& difference, double increment);
+  /// Computes the product of J and a vector.
+  void multiply(const Vector& x, Vector& product) const;
   /// Factorizes; returns false where a matrix is singular.
   [[nodiscard]] bool factorize(const Shifts& shifts);
   /// Solves the real one.

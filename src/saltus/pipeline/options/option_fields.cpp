@@ -23,6 +23,7 @@ constexpr auto rtol_of = [](auto& o) -> auto& { return o.rtol; };
 constexpr auto atol_of = [](auto& o) -> auto& { return o.atol; };
 constexpr auto event_rows_of = [](auto& o) -> auto& { return o.event_rows; };
 constexpr auto continuous_of = [](auto& o) -> auto& { return o.continuous; };
+constexpr auto error_estimate_of = [](auto& o) -> auto& { return o.error_estimate; };
 constexpr auto native_of = [](auto& o) -> auto& { return o.native; };
 constexpr auto max_steps_of = [](auto& o) -> auto& { return o.max_steps; };
 constexpr auto members_of = [](auto& o) -> auto& { return o.event.members; };
@@ -39,9 +40,10 @@ void record_until(const SimulateOptions& options, std::string_view key, OptionRe
 
 constexpr Choices<Method, 4> methods{{"event", "smoothed", "fesd", "timestepping"},
                                      {Method::event, Method::smoothed, Method::fesd, Method::timestepping}};
-constexpr Choices<Integrator, 6> integrators{{"dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"},
-                                             {Integrator::dopri5, Integrator::dop853, Integrator::radau5,
-                                              Integrator::radau9, Integrator::radau13, Integrator::taylor}};
+constexpr Choices<Integrator, 7> integrators{
+    {"auto", "dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"},
+    {Integrator::automatic, Integrator::dopri5, Integrator::dop853, Integrator::radau5, Integrator::radau9,
+     Integrator::radau13, Integrator::taylor}};
 /// What a word of other programs, or one in the wrong place, stands for; empty for others.
 std::string_view integrator_meant(std::string word) {
   std::transform(word.begin(), word.end(), word.begin(),
@@ -53,7 +55,7 @@ std::string_view integrator_meant(std::string word) {
                                                                        {"vern9", "dop853"},
                                                                        {"radau", "radau5"},
                                                                        {"bdf", "radau5"},
-                                                                       {"lsoda", "radau5"},
+                                                                       {"lsoda", "auto"},
                                                                        {"ode15s", "radau5"},
                                                                        {"rodas5", "radau5"}}};
   for (const auto& [name, integrator] : elsewhere) {
@@ -140,6 +142,10 @@ void put(std::vector<std::pair<std::string, Value>>& entries, std::string_view n
 }
 
 /// No file has what it asks for.
+void record_error_estimate(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  if (options.error_estimate) record.emplace_back(key, true);
+}
+
 void record_continuous(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
   if (options.continuous) record.emplace_back(key, true);
 }
@@ -224,6 +230,12 @@ constexpr std::array fields{
                 "Rows have the modes and selections of these switching functions only. Default: all.",
                 set_kept<&KeptNames::surfaces>,
                 record_kept<&KeptNames::surfaces>},
+    OptionField{"error_estimate",
+                {.truth = true},
+                "Errors of rows, event times and end state are estimated, by a second run at a hundredth of the "
+                "tolerances. Default: false.",
+                set_truth<error_estimate_of, SimulateOptions>,
+                record_error_estimate},
     OptionField{"continuous",
                 {.truth = true},
                 "Polynomials of all steps are kept, for x(t) in programs. Default: false.",
@@ -242,7 +254,9 @@ constexpr std::array fields{
                 record_initial_mode},
     choice_field<integrator_of, integrators>(
         "event.integrator",
-        "Runge-Kutta of order 5, of order 8, of order 5, 9, 13 for stiff models; Taylor series where modes are affine.",
+        "auto: explicit steps, of order 5, 9 or 13 for stiff models where they are; or always Runge-Kutta of order 5, "
+        "of "
+        "order 8, of order 5, 9, 13 for stiff models; Taylor series where modes are affine.",
         name_integrator),
     number_or_none_field<max_step_of, none_word>("event.max_step", positive_number, "Longest step."),
     truth_field<local_steps_of>("event.local_steps",

@@ -13,7 +13,7 @@
 namespace saltus::pipeline {
 
 enum class Method { event, fesd, timestepping, smoothed };
-using Integrator = ode::Method;
+enum class Integrator { automatic, dopri5, dop853, radau5, radau9, radau13, taylor };
 enum class Native { automatic, on, off };
 enum class Selection { active_dominant, passive_dominant, scaled, report };
 
@@ -39,7 +39,7 @@ struct KeptNames {
 
 /// Holds [simulate.event].
 struct EventOptions {
-  Integrator integrator = Integrator::dopri5;
+  Integrator integrator = Integrator::automatic;
   std::optional<double> max_step{};  ///< none by default
   Selection selection = Selection::active_dominant;
   std::vector<std::pair<std::string, double>> scaling{};
@@ -87,8 +87,9 @@ struct SimulateOptions {
   double atol = 1e-10;
   OutputGrid output = Automatic{};
   KeptNames kept{};
-  bool event_rows = true;   ///< rows before and behind every event; without them no two rows have the same time
-  bool continuous = false;  ///< asks for Result::continuous
+  bool event_rows = true;       ///< rows before and behind every event; without them no two rows have the same time
+  bool error_estimate = false;  ///< asks for Result::error_estimate
+  bool continuous = false;      ///< asks for Result::continuous
   Native native = Native::automatic;
   long max_steps = 1000000;
   long max_events = 100000;

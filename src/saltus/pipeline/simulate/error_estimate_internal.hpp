@@ -1,0 +1,20 @@
+// Errors of a simulation by a second one with smaller tolerances.
+#pragma once
+
+#include "saltus/base/error.hpp"
+#include "saltus/base/function_ref.hpp"
+#include "saltus/pipeline/options/simulate_options.hpp"
+#include "saltus/result/result.hpp"
+
+namespace saltus::pipeline {
+
+/// Simulates with other options.
+using SimulateAgain = FunctionRef<Expected<result::Result>(const SimulateOptions&)>;
+
+/// Returns estimates of the errors of rows, events and end: differences to a run at a hundredth of the tolerances,
+/// whose own errors are about a hundredth. Rows at events are compared with the same event. Fails where the second run
+/// does. Cost: that of the run times 3 to 6.
+[[nodiscard]] Expected<result::ErrorEstimate> estimate_errors(const result::Result& result, SimulateOptions options,
+                                                              const SimulateAgain& again);
+
+}  // namespace saltus::pipeline
