@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/foreign/derivatives_internal.hpp"
 #include "saltus/foreign/functions_internal.hpp"
 #include "saltus/foreign/make_problem_internal.hpp"
 #include "saltus/foreign/row_ranges_internal.hpp"
@@ -53,8 +54,7 @@ std::unique_ptr<Problem> make_problem(Statement statement) {
   const SX f =
       SX::densify(all->statement.sense == Sense::maximize ? -all->statement.objective : all->statement.objective);
   const SX factor = SX::sym("factor"), y = SX::sym("y", c.numel());
-  const SX jacobian = SX::jacobian(c, w);
-  const SX hessian = SX::tril(SX::hessian(factor * f + SX::dot(y, c), w));
+  const SX jacobian = jacobian_of(c, w), hessian = hessian_of(f, c, w, factor, y);
   all->jacobian_pattern = pattern_of(jacobian);
   all->hessian_pattern = pattern_of(hessian);
   const casadi::Slice sides(static_cast<casadi_int>(all->statement.rows.size()), c.numel());
