@@ -20,6 +20,8 @@ using result::StationarityType;
 using result::Termination;
 
 constexpr double radius = 1e-3;
+/// Barrier parameter of a branch that begins where its objective falls.
+constexpr double near_mu = 1e-6;
 /// Of one linear program with complementarities.
 constexpr double lpcc_seconds = 60.0;
 /// Branches that a solution may visit: every one is better than the one before, so this is only a guard.
@@ -135,11 +137,13 @@ class Descent {
   }
 
   /// Takes the branch with the group on its other side if that is better.
-  bool take(const mpcc::BranchMove& move, const std::string& message, int iterations = branch_iterations) {
+  bool take(const mpcc::BranchMove& move, const std::string& message, int iterations = branch_iterations,
+            std::optional<double> first_mu = std::nullopt) {
     const auto& sides = move.sides;
     const auto& appearing = move.appearing;
     if (!visited_.insert(sides).second) return false;
-    crossover::Branch next = run_.solve_branch(sides, move.start, iterations, message, branch().objective, appearing);
+    crossover::Branch next =
+        run_.solve_branch(sides, move.start, iterations, message, branch().objective, appearing, first_mu);
     const bool is_unfinished = next.report.termination == Termination::iteration_limit;
     if (is_unfinished && (stays(next) || is_nearly_better(next))) {
       next = run_.solve_branch(sides, next.w, branch_iterations, message, branch().objective, appearing);
@@ -259,9 +263,9 @@ class Descent {
         sides[at(pair)] = found.first_is_active[i] ? ActiveSide::G : ActiveSide::H;
     }
     if (take({sides, branch().w, {}}, "proposed by the linear program")) return true;
-    // Flipped already, but not from as far as the linear program sees.
-    return visited_.erase(sides) > 0 &&
-           take({sides, branch().w + radius * found.d, {}}, "proposed by the linear program");
+    // Better points are beside this one: a barrier that leaves it there does not pass them by.
+    return visited_.erase(sides) > 0 && take({sides, branch().w + radius * found.d, {}},
+                                             "proposed by the linear program", branch_iterations, near_mu);
   }
 
   Run& run_;

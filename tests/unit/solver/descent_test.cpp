@@ -66,6 +66,17 @@ TEST(Descent, LinearProgramFindsWhatNoSingleFlipDoes) {
   EXPECT_EQ(solution.certificate.b_stationary, true);
 }
 
+TEST(Descent, FindsTheValleyBesideThePoint) {
+  // min p(500 w0) + 10 w1 with p' = (s - 0.2) (s - 3) (s - 3.5): the origin, where p falls to -0.2015 at s = 0.2. What
+  // begins a hundredth away comes to s = 3.5, where p = 6.7.
+  mpcc::PolynomialProblem problem(small::statement(
+      2, 1, {{{1.5625e10, {4}}, {-6.7 / 3.0 * 1.25e8, {3}}, {1.475e6, {2}}, {-1050.0, {1}}, {10.0, {0, 1}}}}));
+  const Solution solution = descended(problem, {G}, linalg::Vector{0.0, 1.0});
+  EXPECT_NEAR(solution.w[0], 0.2 / 500.0, 1e-9);
+  EXPECT_NEAR(solution.objective, -0.201466666666667, 1e-9);
+  EXPECT_EQ(solution.certificate.b_stationary, true);
+}
+
 TEST(Descent, BStationaryWithoutBeingStrongly) {
   mpcc::PolynomialProblem problem(small::b_not_strong());
   const Solution solution = descended(problem, {G}, linalg::Vector{0.0, 1.0, 0.0});
