@@ -20,6 +20,8 @@ namespace {
 using result::Termination;
 
 constexpr int most_starts = 1000;
+/// Where the given start leads to no solution: of motions between nodes one start in 20 to one in 3 does.
+constexpr int usual_starts = 25;
 /// How far the way from the given start to a random point is gone.
 constexpr double way = 0.5;
 
@@ -35,8 +37,11 @@ bool is_better(const Solution& a, const Solution& b) {
   return a_done ? a.objective < b.objective : worst_violation(a) < worst_violation(b);
 }
 
-bool ends_all(const Solution& solution) {
-  return solution.termination == Termination::time_limit || solution.termination == Termination::stopped_by_user;
+/// Whether no other start is needed, or wanted.
+bool ends_all(const Solution& solution, const SolveOptions& options) {
+  const auto why = solution.termination;
+  if (why == Termination::time_limit || why == Termination::stopped_by_user) return true;
+  return !options.starts && (why == Termination::completed || solution.is_unbounded);
 }
 
 /// What one start has come to; nothing where others have ended all before.
@@ -65,7 +70,7 @@ Expected<Solution> best_of(std::vector<Tried> all) {
   }
   for (auto& outcome : outcomes) outcome.is_taken = outcome.seed == static_cast<int>(taken);
   Solution best = std::move(**all[taken].found);
-  best.starts = std::move(outcomes);
+  if (outcomes.size() > 1) best.starts = std::move(outcomes);
   best.iterations = iterations;
   return best;
 }
@@ -95,15 +100,16 @@ linalg::Vector start_of_seed(const mpcc::Problem& problem, ConstVectorView w, in
 
 Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
                          const std::optional<Start>& start) {
-  if (options.starts < 1 || options.starts > most_starts) {
+  const int count = options.starts.value_or(usual_starts);
+  if (count < 1 || count > most_starts) {
     Error error;
     error.code = ErrorCode::invalid_option;
-    error.message = fmt::format("starts = {} is not from 1 to {}", options.starts, most_starts);
+    error.message = fmt::format("starts = {} is not from 1 to {}", count, most_starts);
     return tl::unexpected(std::move(error));
   }
-  if (options.starts == 1) return solve_from(problem, nlp, lpcc, options, start);
+  if (count == 1) return solve_from(problem, nlp, lpcc, options, start);
   const linalg::Vector w = start ? start->w : problem.start();
-  std::vector<Tried> all(at(options.starts));
+  std::vector<Tried> all(at(count));
   const Stopwatch stopwatch;
   std::atomic<bool> is_over = false;
   const auto from_seed = [&](int seed, const Place& place) {
@@ -118,9 +124,13 @@ Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpc
     auto& tried = all[at(seed)];
     tried.found = solve_from(place.problem, place.nlp, place.lpcc, one, seed == 0 ? start : std::optional(moved));
     tried.seconds = own.seconds();
-    if (*tried.found && ends_all(**tried.found)) is_over = true;
+    const bool has_failed = seed == 0 && !*tried.found;
+    if (has_failed || (*tried.found && ends_all(**tried.found, options))) is_over = true;
   };
-  share_out({problem, nlp, lpcc}, options, options.starts, from_seed);
+  // Which is the first that is completed may not depend on who is faster.
+  SolveOptions sharing = options;
+  if (!options.starts) sharing.threads = 1;
+  share_out({problem, nlp, lpcc}, sharing, count, from_seed);
   return best_of(std::move(all));
 }
 

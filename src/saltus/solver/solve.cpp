@@ -93,7 +93,7 @@ bool has_small_residuals(const result::Certificate& certificate, double toleranc
 std::string reason(const Run& run) {
   const auto& of = run.solution.certificate;
   const double tolerance = run.options.tolerance;
-  if (run.is_diverging) return "unbounded: the iterates grow without limit while the objective falls";
+  if (run.solution.is_unbounded) return "unbounded: the iterates grow without limit while the objective falls";
   if (!(of.primal_infeasibility <= tolerance && of.complementarity_residual <= tolerance)) {
     const std::string rows = certificate::worst_rows(run.problem, run.solution.w, tolerance);
     return fmt::format("not feasible: {}{}{}", rows, run.failure.empty() ? "" : "; ", run.failure);
@@ -122,6 +122,7 @@ void judge(Run& run) {
     solution.message = "locally infeasible: " + certificate::worst_rows(run.problem, solution.w, tolerance);
   } else {
     solution.termination = Termination::not_converged;
+    solution.is_unbounded = run.is_diverging;
     solution.message = reason(run);
   }
 }

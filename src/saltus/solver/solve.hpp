@@ -45,7 +45,9 @@ struct SolveOptions {
   homotopy::WarmStart warm_start = homotopy::WarmStart::primal;
   FirstProblem first = FirstProblem::relaxed;
   bool crossover = true;
-  int starts = 1;  ///< the start itself, and others by seeds 1, 2, ...
+  /// The start itself, and others by seeds 1, 2, ...: all of them. Nothing: one after the other, until one is
+  /// completed.
+  std::optional<int> starts{};
   /// Random starts by seeds 1, 2, ... of which the first relaxed problem alone is solved, and compared: the path of the
   /// lowest objective goes on. Nothing is 0.
   std::optional<int> compared_starts{};
@@ -74,6 +76,7 @@ struct Solution {
   result::Certificate certificate;
   std::vector<result::HomotopyStep> homotopy;
   std::vector<result::StartOutcome> starts;  ///< where there were several
+  bool is_unbounded = false;                 ///< the iterates grow without limit while the objective falls
   bool crossed_over = false;                 ///< w solves a branch problem, whose sides are `sides`
   std::vector<mpcc::ActiveSide> sides;
   int iterations = 0;
@@ -91,7 +94,7 @@ struct Start {
 [[nodiscard]] linalg::Vector start_of_seed(const mpcc::Problem& problem, ConstVectorView w, int seed);
 
 /// Solves from problem.start(), or from `start`; with several starts from each, and gives the best: of those that are
-/// completed the one with the lowest objective. Then iterations are those of all.
+/// completed the one with the lowest objective, else the one that violates the least. Then iterations are those of all.
 /// Fails (invalid_option) for a schedule or tolerances outside their ranges, and (invalid_model) if a function is not
 /// finite at the start: the message names it.
 [[nodiscard]] Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,

@@ -25,7 +25,7 @@ mpcc::PolynomialProblem two_valleys() {
   return mpcc::PolynomialProblem(statement);
 }
 
-Expected<Solution> solved_from(int starts, int threads = 1) {
+Expected<Solution> solved_from(std::optional<int> starts, int threads = 1) {
   auto problem = two_valleys();
   adapters::IpoptSolver ipopt;
   adapters::HighsLpcc highs;
@@ -75,6 +75,38 @@ TEST(SeveralStarts, FindTheLowerValley) {
     }
   }
   EXPECT_EQ(best->iterations, iterations);
+}
+
+TEST(SeveralStarts, FollowOnlyUntilOneIsCompleted) {
+  const auto one = solved_from(1), enough = solved_from(std::nullopt);
+  ASSERT_TRUE(one.has_value() && enough.has_value());
+  EXPECT_EQ(enough->objective, one->objective);
+  EXPECT_EQ(enough->iterations, one->iterations);
+  EXPECT_TRUE(enough->starts.empty());
+
+  // min w, ((w + 1)^2 + 0.1) (w - 4)^2 <= 1 on [-2, 6]: w = 3.79; near -1 the violation has a local minimum.
+  mpcc::PolynomialStatement statement;
+  statement.variables = 1;
+  statement.f = {{{1.0, {1}}}};
+  statement.g = {{{{1.0, {4}}, {-6.0, {3}}, {1.1, {2}}, {23.2, {1}}, {17.6, {}}}}};
+  statement.w_bounds = {linalg::Vector{-2.0}, linalg::Vector{6.0}};
+  statement.g_bounds = {linalg::Vector{-std::numeric_limits<double>::infinity()}, linalg::Vector{1.0}};
+  mpcc::PolynomialProblem problem(statement);
+  adapters::IpoptSolver ipopt;
+  adapters::HighsLpcc highs;
+  SolveOptions options;
+  const Start start{.w = linalg::Vector{-0.9}, .multipliers = {}};
+  const auto solved = solve(problem, ipopt, highs, options, start);
+  ASSERT_TRUE(solved.has_value());
+  EXPECT_EQ(solved->termination, Termination::completed);
+  EXPECT_NEAR(solved->objective, 3.79176144491, 1e-8);
+  ASSERT_GT(solved->starts.size(), 1u);
+  EXPECT_NE(solved->starts.front().termination, Termination::completed);
+  EXPECT_TRUE(solved->starts.back().is_taken);
+  options.starts = 1;
+  const auto from_there = solve(problem, ipopt, highs, options, start);
+  ASSERT_TRUE(from_there.has_value());
+  EXPECT_NE(from_there->termination, Termination::completed);
 }
 
 TEST(SeveralStarts, SeedsGiveTheSameStartsWithinBounds) {

@@ -22,7 +22,9 @@ using small::infinity;
 Solution solved(mpcc::Problem& problem, const linalg::Vector& start, const SolveOptions& options = {}) {
   adapters::IpoptSolver ipopt;
   adapters::HighsLpcc highs;
-  auto solution = solve(problem, ipopt, highs, options, Start{.w = start, .multipliers = {}});
+  SolveOptions from_there = options;
+  from_there.starts = 1;
+  auto solution = solve(problem, ipopt, highs, from_there, Start{.w = start, .multipliers = {}});
   EXPECT_TRUE(solution.has_value());
   return solution ? *solution : Solution{};
 }

@@ -116,6 +116,7 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
   for (const auto& warning : stated->warnings) observers.on_warning(warning);
   SolvedOcp solved{.stated = std::move(*stated), .solution = {}, .build_seconds = building.seconds()};
   solver::SolveOptions wanted = options.mpcc;
+  wanted.starts = wanted.starts.value_or(1);
   wanted.is_interrupted = observers.is_interrupted;
   wanted.on_step = observers.on_step;
   wanted.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));

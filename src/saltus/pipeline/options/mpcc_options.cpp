@@ -55,9 +55,10 @@ const std::array fields_of_mpcc{
     choice_field<strategy_of, strategies, SolveOptions>(
         "solver",
         "All relaxed problems in one loop of the interior-point method (structured), or one after the other (ipopt)."),
-    number_field<starts_of, SolveOptions>(
+    number_or_none_field<starts_of, auto_word, SolveOptions>(
         "starts", Numbers{.whole = true, .from = 1.0, .up_to = most_starts},
-        "The problem is solved from its start and from random ones beside it (seeds 1, 2, …); the best is the answer."),
+        "The problem is solved from its start and from random ones beside it (seeds 1, 2, …); the best is the answer. "
+        "auto: from its start; foreign problems that it does not solve, from up to 24 random ones, until one does."),
     number_or_none_field<compared_starts_of, auto_word, SolveOptions>(
         "compared_starts", Numbers{.whole = true, .from = 0.0, .up_to = most_starts},
         "Random starts beside the start whose relaxed problems are compared; the path of the lowest objective goes on "
