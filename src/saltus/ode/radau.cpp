@@ -183,21 +183,21 @@ bool RadauSteps<Tableau>::evaluate(const RadauTrial& trial, double t, const Vect
 template <class Tableau>
 double RadauSteps<Tableau>::spectral_radius() {
   if (!jacobian_known_) return std::numeric_limits<double>::infinity();
-  if (direction_.size() != n_) {
+  if (work_.direction.size() != n_) {
     // No vector of a model: all components, of both signs and several sizes.
     constexpr linalg::Index sizes = 7;
-    direction_.resize(n_);
+    work_.direction.resize(n_);
     for (linalg::Index i = 0; i < n_; ++i)
-      direction_[i] = (i % 2 == 0 ? 1.0 : -1.0) / static_cast<double>(1 + i % sizes);
+      work_.direction[i] = (i % 2 == 0 ? 1.0 : -1.0) / static_cast<double>(1 + i % sizes);
   }
   double radius = 0.0;
   for (int product = 0; product < 2; ++product) {
-    const double size = direction_.norm();
-    systems_.multiply(direction_, work_.solution);
+    const double size = work_.direction.norm();
+    systems_.multiply(work_.direction, work_.solution);
     const double grown = work_.solution.norm();
     if (!(grown > 0.0) || !std::isfinite(grown)) return grown;
     radius = grown / size;
-    for (linalg::Index i = 0; i < n_; ++i) direction_[i] = work_.solution[i] / grown;
+    for (linalg::Index i = 0; i < n_; ++i) work_.direction[i] = work_.solution[i] / grown;
   }
   return radius;
 }

@@ -88,7 +88,6 @@ class RadauSteps final : public Radau {
   double rate_ = 0.0;  ///< of convergence of the last iteration
   double next_ = 0.0;  ///< the largest component that is expected of the next correction
   RadauSystems<stages / 2> systems_;
-  Vector direction_;      ///< to which powers of the Jacobian turn; empty before they are asked for
   double largest_ = 0.0;  ///< component of start_
   std::vector<std::size_t> one_column_;
 
@@ -98,7 +97,8 @@ class RadauSteps final : public Radau {
     explicit Work(linalg::Index n)
         : argument(n), difference_slope(n), right(n), solution(n), changes(n), all_right(n, last + 1) {}
     Vector argument, difference_slope, right, solution;
-    Vector changes;  ///< of the last correction, relative to sizes
+    Vector changes;    ///< of the last correction, relative to sizes
+    Vector direction;  ///< to which powers of the Jacobian turn; empty before they are asked for
     Matrix all_right;
   };
   Work work_;

@@ -187,7 +187,7 @@ std::string integrators_text(const result::Statistics& statistics) {
 }
 
 /// The largest errors, and from where on there are none.
-std::string error_text(const result::Result& result, const result::ErrorEstimate& estimate) {
+std::string estimate_text(const result::Result& result, const result::ErrorEstimate& estimate) {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < std::min(estimate.final.size(), result.states.size()); ++i) {
     if (std::isfinite(estimate.final[i]))
@@ -266,7 +266,7 @@ std::string to_table(const result::Result& result, std::size_t shown_events, con
                                               statistics.steps, statistics.rejected, statistics.rhs_evaluations,
                                               statistics.wall_seconds));
   if (!statistics.integrators.empty()) text += paragraph("integrator", integrators_text(statistics));
-  if (result.error_estimate) text += paragraph("errors", error_text(result, *result.error_estimate));
+  if (result.error_estimate) text += paragraph("errors", estimate_text(result, *result.error_estimate));
   if (statistics.thinned_from) {
     text += paragraph("rows", fmt::format("those between events are thinned from t = {} on, as there are very many; "
                                           "output = \"steps\" has those of all steps",

@@ -10,6 +10,7 @@
 #include "saltus/event_integrator/record/output_rows.hpp"
 #include "saltus/event_integrator/search/search_values.hpp"
 #include "saltus/event_integrator/sequences/switch_accumulation.hpp"
+#include "saltus/event_integrator/steps/method_choice.hpp"
 #include "saltus/event_integrator/steps/step_attempt.hpp"
 #include "saltus/event_integrator/steps/step_tolerances.hpp"
 #include "saltus/model/layout.hpp"
@@ -159,6 +160,67 @@ TEST(SwitchAccumulation, FollowsCyclesToTheirLimit) {
   switches.limit_tolerances(SwitchAccumulation::Roots::none);
   EXPECT_EQ(scene.tolerances.part(Reason::cycles).atol, 1.0);
   EXPECT_FALSE(switches.cycle().has_value());
+}
+
+/// Steps of length h along x' = -rate x by the method of the choice.
+void take_steps(MethodChoice& choice, Position& here, double rate, double h, int steps) {
+  const ode::Tolerances tolerances{1e-6, 1e-6};
+  auto stepper = ode::Stepper(choice.method(), 1);
+  for (int k = 0; k < steps; ++k) {
+    if (stepper.method() != choice.method()) stepper = ode::Stepper(choice.method(), 1);
+    const auto field = [&](double, const double* x, double* slope) { slope[0] = -rate * x[0] + 1.0; };
+    double slope = 0.0;
+    field(here.t, here.x.data(), &slope);
+    ASSERT_EQ(stepper.attempt(field, here.t, here.x.data(), &slope, h, tolerances), ode::Attempt::finite);
+    here.t += h;
+    here.x[0] = stepper.x_new()[0];
+    choice.accepted(stepper, tolerances, true);
+  }
+}
+
+// Steps at the border of stability of dopri5 are stiff, whatever mode they are in; the other mode is not.
+TEST(MethodChoice, BelongsToItsMode) {
+  IntegrationOptions options;
+  options.chooses_method = true;
+  Position here(0.0, {1.0});
+  here.state.mode = {1};
+  MethodChoice choice(options, here);
+  choice.begin_mode();
+  take_steps(choice, here, 1e4, 3.3e-4, 300);
+  EXPECT_TRUE(ode::is_implicit(choice.method()));
+  EXPECT_FALSE(choice.stiff_at().has_value());
+  const ode::Method stiff = choice.method();
+  here.state.mode = {-1};
+  choice.begin_mode();
+  take_steps(choice, here, 1.0, 1e-2, 40);  // an explicit step could be as long
+  EXPECT_EQ(choice.method(), ode::Method::dopri5);
+  here.state.mode = {1};
+  choice.begin_mode();
+  EXPECT_EQ(choice.method(), stiff);
+  long steps = 0;
+  for (const auto& use : choice.uses()) steps += use.steps;
+  EXPECT_EQ(steps, 340);
+}
+
+TEST(MethodChoice, StaysWhereItIsNamedOrNewtonFails) {
+  IntegrationOptions options;
+  Position here(0.0, {1.0});
+  here.state.mode = {1};
+  MethodChoice named(options, here);
+  named.begin_mode();
+  take_steps(named, here, 1e4, 3.3e-4, 300);
+  EXPECT_EQ(named.method(), ode::Method::dopri5);
+  EXPECT_TRUE(named.stiff_at().has_value());
+  EXPECT_TRUE(named.uses().empty());
+  options.chooses_method = true;
+  MethodChoice choice(options, here);
+  choice.begin_mode();
+  take_steps(choice, here, 1e4, 3.3e-4, 300);
+  for (int attempt = 0; attempt < 6; ++attempt) choice.failed();
+  EXPECT_EQ(choice.method(), ode::Method::dopri5);
+  take_steps(choice, here, 1e4, 3.3e-4, 300);
+  EXPECT_EQ(choice.method(), ode::Method::dopri5);
+  EXPECT_TRUE(choice.stiff_at().has_value());
 }
 
 // Tolerances leave at least what rounding leaves; a level that is not finite says nothing.
