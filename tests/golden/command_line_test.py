@@ -143,7 +143,7 @@ class Simulate(tool.ToolTest):
         out, err = self.run_tool("simulate", self.write("m.toml", MODEL), code=0)
         self.assertEqual(err, "")
         self.assertRegex(out, r"(?m)^model +slow-down: two speeds$")
-        self.assertRegex(out, r"(?m)^method +event \(dopri5, rtol 1e-08, atol 1e-10\)$")
+        self.assertRegex(out, r"(?m)^method +event \(auto, rtol 1e-08, atol 1e-10\)$")
         self.assertRegex(out, r"(?m)^status +completed at t = 1$")
         self.assertRegex(out, r"(?m)^end state +x = 0\.6666666\d*$")
         self.assertRegex(out, r"(?m)^events +1$")

@@ -74,7 +74,7 @@ class Settings(RequestTest):
         "simulate.output.times=[0, x]": ["expected a list of finite, increasing numbers"],
         "simulate.fesd.stages=half": ["expected a whole number >= 1, found \"half\""],
         "simulate.timestepping.step_equilibration=exact": ['expected "direct", "mlcp", "none"', 'found "exact"'],
-        "simulate.event.integrator=ode45": ['expected "dopri5", "dop853", "radau5", "radau9", "radau13" or "taylor", found "ode45"'],
+        "simulate.event.integrator=ode45": ['expected "auto", "dopri5", "dop853", "radau5", "radau9", "radau13" or "taylor", found "ode45"'],
         "simulate.initial_mode.w=1": ["unknown switching function 'w'", "known: v"],
         "simulate.inputs.u=sin(t)": ["expected the name of a control, found 'u'", "declare it in [controls]"],
         "simulate.inputs.u=sin(": ["--set simulate.inputs.u:1:5"],

@@ -37,7 +37,7 @@ class Json(tool.ToolTest):
         self.assertEqual(list(self.result["status"]), ["termination", "message", "time_reached"])
         self.assertEqual(list(self.result["final"]), ["t", "x", "mode", "alpha", "outputs"])
         self.assertEqual(list(self.result["trajectory"]), ["t", "x", "u", "alpha", "mode", "outputs"])
-        self.assertEqual(list(self.result["statistics"]), ["steps", "rejected", "rhs_evaluations", "wall_seconds"])
+        self.assertEqual(list(self.result["statistics"]), ["steps", "rejected", "rhs_evaluations", "wall_seconds", "integrators"])
         for event in self.result["events"]:
             self.assertEqual(list(event), EVENT_KEYS)
 
@@ -51,7 +51,7 @@ class Json(tool.ToolTest):
         self.assertEqual(result["switching_functions"], ["slip"])
         self.assertAlmostEqual(result["final"]["x"][0], 0.62894363667354, 6)
         self.assertEqual(result["options"]["simulate.rtol"], 1e-8)
-        self.assertEqual(result["options"]["simulate.event.integrator"], "dopri5")
+        self.assertEqual(result["options"]["simulate.event.integrator"], "auto")
         self.assertEqual(result["options"]["simulate.output.points"], 1001)
 
     def test_surfaces_are_recorded(self):

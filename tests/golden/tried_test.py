@@ -305,7 +305,7 @@ class Tried(tool.ToolTest):
         _, _, err = self.simulated(FEEDBACK, "--set", "simulate.max_steps=1500", code=3)
         self.assertIn("max_steps = 1500 reached", err)
         self.assertIn('use method = "smoothed" with simulate.smoothed.epsilon = ', err)
-        _, _, err = self.simulated(FEEDBACK, "--set", "simulate.max_steps=3", code=3)
+        _, _, err = self.simulated(FEEDBACK, "--set", "simulate.max_steps=3", "--integrator", "dopri5", code=3)
         self.assertIn("raise simulate.max_steps if they are meant, or try --integrator radau5", err)
 
     def test_the_layer_that_is_advised_is_not_too_thin(self):

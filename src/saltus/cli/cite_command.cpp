@@ -45,7 +45,7 @@ std::string entry_of(std::string_view key) {
 Citation cite_integrator(pipeline::Integrator integrator) {
   switch (integrator) {
     case pipeline::Integrator::automatic:
-      return {"hairer1996", "the choice of the integrator"};
+      return {"hairer1993", "the integrators dopri5 and dop853, with which auto begins"};
     case pipeline::Integrator::dopri5:
     case pipeline::Integrator::dop853:
       return {"hairer1993", "the integrators dopri5 and dop853"};

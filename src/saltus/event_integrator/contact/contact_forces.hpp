@@ -1,6 +1,7 @@
 // The forces of contacts that last: one problem of complementarity.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "saltus/event_integrator/contact/contact_point.hpp"
@@ -20,5 +21,13 @@ using ContactForces = switching::PointSolution;
 /// Finds the forces in given modes. False where the modes contradict each other.
 [[nodiscard]] bool forces_in(const ContactPoint& point, const std::vector<int>& resting,
                              const std::vector<ContactMode>& modes, ContactForces& result);
+
+/// Returns rates of impulses in a piece of an impact by complementary pivots; nothing where these end on a ray. They
+/// are 1 for contacts that push, in [0, 1] for those that are at rest, 0 for those that leave; with friction against
+/// `velocity`.
+[[nodiscard]] std::optional<switching::PointVertex> rates_by_pivots(const ContactPoint& point,
+                                                                    const std::vector<int>& touching,
+                                                                    const linalg::Vector& velocity,
+                                                                    const std::vector<bool>& pushing);
 
 }  // namespace saltus::event_integrator

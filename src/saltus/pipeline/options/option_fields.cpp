@@ -252,12 +252,11 @@ constexpr std::array fields{
                 "Force the side of a switching function at the start (0: slide on it), or a mode by `indicator`.",
                 set_initial_mode,
                 record_initial_mode},
-    choice_field<integrator_of, integrators>(
-        "event.integrator",
-        "auto: explicit steps, of order 5, 9 or 13 for stiff models where they are; or always Runge-Kutta of order 5, "
-        "of "
-        "order 8, of order 5, 9, 13 for stiff models; Taylor series where modes are affine.",
-        name_integrator),
+    choice_field<integrator_of, integrators>("event.integrator",
+                                             "Chosen by itself (auto); Runge-Kutta of order 5, 8, for stiff models of "
+                                             "order 5, 9, 13; Taylor series where modes are "
+                                             "affine.",
+                                             name_integrator),
     number_or_none_field<max_step_of, none_word>("event.max_step", positive_number, "Longest step."),
     truth_field<local_steps_of>("event.local_steps",
                                 "Of many states only those that a switch moves are integrated anew behind it."),
