@@ -232,8 +232,7 @@ constexpr std::array fields{
                 record_kept<&KeptNames::surfaces>},
     OptionField{"error_estimate",
                 {.truth = true},
-                "Errors of rows, event times and end state are estimated, by a second run at a hundredth of the "
-                "tolerances. Default: false.",
+                "Errors of rows, event times and the end by a second run at smaller tolerances. Default: false.",
                 set_truth<error_estimate_of, SimulateOptions>,
                 record_error_estimate},
     OptionField{"continuous",
@@ -252,11 +251,9 @@ constexpr std::array fields{
                 "Force the side of a switching function at the start (0: slide on it), or a mode by `indicator`.",
                 set_initial_mode,
                 record_initial_mode},
-    choice_field<integrator_of, integrators>("event.integrator",
-                                             "Chosen by itself (auto); Runge-Kutta of order 5, 8, for stiff models of "
-                                             "order 5, 9, 13; Taylor series where modes are "
-                                             "affine.",
-                                             name_integrator),
+    choice_field<integrator_of, integrators>(
+        "event.integrator", "Chosen (auto), or Runge-Kutta of order 5, 8, 5, 9, 13 (radau: stiff), or Taylor series.",
+        name_integrator),
     number_or_none_field<max_step_of, none_word>("event.max_step", positive_number, "Longest step."),
     truth_field<local_steps_of>("event.local_steps",
                                 "Of many states only those that a switch moves are integrated anew behind it."),
