@@ -31,6 +31,21 @@ class Json(tool.ToolTest):
         self.run_tool("simulate", "stick-slip", "--out", "r.json", "--out", "r.csv", "--quiet", code=0)
         self.result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
 
+    def test_errors_are_estimated_for_the_rows_that_are_written(self):
+        """A second run has rows of its own, which are in no file."""
+        def result_of(*arguments):
+            self.run_tool("simulate", "stick-slip", "--until", "3", "--rtol", "1e-6", "--quiet", "--out", "e.json", *arguments, code=0)
+            return json.loads((self.folder / "e.json").read_text(encoding="utf-8"))
+
+        plain, result = result_of(), result_of("--error-estimate")
+        self.assertEqual(result["trajectory"], plain["trajectory"])
+        self.assertEqual(result["events"], plain["events"])
+        errors = result["error_estimate"]
+        self.assertEqual(len(errors["x"]), len(result["trajectory"]["t"]))
+        self.assertEqual(len(errors["event_times"]), len(result["events"]))
+        self.assertLess(max(max(row) for row in errors["x"]), 1e-4)
+        self.assertGreater(max(max(row) for row in errors["x"]), 0)
+
     def test_keys_in_order(self):
         self.assertEqual(list(self.result), KEYS)
         self.assertEqual(list(self.result["model"])[:3], ["name", "sha256", "parameters"])

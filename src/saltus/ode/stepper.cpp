@@ -1,7 +1,6 @@
 #include "saltus/ode/stepper.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -14,9 +13,6 @@
 
 namespace saltus::ode {
 namespace {
-
-/// On the negative real axis, as of the code DOP853.
-constexpr double dop853_stability_limit = 6.1;
 
 const ExplicitMethod* explicit_method(Method method, std::size_t n) {
   const bool few = 1 <= n && n <= few_states;
@@ -35,12 +31,6 @@ const ExplicitMethod* explicit_method(Method method, std::size_t n) {
 }
 
 }  // namespace
-
-std::string_view name(Method method) {
-  static constexpr std::array<std::string_view, methods> names{"dopri5", "dop853",  "radau5",
-                                                               "radau9", "radau13", "taylor"};
-  return names[static_cast<std::size_t>(method)];
-}
 
 int order(Method method) {
   switch (method) {

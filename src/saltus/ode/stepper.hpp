@@ -2,6 +2,7 @@
 // events.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string_view>
@@ -19,7 +20,10 @@ namespace saltus::ode {
 /// known, and dop853 elsewhere.
 enum class Method { dopri5, dop853, radau5, radau9, radau13, taylor };
 inline constexpr std::size_t methods = 6;
-[[nodiscard]] std::string_view name(Method method);
+[[nodiscard]] constexpr std::string_view name(Method method) {
+  constexpr std::array<std::string_view, methods> names{"dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"};
+  return names[static_cast<std::size_t>(method)];
+}
 
 /// Returns whether a method is one of Radau's.
 [[nodiscard]] constexpr bool is_implicit(Method method) {

@@ -32,9 +32,7 @@ struct PlannedRun {
   std::string refusal;  ///< why it is not worth trying
 };
 
-bool is_implicit(Integrator integrator) {
-  return integrator == Integrator::radau5 || integrator == Integrator::radau9 || integrator == Integrator::radau13;
-}
+bool is_implicit(Integrator integrator) { return ode::is_implicit(named_method(integrator)); }
 
 PlannedRun event_run(SimulateOptions options, Integrator integrator, std::string variant) {
   const bool hopeless = is_implicit(options.event.integrator) && !is_implicit(integrator);

@@ -57,12 +57,15 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   const auto asked = checked_simulation(written ? *written : system, options, observers);
   if (!asked) return tl::unexpected(asked.error());
   KernelStore of_this_run;
-  auto result = by_its_method(*asked, kernels != nullptr ? *kernels : of_this_run);
+  KernelStore& store = kernels != nullptr ? *kernels : of_this_run;
+  auto result = by_its_method(*asked, store);
   if (!result) return result;
   finish_result(asked->system, *result);
   if (!options.error_estimate) return result;
-  auto errors = estimate_errors(*result, options,
-                                [&](const SimulateOptions& other) { return simulate(system, other, observers); });
+  // Its rows are those of the run that was asked for, and of nobody else.
+  const Observers without_parts{observers.on_step, {}};
+  auto errors = estimate_errors(
+      *result, options, [&](const SimulateOptions& other) { return simulate(system, other, without_parts, &store); });
   if (!errors) return tl::unexpected(errors.error());
   result->error_estimate = std::move(*errors);
   return result;

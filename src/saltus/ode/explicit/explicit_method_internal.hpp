@@ -7,6 +7,9 @@
 
 namespace saltus::ode {
 
+/// Of the code DOP853: on the negative real axis.
+inline constexpr double dop853_stability_limit = 6.1;
+
 /// Holds an attempt, made or under way. All vectors have n doubles.
 struct ExplicitStep {
   double t;

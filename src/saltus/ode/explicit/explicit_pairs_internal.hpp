@@ -67,7 +67,7 @@ struct Dopri5 {
 struct Dop853 {
   static constexpr std::size_t first_good = 3;  ///< stages 2 and 3 are of low order
   using Tableau = Dop853Tableau;
-  static constexpr double stability_limit = 6.1;  ///< of code DOP853
+  static constexpr double stability_limit = dop853_stability_limit;
 
   /// Returns the estimate of order 5, damped where it is small against a tenth of the one of order 3: Hairer, Norsett &
   /// Wanner, (10.17) of chapter II, with the largest component in place of their mean.

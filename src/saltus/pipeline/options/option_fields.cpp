@@ -41,7 +41,8 @@ void record_until(const SimulateOptions& options, std::string_view key, OptionRe
 constexpr Choices<Method, 4> methods{{"event", "smoothed", "fesd", "timestepping"},
                                      {Method::event, Method::smoothed, Method::fesd, Method::timestepping}};
 constexpr Choices<Integrator, 7> integrators{
-    {"auto", "dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"},
+    {"auto", name(ode::Method::dopri5), name(ode::Method::dop853), name(ode::Method::radau5), name(ode::Method::radau9),
+     name(ode::Method::radau13), name(ode::Method::taylor)},
     {Integrator::automatic, Integrator::dopri5, Integrator::dop853, Integrator::radau5, Integrator::radau9,
      Integrator::radau13, Integrator::taylor}};
 /// What a word of other programs, or one in the wrong place, stands for; empty for others.

@@ -13,7 +13,19 @@
 namespace saltus::pipeline {
 
 enum class Method { event, fesd, timestepping, smoothed };
-enum class Integrator { automatic, dopri5, dop853, radau5, radau9, radau13, taylor };
+enum class Integrator {
+  automatic = -1,
+  dopri5 = static_cast<int>(ode::Method::dopri5),
+  dop853 = static_cast<int>(ode::Method::dop853),
+  radau5 = static_cast<int>(ode::Method::radau5),
+  radau9 = static_cast<int>(ode::Method::radau9),
+  radau13 = static_cast<int>(ode::Method::radau13),
+  taylor = static_cast<int>(ode::Method::taylor),
+};
+/// Returns the method that has this name; of `automatic` an explicit one.
+[[nodiscard]] constexpr ode::Method named_method(Integrator integrator) {
+  return integrator == Integrator::automatic ? ode::Method::dopri5 : static_cast<ode::Method>(integrator);
+}
 enum class Native { automatic, on, off };
 enum class Selection { active_dominant, passive_dominant, scaled, report };
 

@@ -33,29 +33,11 @@ switching::SelectionPolicy selection_policy(Selection selection) {
   __builtin_unreachable();
 }
 
-ode::Method named_method(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::automatic:
-    case Integrator::dopri5:
-      return ode::Method::dopri5;
-    case Integrator::dop853:
-      return ode::Method::dop853;
-    case Integrator::radau5:
-      return ode::Method::radau5;
-    case Integrator::radau9:
-      return ode::Method::radau9;
-    case Integrator::radau13:
-      return ode::Method::radau13;
-    case Integrator::taylor:
-      return ode::Method::taylor;
-  }
-  __builtin_unreachable();
-}
-
 /// Whether rows and events may leave the run while it goes on: nothing needs all of them.
 bool passes_on(const Simulation& asked) {
   const auto& options = asked.options;
-  return asked.observers.on_part && options.event.trajectories == 1 && !options.continuous && !asked.has_bodies;
+  return asked.observers.on_part && options.event.trajectories == 1 && !options.continuous && !options.error_estimate &&
+         !asked.has_bodies;
 }
 
 /// Follows one trajectory after the other.
