@@ -222,6 +222,11 @@ TEST(MethodChoice, StaysWhereItIsNamedOrNewtonFails) {
   take_steps(choice, here, 1e4, 3.3e-4, 300);
   EXPECT_EQ(choice.method(), ode::Method::dopri5);
   EXPECT_TRUE(choice.stiff_at().has_value());
+  // What failed in that mode says nothing of another one.
+  here.state.mode = {-1};
+  choice.begin_mode();
+  take_steps(choice, here, 1e4, 3.3e-4, 300);
+  EXPECT_TRUE(ode::is_implicit(choice.method()));
 }
 
 // Tolerances leave at least what rounding leaves; a level that is not finite says nothing.

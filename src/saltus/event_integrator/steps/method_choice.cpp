@@ -29,23 +29,27 @@ Method first_method(std::size_t states, const ode::Tolerances& tolerances) {
 }
 
 MethodChoice::MethodChoice(const IntegrationOptions& options, const Position& here)
-    : chooses_(options.chooses_method), here_(here), first_{options.method}, now_(first_) {}
+    : chooses_(options.chooses_method), here_(here), first_(options.method), now_{first_} {}
 
 std::vector<MethodChoice::Known>::iterator MethodChoice::find_mode() {
   return std::find_if(known_.begin(), known_.end(), [&](const Known& known) { return known.mode == here_.state.mode; });
 }
 
-void MethodChoice::begin_mode() {
+void MethodChoice::forget_steps() {
   stiffness_.reset();
   short_enough_ = failures_ = age_ = 0;
+}
+
+void MethodChoice::begin_mode() {
+  forget_steps();
   if (known_.empty()) return;
-  if (const auto found = find_mode(); found != known_.end()) now_ = found->state;
+  const auto found = find_mode();
+  now_ = found != known_.end() ? found->state : State{now_.method};
 }
 
 void MethodChoice::change_to(Method method) {
   now_.method = method;
-  stiffness_.reset();
-  short_enough_ = failures_ = age_ = 0;
+  forget_steps();
   if (const auto found = find_mode(); found != known_.end()) {
     found->state = now_;
   } else if (known_.size() < capacity) {
@@ -56,15 +60,13 @@ void MethodChoice::change_to(Method method) {
   }
 }
 
-void MethodChoice::count(Method method, double h) {
-  auto& use = uses_[static_cast<std::size_t>(method)];
-  ++use.steps;
-  use.time += h;
-}
-
 void MethodChoice::accepted(ode::Stepper& stepper, const ode::Tolerances& tolerances, bool watched) {
   failures_ = 0;
-  if (chooses_) count(stepper.method(), stepper.length());
+  if (chooses_) {
+    auto& use = uses_[static_cast<std::size_t>(stepper.method())];
+    ++use.steps;
+    use.time += stepper.length();
+  }
   if (stepper.follows()) return;
   if (!ode::is_implicit(stepper.method())) {
     if (watched) look_at_explicit(stepper, tolerances);
@@ -74,17 +76,15 @@ void MethodChoice::accepted(ode::Stepper& stepper, const ode::Tolerances& tolera
 }
 
 void MethodChoice::look_at_explicit(const ode::Stepper& stepper, const ode::Tolerances& tolerances) {
-  if (stiff_at_ || !stiffness_.looks_stiff(stepper, tolerances)) return;
-  if (chooses_ && now_.may_be_implicit) {
-    change_to(Method::radau5);
-  } else {
-    stiff_at_ = here_.t;
-  }
+  const bool chooses = chooses_ && now_.may_be_implicit;
+  if ((stiff_at_ && !chooses) || !stiffness_.looks_stiff(stepper, tolerances)) return;
+  if (chooses) return change_to(Method::radau5);
+  stiff_at_ = here_.t;
 }
 
 void MethodChoice::look_at_implicit(ode::Stepper& stepper) {
   short_enough_ = stepper.stability_ratio_of_explicit() < 1.0 ? short_enough_ + 1 : 0;
-  if (short_enough_ >= enough_steps) return change_to(first_.method);
+  if (short_enough_ >= enough_steps) return change_to(first_);
   if (++age_ < least_age) return;
   const double rate = stepper.contraction();
   const Method wanted = rate <= fast_rate ? higher(now_.method) : rate >= slow_rate ? lower(now_.method) : now_.method;
@@ -94,7 +94,7 @@ void MethodChoice::look_at_implicit(ode::Stepper& stepper) {
 void MethodChoice::failed() {
   if (!chooses_ || !ode::is_implicit(now_.method) || ++failures_ < most_failures) return;
   now_.may_be_implicit = false;
-  change_to(first_.method);
+  change_to(first_);
 }
 
 std::vector<result::IntegratorUse> MethodChoice::uses() const {

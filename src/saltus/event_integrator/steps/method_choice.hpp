@@ -52,7 +52,7 @@ class MethodChoice {
     std::vector<int> mode;
     State state;
   };
-  void count(ode::Method method, double h);
+  void forget_steps();
   void change_to(ode::Method method);
   void look_at_explicit(const ode::Stepper& stepper, const ode::Tolerances& tolerances);
   void look_at_implicit(ode::Stepper& stepper);
@@ -61,7 +61,7 @@ class MethodChoice {
   static constexpr std::size_t capacity = 32;
   bool chooses_;
   const Position& here_;
-  State first_;
+  ode::Method first_;
   State now_;
   std::vector<Known> known_;  ///< modes that were left by another method than the first, at most `capacity`
   std::size_t next_ = 0;      ///< of these, to be overwritten
