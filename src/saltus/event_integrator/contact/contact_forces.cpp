@@ -45,9 +45,7 @@ std::optional<switching::PointVertex> rates_by_pivots(const ContactPoint& point,
     const linalg::Vector along = point.along(velocity, i);
     block.velocity = {along[0], along[1]};
   }
-  std::vector<Face> all{Face::stick, Face::slip, Face::slip_up, Face::slip_down, Face::closed};
-  for (std::size_t k = 0, n = all.size(); k < n; ++k) all.push_back(switching::with_push(all[k]));
-  all.push_back(Face::open);
+  const std::vector<Face> all{Face::stick, Face::slip, Face::slip_up, Face::slip_down, Face::closed, Face::open};
   return switching::vertex_by_pivots(problem, std::vector(problem.blocks.size(), all));
 }
 

@@ -264,9 +264,8 @@ class Process {
   [[nodiscard]] Branch branch_of(std::size_t k, const switching::PointVertex& vertex) const {
     using switching::Face;
     const int i = touching_[k];
-    const Face found = vertex.faces[static_cast<std::size_t>(i)];
-    const Face face = switching::without_push(found);
-    const bool is_pushed = pushes(k) || switching::is_pushed(found);
+    const Face face = vertex.faces[static_cast<std::size_t>(i)];
+    const bool is_pushed = pushes(k) || vertex.at_upper[static_cast<std::size_t>(i)];
     Branch branch{face == Face::open && !is_pushed ? Branch::Normal::open
                   : is_pushed                      ? Branch::Normal::pushed
                                                    : Branch::Normal::held};

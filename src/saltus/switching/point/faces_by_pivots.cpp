@@ -44,14 +44,13 @@ class StandardForm {
     const auto u = complementary_pivots(effects, constant, &basic);
     if (!u) return std::nullopt;
     const std::size_t blocks = problem_.blocks.size();
-    PointVertex found{std::vector<Face>(blocks, Face::open), of_u * *u + given_};
+    PointVertex found{std::vector<Face>(blocks, Face::open), std::vector<bool>(blocks, false), of_u * *u + given_};
     for (std::size_t b = 0; b < blocks; ++b) {
       const Block& block = problem_.blocks[b];
       if (block.kind == Block::Kind::absent) continue;
-      Face face = face_of(block, options_[b], places_[b], basic);
-      const bool at_upper = block.is_bounded && places_[b].normal >= 0 && basic[at(places_[b].normal + 1)];
-      if (at_upper && face != Face::open) face = with_push(face);
+      const Face face = face_of(block, options_[b], places_[b], basic);
       found.faces[b] = contains(options_[b], face) ? face : options_[b].front();
+      found.at_upper[b] = block.is_bounded && places_[b].normal >= 0 && basic[at(places_[b].normal + 1)];
     }
     return found;
   }
@@ -92,7 +91,7 @@ class StandardForm {
     }
     if (options == std::vector{Face::open}) return;
     if (block.is_given) {
-      given_(block.row) = block.upper;
+      given_(block.row) = 1.0;
     } else {
       places.normal = take(block.row, unit);
       if (block.is_bounded) bound(places.normal, block.upper / unit);
@@ -106,11 +105,11 @@ class StandardForm {
       const int row = block.tangents[k];
       const bool turns = std::isnan(slip);
       const double share = -block.friction * (turns ? 1.0 : slip);
-      (block.is_given ? given_(row) : of_u_(row, places.normal)) = share * (block.is_given ? block.upper : unit);
+      (block.is_given ? given_(row) : of_u_(row, places.normal)) = block.is_given ? share : share * unit;
       if (!turns) continue;
       const Index above = places.above[k] = take(row, unit);
       const double edge = 2.0 * block.friction;
-      bound(above, block.is_given ? edge * block.upper / unit : 0.0);
+      bound(above, block.is_given ? edge / unit : 0.0);
       if (!block.is_given) own_(above + 1, places.normal) = edge;
     }
   }
@@ -137,9 +136,7 @@ class StandardForm {
                       const std::vector<bool>& basic) {
     const auto is_basic = [&](Index unknown) { return unknown >= 0 && basic[at(unknown)]; };
     if (block.kind == Block::Kind::free) return Face::inside;
-    if (block.kind == Block::Kind::half_line) {
-      return block.is_given || is_basic(places.normal) ? Face::closed : Face::open;
-    }
+    if (block.kind == Block::Kind::half_line) return is_basic(places.normal) ? Face::closed : Face::open;
     if (block.kind == Block::Kind::box) {
       return !is_basic(places.normal) ? Face::lower : is_basic(places.normal + 1) ? Face::upper : Face::inside;
     }

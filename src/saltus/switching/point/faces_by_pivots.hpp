@@ -10,7 +10,8 @@ namespace saltus::switching {
 
 /// Holds a vertex of the set of solutions.
 struct PointVertex {
-  std::vector<Face> faces;  ///< by block
+  std::vector<Face> faces;     ///< by block
+  std::vector<bool> at_upper;  ///< by block: its normal part is at its upper bound, where y <= 0
   linalg::Vector z;
 };
 

@@ -34,7 +34,7 @@ double margin_of(const PointProblem& problem, const PointSolution& solution) {
   const auto note = [&](double value, double size) { least = std::min(least, size > 0.0 ? value / size : 0.0); };
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     const Block& block = problem.blocks[b];
-    const Face face = without_push(solution.faces[b]);
+    const Face face = solution.faces[b];
     const double z = solution.z(block.row), y = solution.y(block.row);
     if (block.kind == Block::Kind::absent || block.kind == Block::Kind::free) continue;
     if (face == Face::open || face == Face::lower) note(y, sizes.y);
@@ -43,8 +43,6 @@ double margin_of(const PointProblem& problem, const PointSolution& solution) {
     if (block.kind == Block::Kind::box || face == Face::open) continue;
     const bool is_idle = contains(solution.idle, static_cast<int>(b));
     if (!is_idle) note(z, sizes.z);
-    if (is_pushed(solution.faces[b])) note(-y, sizes.y);
-    if (block.is_bounded) note(block.upper - z, sizes.z);
     if (!is_idle && face == Face::stick) note(block.friction * z - block.along(solution.z).norm(), sizes.z);
     if (!slips(face)) continue;
     const Vector& direction = solution.directions[b];
@@ -59,19 +57,18 @@ void find_held_rows(const PointProblem& problem, const PointSolution& solution, 
   rows.clear();
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     const Block& block = problem.blocks[b];
-    const Face face = without_push(solution.faces[b]);
+    const Face face = solution.faces[b];
     if (block.kind == Block::Kind::absent || face == Face::open) continue;
     if (face == Face::lower || face == Face::upper) {
       rows.give(block.row, face == Face::lower ? block.lower : block.upper);
       continue;
     }
     if (contains(solution.idle, static_cast<int>(b))) continue;
-    const bool is_given = block.is_given || is_pushed(solution.faces[b]);
-    if (is_given) rows.give(block.row, block.upper);
-    const int normal = is_given ? -1 : rows.hold(block.row);
+    if (block.is_given) rows.give(block.row, 1.0);
+    const int normal = block.is_given ? -1 : rows.hold(block.row);
     for (int tangent = 0; tangent < 2 && block.tangents[at(tangent)] >= 0; ++tangent) {
       const int row = block.tangents[at(tangent)];
-      rows.share(row, normal, -(is_given ? block.upper : 1.0) * block.friction * solution.directions[b](tangent));
+      rows.share(row, normal, -block.friction * solution.directions[b](tangent));
       if (face == Face::stick) rows.hold(row);
     }
   }
@@ -95,7 +92,7 @@ namespace {
 void guess_directions(const PointProblem& problem, const std::vector<int>& free, HeldRows& rows,
                       PointSolution& solution) {
   PointSolution guess = solution;
-  for (const int b : free) guess.faces[at(b)] = is_pushed(guess.faces[at(b)]) ? with_push(Face::stick) : Face::stick;
+  for (const int b : free) guess.faces[at(b)] = Face::stick;
   const bool sticks = solve_rows(problem, rows, guess) && !guess.is_open;
   const bool moves = !sticks && solve_rows(problem, rows, guess = solution);
   for (const int b : free) {
@@ -119,10 +116,9 @@ bool solve_least(const PointProblem& problem, const std::vector<Face>& faces, Po
     const Block& block = problem.blocks[b];
     if (block.kind == Block::Kind::absent) continue;
     Vector& direction = solution.directions[b];
-    const Face face = without_push(faces[b]);
-    if (face == Face::slip_up) direction = Vector{1.0, 0.0};
-    if (face == Face::slip_down) direction = Vector{-1.0, 0.0};
-    if (face != Face::slip) continue;
+    if (faces[b] == Face::slip_up) direction = Vector{1.0, 0.0};
+    if (faces[b] == Face::slip_down) direction = Vector{-1.0, 0.0};
+    if (faces[b] != Face::slip) continue;
     if (block.is_at_rest()) {
       free.push_back(static_cast<int>(b));
     } else {

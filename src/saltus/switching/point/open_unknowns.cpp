@@ -45,11 +45,6 @@ bool is_closed(const PointProblem& problem, const PointSolution& solution, std::
          !contains(solution.idle, static_cast<int>(b));
 }
 
-/// Whether a closed block's normal part is an unknown.
-bool carries(const PointProblem& problem, const PointSolution& solution, std::size_t b) {
-  return is_closed(problem, solution, b) && !problem.blocks[b].is_given && !is_pushed(solution.faces[b]);
-}
-
 /// A cone of two tangents is the meet of half spaces: of some, and those that are found to be missing.
 std::vector<Slack> slacks_of(const PointProblem& problem, const PointSolution& solution) {
   constexpr int sides = 8;
@@ -61,10 +56,8 @@ std::vector<Slack> slacks_of(const PointProblem& problem, const PointSolution& s
       slacks.push_back({{block.row, -1, -1}, {-1.0}, block.upper});
     }
     if (!is_closed(problem, solution, b)) continue;
-    const bool has_own = carries(problem, solution, b);
-    if (has_own) slacks.push_back({{block.row, -1, -1}, {1.0}});
-    if (has_own && block.is_bounded) slacks.push_back({{block.row, -1, -1}, {-1.0}, block.upper});
-    if (without_push(solution.faces[b]) != Face::stick) continue;
+    if (!block.is_given) slacks.push_back({{block.row, -1, -1}, {1.0}});
+    if (solution.faces[b] != Face::stick) continue;
     for (int side = 0; side < (block.in_plane() ? sides : 2); ++side) {
       const double angle = 2.0 * std::numbers::pi * side / (block.in_plane() ? sides : 2);
       slacks.push_back(cone_slack(block, std::cos(angle), block.in_plane() ? std::sin(angle) : 0.0));
@@ -125,8 +118,7 @@ bool add_missing(const PointProblem& problem, const PointSolution& solution, dou
   const std::size_t known = slacks.size();
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     const Block& block = problem.blocks[b];
-    if (!block.in_plane() || without_push(solution.faces[b]) != Face::stick || !is_closed(problem, solution, b))
-      continue;
+    if (!block.in_plane() || solution.faces[b] != Face::stick || !is_closed(problem, solution, b)) continue;
     const Vector along = block.along(solution.z).normalized();
     const Slack own = cone_slack(block, along[0], along[1]);
     double least = own(solution.z) + 2.0 * near * unit;
@@ -196,7 +188,7 @@ std::vector<int> own_rows(const PointProblem& problem, const PointSolution& solu
   const Block& block = problem.blocks[at(b)];
   std::vector<int> rows{block.row};
   for (const int tangent : block.tangents) {
-    if (tangent >= 0 && without_push(solution.faces[at(b)]) == Face::stick) rows.push_back(tangent);
+    if (tangent >= 0 && solution.faces[at(b)] == Face::stick) rows.push_back(tangent);
   }
   return rows;
 }
@@ -205,7 +197,7 @@ std::vector<int> own_rows(const PointProblem& problem, const PointSolution& solu
 std::vector<int> by_size(const PointProblem& problem, const PointSolution& solution) {
   std::vector<int> order;
   for (std::size_t b = problem.blocks.size(); b-- > 0;) {
-    if (carries(problem, solution, b)) order.push_back(static_cast<int>(b));
+    if (is_closed(problem, solution, b) && !problem.blocks[b].is_given) order.push_back(static_cast<int>(b));
   }
   constexpr double equal = 1e-9;
   const double unit = equal * solution.z.max_abs();
@@ -307,7 +299,8 @@ bool presses_for_nothing(const PointProblem& problem, const Matrix& open, double
   const Vector least = solution.z - open * own;
   const Vector z = least + unit * (open * best_change(slacks_of(problem, solution), open, least, unit, 0.0));
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
-    if (carries(problem, solution, b) && z(problem.blocks[b].row) <= nothing * unit) return true;
+    const bool bears = is_closed(problem, solution, b) && !problem.blocks[b].is_given;
+    if (bears && z(problem.blocks[b].row) <= nothing * unit) return true;
   }
   return false;
 }

@@ -11,24 +11,16 @@ namespace saltus::switching {
 
 /// Says where the unknowns of a block are in their set.
 enum class Face : std::int8_t {
-  open,        ///< z = 0, y >= 0
-  closed,      ///< y = 0, z >= 0
-  stick,       ///< y = 0 in all rows, |z_t| <= friction z_n
-  slip_up,     ///< y_n = 0, z_t = -friction z_n, y_t >= 0
-  slip_down,   ///< y_n = 0, z_t = friction z_n, y_t <= 0
-  slip,        ///< of two tangents: y_n = 0, z_t = -friction z_n d, along the slip, or along y_t where there is none
-  lower,       ///< of a box: y >= 0
-  inside,      ///< of a box, or of what is free: y = 0
-  upper,       ///< of a box: y <= 0
-  pushed = 16  ///< added to closed, stick and slips: z_n is at its upper bound, y_n <= 0
+  open,       ///< z = 0, y >= 0
+  closed,     ///< y = 0, z >= 0
+  stick,      ///< y = 0 in all rows, |z_t| <= friction z_n
+  slip_up,    ///< y_n = 0, z_t = -friction z_n, y_t >= 0
+  slip_down,  ///< y_n = 0, z_t = friction z_n, y_t <= 0
+  slip,       ///< of two tangents: y_n = 0, z_t = -friction z_n d, along the slip, or along y_t where there is none
+  lower,      ///< of a box: y >= 0
+  inside,     ///< of a box, or of what is free: y = 0
+  upper       ///< of a box: y <= 0
 };
-[[nodiscard]] constexpr bool is_pushed(Face face) { return face >= Face::pushed; }
-[[nodiscard]] constexpr Face with_push(Face face) {
-  return static_cast<Face>(static_cast<int>(face) + static_cast<int>(Face::pushed));
-}
-[[nodiscard]] constexpr Face without_push(Face face) {
-  return static_cast<Face>(static_cast<int>(face) % static_cast<int>(Face::pushed));
-}
 [[nodiscard]] constexpr bool slips(Face face) { return face >= Face::slip_up && face <= Face::slip; }
 
 /// Holds unknowns of z and the set in which they are, by rows of z and y = w + W z.
@@ -47,7 +39,7 @@ struct Block {
   bool is_given = false;             ///< of friction: the normal part is 1, whatever its y
   std::array<double, 2> velocity{};  ///< of slip; 0: at rest
   double lower = 0.0, upper = 1.0;   ///< of a box, and of a normal part that is bounded
-  bool is_bounded = false;           ///< of friction and half lines: z_n <= upper
+  bool is_bounded = false;           ///< of friction and half lines: z_n <= upper; only pivots know of it
 
   [[nodiscard]] bool in_plane() const { return tangents[1] >= 0; }
   [[nodiscard]] bool is_at_rest() const { return velocity[0] == 0.0 && velocity[1] == 0.0; }

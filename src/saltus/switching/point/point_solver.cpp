@@ -17,8 +17,19 @@ using Options = std::vector<std::vector<Face>>;
 
 constexpr double most_leaves = 65536.0;
 
-std::vector<Face> contact_faces(const Block& block) {
-  if (block.kind == Block::Kind::half_line) return {Face::closed};
+std::vector<Face> faces_of(const Block& block) {
+  switch (block.kind) {
+    case Block::Kind::absent:
+      return {Face::open};
+    case Block::Kind::free:
+      return {Face::inside};
+    case Block::Kind::half_line:
+      return {Face::closed, Face::open};
+    case Block::Kind::box:
+      return {Face::inside, Face::lower, Face::upper};
+    case Block::Kind::friction:
+      break;
+  }
   std::vector<Face> faces;
   if (block.is_at_rest()) faces.push_back(Face::stick);
   if (block.in_plane()) {
@@ -27,47 +38,8 @@ std::vector<Face> contact_faces(const Block& block) {
     if (block.velocity[0] >= 0.0) faces.push_back(Face::slip_up);
     if (block.velocity[0] <= 0.0) faces.push_back(Face::slip_down);
   }
+  if (!block.is_given) faces.push_back(Face::open);
   return faces;
-}
-
-std::vector<Face> faces_of(const Block& block) {
-  switch (block.kind) {
-    case Block::Kind::absent:
-      return {Face::open};
-    case Block::Kind::free:
-      return {Face::inside};
-    case Block::Kind::box:
-      return {Face::inside, Face::lower, Face::upper};
-    case Block::Kind::half_line:
-    case Block::Kind::friction:
-      break;
-  }
-  auto faces = contact_faces(block);
-  if (block.is_given) return faces;
-  const std::size_t closed = faces.size();
-  faces.push_back(Face::open);
-  for (std::size_t k = 0; block.is_bounded && k < closed; ++k) faces.push_back(with_push(faces[k]));
-  return faces;
-}
-
-double count(const Options& options) {
-  double leaves = 1.0;
-  for (const auto& faces : options) leaves *= static_cast<double>(faces.size());
-  return leaves;
-}
-
-/// All combinations of faces, until it is enough.
-void for_each_leaf(const Options& options, FunctionRef<bool(const std::vector<Face>&)> is_enough) {
-  std::vector<std::size_t> number(options.size(), 0);
-  std::vector<Face> faces(options.size());
-  for (;;) {
-    heed_stop();
-    for (std::size_t b = 0; b < options.size(); ++b) faces[b] = options[b][number[b]];
-    if (is_enough(faces)) return;
-    std::size_t b = 0;
-    while (b < options.size() && ++number[b] == options[b].size()) number[b++] = 0;
-    if (b == options.size()) return;
-  }
 }
 
 std::size_t active_blocks(const PointProblem& problem) {
@@ -80,7 +52,7 @@ std::size_t active_blocks(const PointProblem& problem) {
 void drop_impossible(const PointProblem& problem, Options& options) {
   constexpr std::size_t few = 2;  // as fast tried
   const auto is_other = [](const Block& block) {
-    return block.kind != Block::Kind::absent && (block.kind != Block::Kind::half_line || block.is_bounded);
+    return block.kind != Block::Kind::absent && block.kind != Block::Kind::half_line;
   };
   if (active_blocks(problem) <= few || std::any_of(problem.blocks.begin(), problem.blocks.end(), is_other)) return;
   std::vector<Face> all;
@@ -119,13 +91,19 @@ void take_if_held(const PointProblem& problem, double holds, PointSolution& solu
 /// Of those with one motion the first ones do.
 void search_all(const PointProblem& problem, const Options& options, double holds, PointSolutions& found) {
   constexpr std::size_t enough = 16;
+  std::vector<std::size_t> number(options.size(), 0);
+  std::vector<Face> faces(options.size());
   PointSolution solution;
-  for_each_leaf(options, [&](const std::vector<Face>& faces) {
+  for (;;) {
+    heed_stop();
+    for (std::size_t b = 0; b < options.size(); ++b) faces[b] = options[b][number[b]];
     if (solve_least(problem, faces, solution) &&
         (found.all.size() < enough || moves_otherwise(problem, found, solution)))
       take_if_held(problem, holds, solution, found);
-    return false;
-  });
+    std::size_t b = 0;
+    while (b < options.size() && ++number[b] == options[b].size()) number[b++] = 0;
+    if (b == options.size()) break;
+  }
   found.complete = true;
 }
 
@@ -198,6 +176,7 @@ double margin_of_forces(const PointProblem& problem, PointSolution solution) {
 PointSolutions solve_point(const PointProblem& problem, const FaceHints& hints) {
   PointSolutions found;
   Options options;
+  double leaves = 1.0;
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
     auto faces = faces_of(problem.blocks[b]);
     const bool is_absent = problem.blocks[b].kind == Block::Kind::absent;
@@ -208,7 +187,8 @@ PointSolutions solve_point(const PointProblem& problem, const FaceHints& hints) 
   }
   if (std::all_of(hints.excluded.begin(), hints.excluded.end(), [](const auto& faces) { return faces.empty(); }))
     drop_impossible(problem, options);
-  if (count(options) <= most_leaves) {
+  for (const auto& faces : options) leaves *= static_cast<double>(faces.size());
+  if (leaves <= most_leaves) {
     search_all(problem, options, hints.holds, found);
   } else {
     search_some(problem, options, hints, found);
@@ -218,29 +198,6 @@ PointSolutions solve_point(const PointProblem& problem, const FaceHints& hints) 
   std::stable_partition(found.all.begin(), found.all.end(),
                         [&](const PointSolution& one) { return one.faces == hints.before; });
   return found;
-}
-
-std::optional<PointSolution> first_solution(const PointProblem& problem,
-                                            FunctionRef<bool(const PointSolution&)> accepts) {
-  Options options;
-  for (const Block& block : problem.blocks) options.push_back(faces_of(block));
-  PointSolution solution;
-  bool found = false;
-  const auto fits = [&] { return solution.margin >= face_holds && accepts(solution); };
-  if (count(options) <= most_leaves) {
-    for_each_leaf(options, [&](const std::vector<Face>& faces) {
-      return found = solve_least(problem, faces, solution) && fits();
-    });
-  } else if (const auto vertex = vertex_by_pivots(problem, options)) {
-    found = solve_least(problem, vertex->faces, solution) && fits();
-    if (!found && solution.is_open) {
-      solution.z = vertex->z;
-      solution.y = problem.constant + problem.effects * vertex->z;
-      solution.margin = margin_of(problem, solution);
-      found = fits();
-    }
-  }
-  return found ? std::optional(std::move(solution)) : std::nullopt;
 }
 
 std::optional<bool> is_one_motion(const PointProblem& problem, const PointSolutions& solutions, std::size_t chosen) {

@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "saltus/base/function_ref.hpp"
 #include "saltus/switching/point/faces_by_pivots.hpp"
 #include "saltus/switching/point/on_faces.hpp"
 #include "saltus/switching/point/point_problem.hpp"
@@ -28,11 +27,6 @@ struct FaceHints {
 /// where these are no more than 2^16; else some, by complementary pivots and from the faces before. Cost: an
 /// elimination a combination; beyond, of n rows, 3 n pivots of 9 n^2 operations.
 [[nodiscard]] PointSolutions solve_point(const PointProblem& problem, const FaceHints& hints);
-
-/// Returns the first solution that is accepted, in the order of that search and by the least z of its faces; beyond
-/// 2^16 combinations, that of complementary pivots. Nothing where there is none.
-[[nodiscard]] std::optional<PointSolution> first_solution(const PointProblem& problem,
-                                                          FunctionRef<bool(const PointSolution&)> accepts);
 
 /// Returns whether another solution has the same y and the same faces, but for closed blocks that it leaves open.
 [[nodiscard]] bool is_same_with_open(const PointProblem& problem, const PointSolution& solution,
