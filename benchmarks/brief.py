@@ -81,7 +81,7 @@ def main():
     if not commands:
         sys.exit(f"{build} has no benchmarks: configure it with -DSALTUS_BENCHMARKS=ON, and install libbenchmark-dev")
     failed = [command for command in commands + scripts(build, output) if not runs(command, options.limit)]
-    print("Left out, as they need SciPy and SUNDIALS: large/rod.py, large/local_steps.py")
+    print("Left out, as they need SciPy, SUNDIALS or the Python package: large/rod.py, large/local_steps.py, sweeps/run.py")
     print(f"{len(failed)} commands failed")
     sys.exit(1 if failed else 0)
 

@@ -55,7 +55,8 @@ class ModelError(ValueError):
 
 
 class Stopped(RuntimeError):
-    """Raised by :meth:`Result.require` for a run that stopped early; ``result`` has what was computed.
+    """Raised by :meth:`Result.require` for a run that stopped early, and by sweeps and optimisations whose workers ended
+    or cannot begin; ``result`` has what was computed.
 
     >>> import saltus
     >>> try:

@@ -36,6 +36,8 @@ from ._settings import (
     sweep_name,
 )
 from ._shares import sweep_by
+from ._starts import optimize_by
+from ._stored_sweep import sweep_into
 from ._sweep import Sweep, SweepArguments, Warned, warn_of_runs, with_results
 
 Settings = typing.Mapping[str, Value]
@@ -172,6 +174,7 @@ class Model:
         set: Settings | None = None,
         start: str | os.PathLike[str] | Result | None = None,
         progress: bool = False,
+        executor: typing.Any = None,
         **options: Value,
     ) -> Result:
         """Finds the controls, times and parameters that [optimize] of the file asks for, and verifies them.
@@ -180,6 +183,9 @@ class Model:
         ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file; or the word of the option of that
         name, ``"neutral"`` or ``"simulated"``. ``optimization`` of the result has costs, parameters, multipliers and
         what was verified.
+
+        `executor` (as of :meth:`sweep`) shares out the starts of ``starts=8``, one to each of its workers: the result is
+        that of one process.
 
         >>> m = saltus.Model.from_text('''
         ... [model]
@@ -204,13 +210,26 @@ class Model:
         if start in ("neutral", "simulated"):
             options, start = {**options, "start": start}, None
         typed, chosen = optimize_options(options)
-        warned: list[str] = []
-        with _started_at(start) as file, own_results():
-            run = self._core.optimize(
-                [*settings_of(set), *typed], chosen, file, _print_line if progress else None, warned
-            )
+        settings = [*settings_of(set), *typed]
+        if executor is None:
+            with own_results():
+                run, warned = self._optimum(settings, chosen, start, _print_line if progress else None)
+        else:
+            with progress_of_runs(self.name, progress, "starts") as tell:
+                run, warned = optimize_by(executor, self, settings, chosen, start, tell)
         warn(warned)
         return Result(run)
+
+    def _optimum(
+        self,
+        settings: list[str],
+        chosen: list[Option],
+        start: str | os.PathLike[str] | Result | None,
+        tell: typing.Callable[[str], None] | None,
+    ) -> tuple[_core.Run, list[str]]:
+        warned: list[str] = []
+        with _started_at(start) as file:
+            return self._core.optimize(settings, chosen, file, tell, warned), warned
 
     def sweep(
         self,
@@ -227,6 +246,7 @@ class Model:
         set: Settings | None = None,
         progress: bool = False,
         executor: typing.Any = None,
+        resume: str | os.PathLike[str] | None = None,
         **options: Value,
     ) -> Sweep:
         """Simulates the model with many values, by all processors (or `jobs` threads).
@@ -242,8 +262,14 @@ class Model:
         Names of the model come before options of the same name, which are swept by their whole names
         (``{"simulate.fesd.rho": [1, 2]}``).
 
-        `executor` is one of concurrent.futures, or of a library that has its interface (mpi4py.futures,
-        dask.distributed, Ray): it gets shares of the runs, each with `jobs` threads (one without it). Ctrl-C raises KeyboardInterrupt, whose ``result`` has the runs that began.
+        `executor` is one of concurrent.futures, or of a library that has its interface (loky, mpi4py.futures,
+        dask.distributed, Ray), or a function that makes one: it gets shares of the runs, each with `jobs` threads (one
+        without it). A share whose worker ends is run again by another one, three times in all; then :class:`Stopped`
+        names its runs, and has all others as its ``result``. Ctrl-C raises KeyboardInterrupt, whose ``result`` has the
+        runs that began.
+
+        `resume` is a folder to which rows are appended (Parquet where pyarrow is there, else npz), a thousand runs at a
+        time; the same call goes on where it was ended, and gives a sweep that reads the folder (``parts()``).
 
         >>> s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2, 0.3], until=5)
         >>> len(s), s.done, s["belt"].tolist()
@@ -273,10 +299,13 @@ class Model:
             yes,
         )
         warned: list[Warned] = []
-        with progress_of_runs(self.name, progress, "runs" if executor is None else "shares") as tell:
+        axes_of = shape, len(sample or {})
+        with progress_of_runs(self.name, progress, "runs") as tell:
+            if resume is not None:
+                return sweep_into(resume, executor, self, arguments, jobs, tell, axes_of)
             try:
                 if executor is None:
-                    found = with_results(self._core.sweep(*arguments, jobs or 0, (1, 1), tell, warned), self, arguments)
+                    found = with_results(self._core.sweep(*arguments, jobs or 0, (1, 1, 0), tell, warned), self, arguments)
                     if tell is not None:  # not every run was told
                         tell(len(found[1]), len(found[1]))
                 else:
@@ -285,10 +314,10 @@ class Model:
                 kept: typing.Any = getattr(stopped, "result", None)
                 if isinstance(kept, tuple):
                     kept = with_results(kept, self, arguments, all_runs=False) if executor is None else kept
-                    stopped.result = Sweep(kept, shape, len(sample or {}), (self, arguments))  # type: ignore[attr-defined]
+                    stopped.result = Sweep(kept, *axes_of, (self, arguments))  # type: ignore[attr-defined]
                 raise
         warn_of_runs(warned)
-        return Sweep(found, shape, len(sample or {}), (self, arguments))
+        return Sweep(found, *axes_of, (self, arguments))
 
     def _swept(self, over: Settings, set: Settings | None, options: dict[str, Value]) -> dict[str, Value]:
         """All that is swept, by the names of settings; keywords that have several values leave the options."""

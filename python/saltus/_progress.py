@@ -44,6 +44,8 @@ def progress_of_runs(name: str, wanted: bool, what: str) -> typing.Iterator[typi
     with tqdm(desc=name, unit=f" {what}") as bar:
 
         def tell(done: float, total: float) -> None:
+            if bar.total is None and done < total:
+                bar.initial = bar.n = int(done)  # what was there before is not counted in the rate
             bar.total = int(total)
             bar.update(int(done) - bar.n)
 

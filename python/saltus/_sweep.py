@@ -45,7 +45,7 @@ class RunWithoutRow:
 
     def __call__(self) -> Again:
         of_end = (*self.arguments[:_KEEP], "final", *self.arguments[_KEEP + 1 :])
-        columns, _, names = self.model._core.sweep(*of_end, 1, (self.run + 1, self.runs), None, [])
+        columns, _, names = self.model._core.sweep(*of_end, 1, (self.run + 1, self.runs, 0), None, [])
         swept = [(name, columns[column]) for name, column in zip(names, list(columns)[1:])]
         return _again(self.model, self.arguments, swept, 0)
 
@@ -158,7 +158,7 @@ class Sweep:
         >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5).table["status"].tolist()
         ['completed', 'completed']
         """
-        return {name: _column(name, values) for name, values in self._columns.items()}
+        return {name: as_column(name, values) for name, values in self._columns.items()}
 
     def __len__(self) -> int:
         return len(self.results)
@@ -192,6 +192,14 @@ class Sweep:
     @property
     def _runs(self) -> list[_core.Run]:
         return self.results.runs if isinstance(self.results, Results) else [result._run for result in self.results]
+
+    def parts(self) -> typing.Iterator[dict[str, Array]]:
+        """The table part by part: of one in a folder (``resume=``) these are a thousand runs at most, else it is all.
+
+        >>> [len(part["run"]) for part in saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5).parts()]
+        [2]
+        """
+        yield self.table
 
     def frame(self) -> typing.Any:
         """The table as one of pandas.
@@ -311,7 +319,7 @@ class Sweep:
         return f"<saltus.Sweep of {len(self)} runs over {', '.join(self.names)}: {statuses}{doubt}>"
 
 
-def _column(name: str, values: typing.Any) -> Array:
+def as_column(name: str, values: typing.Any) -> Array:
     """Numbers of runs, of events and of modes are whole, and so is whether a solution is unique."""
     column = np.asarray(values)
     counts = name in ("run", "event", "events", "unique") or name.startswith("mode(")

@@ -144,6 +144,13 @@ nb::object simulate_between(Model& model, std::vector<std::string> settings, std
   return finished(std::move(result), input, nullptr, watch);
 }
 
+/// From how many starts the problem is solved.
+int starts(const Model& model, std::vector<std::string> settings, std::vector<Option> options) {
+  const auto input = model.stated({std::move(settings), std::move(options), frontend::RunMethods::several});
+  value_or_raise(io::check_optimize_options(input.file));
+  return input.file.optimize->mpcc.starts.value_or(1);
+}
+
 std::string check(Model& model, std::vector<std::string> settings) {
   const auto input = model.stated({std::move(settings), {}, frontend::RunMethods::several});
   auto text = frontend::check_text(input);
@@ -201,6 +208,7 @@ void add_model(nb::module_& module) {
            nb::arg("schemes"), nb::arg("steps"))
       .def("optimize", optimize, nb::arg("settings"), nb::arg("options"), nb::arg("start"), nb::arg("on_step").none(),
            nb::arg("warnings"))
+      .def("starts", starts, nb::arg("settings"), nb::arg("options"))
       .def("simulate_between", simulate_between, nb::arg("settings"), nb::arg("options"), nb::arg("branches"))
       .def("equations", equations, nb::arg("latex"))
       .def("declares", declares, nb::arg("name"))

@@ -5,5 +5,6 @@ NB_MODULE(_core, module) {
   saltus::python::lock_symbols_by_interpreter();
   saltus::python::add_result(module);
   saltus::python::add_model(module);
+  saltus::python::add_starts(module);
   saltus::python::add_tool(module);
 }

@@ -11,6 +11,7 @@ void lock_symbols_by_interpreter();
 void add_event(nanobind::module_& module);
 void add_result(nanobind::module_& module);
 void add_model(nanobind::module_& module);
+void add_starts(nanobind::module_& module);
 void add_tool(nanobind::module_& module);
 
 }  // namespace saltus::python

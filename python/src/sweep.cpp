@@ -61,6 +61,7 @@ struct Sweep {
   std::string keep;
   std::size_t jobs = 1;
   frontend::Share share;
+  std::size_t before = 0;  ///< runs that stand before those of the request, of which it has a part of the values
 };
 
 /// What a warning is until those of all shares are told together.
@@ -103,14 +104,17 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
   auto outcome = [&] {
     const nb::gil_scoped_release released;
     return pipeline::sweep(
-        {count, keep, what.jobs, begin}, [&](std::size_t run) { return frontend::state_run(input, plan, begin + run); },
-        observers);
+        {count, keep, what.jobs, what.before + begin},
+        [&](std::size_t run) { return frontend::state_run(input, plan, begin + run); }, observers);
   }();
   if (!outcome) raise(io::located(outcome.error(), input.file));
   for (const auto& warning : outcome->warnings) note(warnings, warning);
   auto& runs = outcome->runs;
   nb::dict columns;
   for (auto& column : frontend::sweep_table(plan, runs, keep, begin)) {
+    if (columns.size() == 0) {
+      for (double& run : std::get<std::vector<double>>(column.values)) run += static_cast<double>(what.before);
+    }
     columns[nb::str(column.name.c_str())] = column_of(std::move(column.values));
   }
   nb::list results;
@@ -129,6 +133,16 @@ nb::object sweep(Model& model, const Request& asked, const Sweep& what, nb::obje
   nb::object found = nb::make_tuple(columns, results, plan.names());
   watch.raise_what_came(found);
   return found;
+}
+
+/// (fingerprint, number of runs) of a sweep; refuses one that cannot be.
+std::pair<std::string, std::size_t> study(const Model& model, const Request& asked,
+                                          const frontend::SweepRequest& request, const std::string& keep) {
+  const auto plan = value_or_raise(frontend::SweepPlan::make(request));
+  static_cast<void>(keep_named(keep));
+  const auto input = model.stated(asked);
+  value_or_raise(frontend::input_of_run(input, plan, 0));
+  return {frontend::sweep_mark(input, request, keep), plan.runs()};
 }
 
 /// The page of a table that Python holds: columns are lists of numbers or of words.
@@ -153,19 +167,30 @@ std::string sweep_page(const Model& model, const nb::list& columns, std::vector<
 
 void add_sweep(nb::class_<Model>& type) {
   type.def("sweep_page", sweep_page, nb::arg("columns"), nb::arg("names"), nb::arg("command"), nb::arg("grid"));
+  type.def(
+      "study",
+      [](const Model& model, std::vector<std::string> settings, std::vector<Option> options,
+         std::vector<std::string> over, bool paired, std::vector<std::string> samples, std::optional<long> runs,
+         std::uint64_t seed, const std::string& keep, bool yes) {
+        const Request asked{std::move(settings), std::move(options), frontend::RunMethods::chosen};
+        return study(model, asked, {std::move(over), paired, std::move(samples), runs, seed, yes}, keep);
+      },
+      nb::arg("settings"), nb::arg("options"), nb::arg("over"), nb::arg("paired"), nb::arg("samples"),
+      nb::arg("runs").none(), nb::arg("seed"), nb::arg("keep"), nb::arg("yes"));
   type.def_static("told_with_runs", told_with_runs, nb::arg("warnings"));
   type.def(
       "sweep",
       [](Model& model, std::vector<std::string> settings, std::vector<Option> options, std::vector<std::string> over,
          bool paired, std::vector<std::string> samples, std::optional<long> runs, std::uint64_t seed, std::string keep,
-         bool yes, std::size_t jobs, std::pair<std::size_t, std::size_t> share, nb::object progress,
+         bool yes, std::size_t jobs, std::tuple<std::size_t, std::size_t, std::size_t> share, nb::object progress,
          nb::list warnings) {
         const Request asked{std::move(settings), std::move(options), frontend::RunMethods::chosen};
         const std::size_t threads = jobs > 0 ? jobs : std::max(1U, std::thread::hardware_concurrency());
         const Sweep what{{std::move(over), paired, std::move(samples), runs, seed, yes},
                          std::move(keep),
                          threads,
-                         {share.first, share.second}};
+                         {std::get<0>(share), std::get<1>(share)},
+                         std::get<2>(share)};
         return sweep(model, asked, what, std::move(progress), std::move(warnings));
       },
       nb::arg("settings"), nb::arg("options"), nb::arg("over"), nb::arg("paired"), nb::arg("samples"),

@@ -231,7 +231,7 @@ def test_progress_of_a_sweep(capsys, monkeypatch):
     assert len(writes) <= 3 + 10 * (time.monotonic() - begin)
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
         m.sweep(belt=[0.1, 0.2], until=1, progress=True, executor=pool)
-    assert capsys.readouterr().err.endswith("stick-slip: 4 of 4 shares\n")
+    assert capsys.readouterr().err.endswith("stick-slip: 2 of 2 runs\n")
 
 
 def test_progress_of_a_sweep_by_tqdm(monkeypatch):

@@ -24,6 +24,7 @@ FILES = {
     "mpcc": "How many MPCCs of other programs are solved, beside a plain homotopy and mpecss?",
     "random_optima": "How many random problems of optimal control come to the best that is known?",
     "large": "How do time and memory grow with the number of states?",
+    "sweeps": "How many runs a second do several workers compute, beside SciPy in joblib?",
 }
 NARROW = ("compare", "events", "fesd", "optimal_control", "large")  # tables of numbers, without sentences in their cells
 DATE = re.compile(r"\b20\d\d-\d\d-\d\d\b")

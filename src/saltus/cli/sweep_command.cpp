@@ -13,7 +13,7 @@
 #include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
-#include "saltus/cli/run_command.hpp"
+#include "saltus/cli/sweep_command_internal.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/frontend/sweep_input.hpp"
 #include "saltus/frontend/sweep_page.hpp"
@@ -27,17 +27,6 @@ namespace saltus::cli {
 namespace {
 
 using pipeline::Keep;
-
-struct SweepArguments {
-  RunArguments run;
-  frontend::SweepRequest request;
-  std::string keep = "final";
-  std::string out;
-  std::string page;
-  std::string task;
-  std::vector<std::string> join;
-  std::optional<long> jobs, seed;
-};
 
 Expected<Keep> keep_named(const std::string& word) {
   const std::map<std::string, Keep> known{
@@ -65,8 +54,13 @@ Error misuse(std::string message, std::string remedy) {
 }
 
 Expected<void> check_output(const SweepArguments& arguments, const std::string& input) {
-  if (arguments.out.empty() && (arguments.page.empty() || !arguments.task.empty())) {
-    return tl::unexpected(misuse("--out is missing", "add --out table.csv, or --report page.html"));
+  const bool has_folder = !arguments.resume.empty();
+  if (has_folder && !arguments.task.empty() && !(arguments.out.empty() && arguments.page.empty())) {
+    return tl::unexpected(misuse("--task with --resume fills a part of the folder, and writes no table",
+                                 "write --out and --report by the same command without --task, at the end"));
+  }
+  if (arguments.out.empty() && !has_folder && (arguments.page.empty() || !arguments.task.empty())) {
+    return tl::unexpected(misuse("--out is missing", "add --out table.csv, --report page.html, or --resume FOLDER"));
   }
   if (!arguments.page.empty()) {
     if (!arguments.task.empty()) {
@@ -104,26 +98,15 @@ Expected<void> write_table(const std::string& file, const std::vector<frontend::
   return io::stream_file(file, [&](io::Sink sink) { return frontend::write_npz(table, sink); });
 }
 
-Expected<void> write_files(const SweepArguments& arguments, const std::vector<frontend::TableColumn>& table,
-                           const frontend::SweepPage& page) {
-  if (!arguments.out.empty()) {
-    if (auto written = write_table(arguments.out, table); !written) return written;
-  }
-  if (arguments.page.empty()) return {};
-  return io::write_file(arguments.page, frontend::sweep_page(table, page));
-}
-
 /// "98 completed, 2 iteration_limit"
 std::string statuses(const std::vector<pipeline::SweepRun>& runs) {
   std::map<std::string, std::size_t> counts;
   for (const auto& run : runs) ++counts[std::string(result::name(run.result.status.termination))];
-  std::vector<std::string> parts;
-  for (const auto& [status, count] : counts) parts.push_back(fmt::format("{} {}", count, status));
-  return fmt::format("{}", fmt::join(parts, ", "));
+  return counted(counts);
 }
 
-/// "; 1 not unique", of a table with a column of that: how many runs are in doubt.
-std::string doubts(const std::vector<frontend::TableColumn>& table) {
+/// Of a table with a column of that: how many runs are in doubt.
+std::string doubts_of(const std::vector<frontend::TableColumn>& table) {
   const auto unique =
       std::find_if(table.begin(), table.end(), [](const auto& column) { return column.name == "unique"; });
   if (unique == table.end()) return "";  // joined shares of an older version
@@ -135,10 +118,7 @@ std::string doubts(const std::vector<frontend::TableColumn>& table) {
     if (values[row] == 0.0) ++others;
     if (values[row] < 0.0) ++undecided;
   }
-  std::vector<std::string> parts;
-  if (others > 0) parts.push_back(fmt::format("{} not unique", others));
-  if (undecided > 0) parts.push_back(fmt::format("uniqueness of {} not decided", undecided));
-  return parts.empty() ? "" : fmt::format("; {}", fmt::join(parts, ", "));
+  return doubts(others, undecided);
 }
 
 ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs, std::size_t asked) {
@@ -151,18 +131,6 @@ ExitCode report_stopped_runs(const std::vector<pipeline::SweepRun>& runs, std::s
                           std::count_if(runs.begin(), runs.end(), stopped), runs.size(), first - runs.begin() + 1,
                           name(status.termination), status.message.empty() ? "" : ": ", status.message));
   return ExitCode::stopped_early;
-}
-
-/// Shows on a terminal how many runs are done.
-pipeline::SweepObservers sweep_observers(const SweepArguments& arguments, std::size_t count) {
-  pipeline::SweepObservers observers;
-  observers.is_interrupted = interrupted;
-  if (arguments.run.quiet || ::isatty(STDERR_FILENO) != 1) return observers;
-  observers.on_run = [count, every = std::max<std::size_t>(1, count / 200)](std::size_t done) {
-    if (done % every == 0) fmt::print(stderr, "\r{} of {} runs", done, count);
-    if (done == count) fmt::print(stderr, "\r{:40}\r", "");
-  };
-  return observers;
 }
 
 Expected<frontend::SweepRequest> request_of(const SweepArguments& arguments) {
@@ -207,28 +175,27 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   if (auto one = frontend::check_branches(*first, *plan); !one) return refuse(one.error());
   print_warnings(frontend::options_without_effect(first->file));
 
+  const bool grid = !request.paired && request.samples.empty();
+  const frontend::SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid,
+                                 model->file.captions};
+  const auto mark = frontend::sweep_mark(*model, request, arguments.keep);
+  const StatedSweep sweep{arguments, *model, *plan, *keep, *jobs, page, mark};
+  if (!arguments.resume.empty()) return resume_sweep(sweep);
   const auto share = arguments.task.empty() ? Expected<frontend::Share>(frontend::Share{})
                                             : frontend::parse_share(arguments.task, plan->runs());
   if (!share) return refuse(share.error());
   const std::size_t begin = share->begin(plan->runs()), count = share->end(plan->runs()) - begin;
   catch_interrupt();
   const auto observers = sweep_observers(arguments, count);
-  const auto state = [&](std::size_t run) { return frontend::state_run(*model, *plan, begin + run); };
-  const auto outcome = pipeline::sweep({count, *keep, *jobs, begin}, state, observers);
-  if (!outcome) return refuse(io::located(outcome.error(), model->file));
+  const auto outcome = simulate_runs(sweep, begin, count, observers);
+  if (!outcome) return refuse(outcome.error());
   print_warnings(frontend::told_with_runs(outcome->warnings));
   const auto& runs = outcome->runs;
   auto table = frontend::sweep_table(*plan, runs, *keep, begin);
-  const bool grid = !request.paired && request.samples.empty();
-  const frontend::SweepPage page{model->file.description.name, call_of("simulate", arguments.run), plan->names(), grid,
-                                 model->file.captions};
-  if (!arguments.task.empty()) {
-    table.front().name =
-        frontend::share_heading(*share, plan->runs(), frontend::sweep_mark(*model, request, arguments.keep), page);
-  }
+  if (!arguments.task.empty()) table.front().name = frontend::share_heading(*share, plan->runs(), mark, page);
   if (auto written = write_files(arguments, table, page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
-    print(fmt::format("{} runs: {}{}\n{}\n", runs.size(), statuses(runs), doubts(table),
+    print(fmt::format("{} runs: {}{}\n{}\n", runs.size(), statuses(runs), doubts_of(table),
                       arguments.out.empty() ? arguments.page : arguments.out));
   }
   return report_stopped_runs(runs, count);
@@ -247,12 +214,54 @@ ExitCode run_join(const SweepArguments& arguments) {
   if (auto written = write_files(arguments, whole->table, whole->page); !written) return refuse(written.error());
   if (!arguments.run.quiet) {
     print(fmt::format("{} shares, {} rows{}\n{}\n", arguments.join.size(), frontend::rows_of(whole->table.front()),
-                      doubts(whole->table), arguments.out.empty() ? arguments.page : arguments.out));
+                      doubts_of(whole->table), arguments.out.empty() ? arguments.page : arguments.out));
   }
   return ExitCode::done;
 }
 
 }  // namespace
+
+Expected<void> write_files(const SweepArguments& arguments, const std::vector<frontend::TableColumn>& table,
+                           const frontend::SweepPage& page) {
+  if (!arguments.out.empty()) {
+    if (auto written = write_table(arguments.out, table); !written) return written;
+  }
+  if (arguments.page.empty()) return {};
+  return io::write_file(arguments.page, frontend::sweep_page(table, page));
+}
+
+std::string counted(const std::map<std::string, std::size_t>& statuses) {
+  std::vector<std::string> parts;
+  for (const auto& [status, count] : statuses) parts.push_back(fmt::format("{} {}", count, status));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+std::string doubts(std::size_t others, std::size_t undecided) {
+  std::vector<std::string> parts;
+  if (others > 0) parts.push_back(fmt::format("{} not unique", others));
+  if (undecided > 0) parts.push_back(fmt::format("uniqueness of {} not decided", undecided));
+  return parts.empty() ? "" : fmt::format("; {}", fmt::join(parts, ", "));
+}
+
+pipeline::SweepObservers sweep_observers(const SweepArguments& arguments, std::size_t all, std::size_t before) {
+  pipeline::SweepObservers observers;
+  observers.is_interrupted = interrupted;
+  if (arguments.run.quiet || ::isatty(STDERR_FILENO) != 1) return observers;
+  observers.on_run = [all, before, every = std::max<std::size_t>(1, all / 200)](std::size_t count) {
+    const std::size_t done = before + count;
+    if (done % every == 0) fmt::print(stderr, "\r{} of {} runs", done, all);
+    if (done == all) fmt::print(stderr, "\r{:40}\r", "");
+  };
+  return observers;
+}
+
+Expected<pipeline::SweepOutcome> simulate_runs(const StatedSweep& sweep, std::size_t begin, std::size_t count,
+                                               const pipeline::SweepObservers& observers) {
+  const auto state = [&](std::size_t run) { return frontend::state_run(sweep.model, sweep.plan, begin + run); };
+  auto outcome = pipeline::sweep({count, sweep.keep, sweep.jobs, begin}, state, observers);
+  if (!outcome) return tl::unexpected(io::located(outcome.error(), sweep.model.file));
+  return outcome;
+}
 
 Command add_sweep(CLI::App& app) {
   auto* command = app.add_subcommand("sweep", "simulate a model with many values and write one table");
@@ -277,7 +286,13 @@ Command add_sweep(CLI::App& app) {
   command->add_option("--out", arguments->out, "the table")->type_name("FILE.csv|.npz");
   command->add_option("--report", arguments->page, "a page with pictures of the table, which works offline")
       ->type_name("FILE.html");
-  command->add_option("--task", arguments->task, "only share I of N, for several machines; --out is a .csv then")
+  command
+      ->add_option("--resume", arguments->resume,
+                   "a folder that is filled share by share; what is there is not computed again")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--task", arguments->task,
+                   "only share I of N, for several machines: of the table (.csv), or of the folder of --resume")
       ->type_name("I/N");
   command->add_option("--join", arguments->join, "the tables of all shares, which become one; no MODEL then")
       ->type_name("FILE.csv …");

@@ -12,6 +12,7 @@
 #include "saltus/base/text.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/sha256.hpp"
+#include "saltus/result/status.hpp"
 
 namespace saltus::frontend {
 namespace {
@@ -220,6 +221,42 @@ std::string share_heading(const Share& share, std::size_t runs, const std::strin
   fields.pop_back();  // the end of the line
   return fmt::format("run [task {} of {}, sweep {}, runs {} to {}] {}", share.number, share.of, mark,
                      share.begin(runs) + 1, share.end(runs), fields);
+}
+
+SweepTally& SweepTally::operator+=(const SweepTally& other) {
+  runs += other.runs;
+  others += other.others;
+  undecided += other.undecided;
+  for (const auto& [status, count] : other.statuses) statuses[status] += count;
+  if (first_stopped == 0 || (other.first_stopped > 0 && other.first_stopped < first_stopped))
+    first_stopped = other.first_stopped;
+  return *this;
+}
+
+Expected<SweepTally> tally_of_share(const std::string& file, const Share& share, const std::string& mark) {
+  const auto read = read_share(file);
+  if (!read) return tl::unexpected(read.error());
+  if (read->mark != mark || read->share.number != share.number || read->share.of != share.of) {
+    return tl::unexpected(no_share(file, fmt::format("not share {} of {} of this sweep", share.number, share.of), ""));
+  }
+  const auto& lines = read->lines;
+  const auto column = [&](std::string_view name) {
+    return static_cast<std::size_t>(std::find(lines[0].begin(), lines[0].end(), name) - lines[0].begin());
+  };
+  const std::size_t status = column("status"), unique = column("unique");
+  SweepTally tally;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const auto& line = lines[i];
+    if (i > 1 && line[0] == lines[i - 1][0]) continue;
+    ++tally.runs;
+    ++tally.statuses[line.at(status)];
+    if (line.at(unique) == "0") ++tally.others;
+    if (line.at(unique) == "-1") ++tally.undecided;
+    const auto why = result::termination_named(line[status]);
+    const bool stopped = !why || !result::is_done(*why);
+    if (stopped && tally.first_stopped == 0) tally.first_stopped = whole_text_as<std::size_t>(line[0]).value_or(0);
+  }
+  return tally;
 }
 
 Expected<JoinedShares> join_shares(const std::vector<std::string>& files) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,17 @@ struct Share {
 /// what the page of all says.
 [[nodiscard]] std::string share_heading(const Share& share, std::size_t runs, const std::string& mark,
                                         const SweepPage& page);
+
+/// Counts what runs have come to.
+struct SweepTally {
+  std::size_t runs = 0, others = 0, undecided = 0;  ///< of all; not unique; whose uniqueness is not decided
+  std::map<std::string, std::size_t> statuses;
+  std::size_t first_stopped = 0;  ///< the first run that stopped early, from 1; 0: none
+  SweepTally& operator+=(const SweepTally& other);
+};
+
+/// Counts the runs of the file of a share. Fails where it is no complete table of this share of this sweep.
+[[nodiscard]] Expected<SweepTally> tally_of_share(const std::string& file, const Share& share, const std::string& mark);
 
 struct JoinedShares {
   std::vector<TableColumn> table;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -192,8 +191,7 @@ Expected<SweepOutcome> sweep(const SweepOptions& options, StateRun state, const 
         Error{ErrorCode::invalid_option,
               fmt::format("{} runs need about {:.0f} GB of memory at once, and the machine has {:.0f}", options.runs,
                           needed / 1e9, bytes_of_machine() / 1e9),
-              fmt::format("run shares of them, one after the other: --task 1/{0:.0f} to {0:.0f}/{0:.0f}, then --join",
-                          std::ceil(4.0 * needed / bytes_of_machine())),
+              "fill a folder, with one share of them in memory at a time: --resume FOLDER",
               {},
               {}});
   }

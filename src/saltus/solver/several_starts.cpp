@@ -11,6 +11,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/stopwatch.hpp"
+#include "saltus/result/better_start.hpp"
 #include "saltus/solver/run_internal.hpp"
 #include "saltus/solver/workplaces_internal.hpp"
 
@@ -30,11 +31,13 @@ double worst_violation(const Solution& solution) {
   return std::max(of.primal_infeasibility, of.complementarity_residual);
 }
 
-/// A completed one before others, then the lower objective; of others the one that violates less.
-bool is_better(const Solution& a, const Solution& b) {
-  const bool a_done = a.termination == Termination::completed, b_done = b.termination == Termination::completed;
-  if (a_done != b_done) return a_done;
-  return a_done ? a.objective < b.objective : worst_violation(a) < worst_violation(b);
+result::StartOutcome outcome_of(const Solution& solution, int seed, double seconds) {
+  return {.seed = seed,
+          .termination = solution.termination,
+          .objective = solution.objective,
+          .infeasibility = worst_violation(solution),
+          .iterations = solution.iterations,
+          .seconds = seconds};
 }
 
 /// Whether no other start is needed, or wanted.
@@ -58,21 +61,31 @@ Expected<Solution> best_of(std::vector<Tried> all) {
   for (std::size_t seed = 0; seed < all.size(); ++seed) {
     const auto& [found, seconds] = all[seed];
     if (!found || !*found) continue;  // a function is not finite there, or there was no time
-    const Solution& solution = **found;
-    iterations += solution.iterations;
-    outcomes.push_back({.seed = static_cast<int>(seed),
-                        .termination = solution.termination,
-                        .objective = solution.objective,
-                        .infeasibility = worst_violation(solution),
-                        .iterations = solution.iterations,
-                        .seconds = seconds});
-    if (is_better(solution, **all[taken].found)) taken = seed;
+    outcomes.push_back(outcome_of(**found, static_cast<int>(seed), seconds));
+    iterations += outcomes.back().iterations;
+    if (is_better(outcomes.back(), outcomes[taken])) taken = outcomes.size() - 1;
   }
-  for (auto& outcome : outcomes) outcome.is_taken = outcome.seed == static_cast<int>(taken);
-  Solution best = std::move(**all[taken].found);
+  outcomes[taken].is_taken = true;
+  Solution best = std::move(**all[at(outcomes[taken].seed)].found);
   if (outcomes.size() > 1) best.starts = std::move(outcomes);
   best.iterations = iterations;
   return best;
+}
+
+/// Seed 0 is the given start.
+std::optional<Start> moved_start(const mpcc::Problem& problem, const std::optional<Start>& start, int seed) {
+  if (seed == 0) return start;
+  return Start{.w = start_of_seed(problem, start ? start->w : problem.start(), seed), .multipliers = {}};
+}
+
+Expected<Solution> solve_one(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
+                             const std::optional<Start>& start) {
+  const Stopwatch stopwatch;
+  auto solution = solve_from(problem, nlp, lpcc, options, moved_start(problem, start, *options.seed));
+  if (!solution) return solution;
+  solution->starts.push_back(outcome_of(*solution, *options.seed, stopwatch.seconds()));
+  solution->starts.back().is_taken = true;
+  return solution;
 }
 
 }  // namespace
@@ -100,6 +113,7 @@ linalg::Vector start_of_seed(const mpcc::Problem& problem, ConstVectorView w, in
 
 Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
                          const std::optional<Start>& start) {
+  if (options.seed) return solve_one(problem, nlp, lpcc, options, start);
   const int count = options.starts.value_or(usual_starts);
   if (count < 1 || count > most_starts) {
     Error error;

@@ -48,6 +48,8 @@ struct SolveOptions {
   /// The start itself, and others by seeds 1, 2, ...: all of them. Nothing: one after the other, until one is
   /// completed.
   std::optional<int> starts{};
+  /// Solves from the start of this seed alone, for machines that share the starts; `starts` is not looked at then.
+  std::optional<int> seed{};
   /// Random starts by seeds 1, 2, ... of which the first relaxed problem alone is solved, and compared: the path of the
   /// lowest objective goes on. Nothing is 0.
   std::optional<int> compared_starts{};

@@ -64,6 +64,7 @@ class MoreElements {
       : ocp_(ocp), options_(std::move(options)), most_iterations_(options_.iteration_limit), solved_(solved) {
     options_.first = solver::FirstProblem::branch;
     options_.starts = 1;
+    options_.seed.reset();
     options_.compared_starts = 0;
   }
 

@@ -21,6 +21,7 @@ using solver::homotopy::Steering;
 using solver::homotopy::WarmStart;
 
 constexpr auto starts_of = [](auto& o) -> auto& { return o.starts; };
+constexpr auto seed_of = [](auto& o) -> auto& { return o.seed; };
 constexpr auto strategy_of = [](auto& o) -> auto& { return o.strategy; };
 constexpr auto sigma_initial_of = [](auto& o) -> auto& { return o.sigma_initial; };
 constexpr auto sigma_factor_of = [](auto& o) -> auto& { return o.schedule.sigma_factor; };
@@ -59,6 +60,10 @@ const std::array fields_of_mpcc{
         "starts", Numbers{.whole = true, .from = 1.0, .up_to = most_starts},
         "The problem is solved from its start and from random ones beside it (seeds 1, 2, …); the best is the answer. "
         "auto: from its start; foreign problems that it does not solve, from up to 24 random ones, until one does."),
+    number_or_none_field<seed_of, none_word, SolveOptions>(
+        "seed", Numbers{.whole = true, .from = 0.0, .up_to = most_starts},
+        "Of these starts the problem is solved from that of one seed alone (0: its start), for machines that share "
+        "them."),
     number_or_none_field<compared_starts_of, auto_word, SolveOptions>(
         "compared_starts", Numbers{.whole = true, .from = 0.0, .up_to = most_starts},
         "Random starts beside the start whose relaxed problems are compared; the path of the lowest objective goes on "
