@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-import io
+import errno
 import os
 import pathlib
 import typing
@@ -71,9 +71,11 @@ class Folder:
         """Opens a folder, or begins it where there is none, or an empty one. Raises :class:`ModelError`, and writes
         nothing, for a folder of another sweep or version, with other files, with a part that is not whole, and for one
         that another process fills."""
+        if not isinstance(path, (str, os.PathLike)):
+            raise TypeError(f"resume={path!r}: expected the name of a folder")
         self.path = pathlib.Path(path)
         self.statement = self._opened(wanted)
-        self._lock = _locked(self.path)
+        self._lock = _Lock(self.path)
         self.parts: dict[int, Part] = {}
         try:
             self._read_journal()
@@ -87,7 +89,10 @@ class Folder:
             if self.path.exists() and (not self.path.is_dir() or any(self.path.iterdir())):
                 raise self._refused("there are other files, and no sweep", "name another folder, which may be a new one")
             statement = dataclasses.replace(wanted, kind="parquet" if _has_parquet() else "npz")
-            self.path.mkdir(parents=True, exist_ok=True)
+            try:
+                self.path.mkdir(parents=True, exist_ok=True)
+            except OSError as error:
+                raise self._refused(f"the folder cannot be made: {error.strerror}", "name another folder") from None
             _core.write_file(os.fspath(file), statement.text())
             return statement
         form, *lines = file.read_text(encoding="utf-8", errors="replace").splitlines() or [""]
@@ -187,9 +192,7 @@ class Folder:
 
     def close(self) -> None:
         """Lets others fill the folder."""
-        if self._lock is not None:
-            self._lock.close()
-            self._lock = None
+        self._lock.close()
 
 
 def _has_parquet() -> bool:
@@ -212,18 +215,32 @@ def _array(column: typing.Any) -> Array:
     return values.astype(str) if values.dtype == object else values
 
 
-def _locked(path: pathlib.Path) -> io.BufferedRandom | None:
-    """Nobody else fills the folder until this file is closed, which the system does when the process ends."""
-    try:
-        import fcntl
-    except ImportError:  # no Unix
-        return None
-    lock = open(path / _LOCK, "a+b", buffering=0)
-    try:
-        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        lock.close()
-        raise refuse(f"resume={os.fspath(path)!r}: another process fills this folder", "wait for it, or end it") from None
-    except OSError:
-        pass  # a file system without locks
-    return typing.cast(io.BufferedRandom, lock)
+#: Folders that this process fills: locks of a file keep others out only.
+_FILLED: set[str] = set()
+
+
+class _Lock:
+    """Nobody else fills the folder until this is closed, or the process ends, however it does. Of POSIX locks: workers
+    that are forked meanwhile, and outlive a process that is killed, do not have them."""
+
+    def __init__(self, path: pathlib.Path) -> None:
+        self._name, self._file = os.path.realpath(path), open(path / _LOCK, "a+b")
+        if self._name in _FILLED or not self._is_ours():
+            self._file.close()
+            raise refuse(f"resume={os.fspath(path)!r}: another sweep fills this folder", "wait for it, or end its process")
+        _FILLED.add(self._name)
+
+    def _is_ours(self) -> bool:
+        try:
+            import fcntl
+        except ImportError:  # no Unix
+            return True
+        try:
+            fcntl.lockf(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            return error.errno not in (errno.EACCES, errno.EAGAIN)  # else a file system without locks
+        return True
+
+    def close(self) -> None:
+        _FILLED.discard(self._name)
+        self._file.close()

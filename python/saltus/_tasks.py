@@ -7,12 +7,13 @@ import concurrent.futures
 import dataclasses
 import importlib
 import os
+import pickle
 import pkgutil
 import queue
 import typing
 
 from . import _core
-from ._errors import ModelError, Stopped
+from ._errors import Stopped
 
 #: How often a task is begun whose worker ends.
 MOST_TRIES = 3
@@ -216,8 +217,11 @@ def attempt(function: typing.Any, *arguments: typing.Any) -> tuple[bool, typing.
     except MemoryError:
         raise  # another worker may have more
     except Exception as error:
-        # Other errors may not pickle.
-        return False, error if isinstance(error, (ModelError, Stopped, TypeError, ValueError)) else RuntimeError(str(error))
+        try:
+            pickle.loads(pickle.dumps(error))
+        except Exception:
+            return False, RuntimeError(f"{type(error).__name__}: {error}")
+        return False, error
 
 
 def _sentence(error: BaseException) -> str:

@@ -1,12 +1,14 @@
 """Sweeps that fill a folder: they go on where they were ended, and refuse folders of others."""
 
 import concurrent.futures
+import functools
 import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -106,30 +108,41 @@ def test_executors_fill_folders(slip, tmp_path):
 
 
 PROGRAM = """
+import concurrent.futures
+import multiprocessing
 import sys
 import numpy as np
 import saltus
 
 if __name__ == "__main__":
     m = saltus.catalogue("stick-slip")
-    m.sweep(belt=np.linspace(0.05, 0.3, 64), until=300, resume=sys.argv[1], jobs=1, rtol=1e-11)
+    pool = concurrent.futures.ProcessPoolExecutor(2, multiprocessing.get_context("fork")) if sys.argv[2] == "pool" else None
+    m.sweep(belt=np.linspace(0.05, 0.3, 64), until=100, rtol=1e-11, resume=sys.argv[1], executor=pool, jobs=1)
 """
 
 
-def test_a_kill_of_everything_costs_the_part_in_work(slip, tmp_path):
+@pytest.mark.parametrize("workers", ["none", "pool"])
+def test_a_kill_costs_the_parts_in_work(slip, tmp_path, workers):
+    """Also where workers outlive the process that is killed, as those of a pool by fork do."""
     program, folder = tmp_path / "study.py", tmp_path / "runs"
     program.write_text(PROGRAM)
-    running = subprocess.Popen([sys.executable, program, folder])
-    while not (folder / "_parts.csv").exists() or (folder / "_parts.csv").read_bytes().count(b"\n") < 5:
-        assert running.poll() is None
-        time.sleep(0.01)
-    running.send_signal(signal.SIGKILL)
-    running.wait()
-    noted = (folder / "_parts.csv").read_text().splitlines()
-    stamps = {file: (folder / file).stat().st_mtime_ns for file in (line.split(",")[3] for line in noted)}
-    assert 5 <= len(noted) < 64
-    how = {"belt": np.linspace(0.05, 0.3, 64), "until": 300, "rtol": 1e-11}
-    s = slip.sweep(**how, resume=folder, jobs=1)
+    running = subprocess.Popen([sys.executable, program, folder, workers], start_new_session=True)
+    try:
+        while not (folder / "_parts.csv").exists() or (folder / "_parts.csv").read_bytes().count(b"\n") < 5:
+            assert running.poll() is None
+            time.sleep(0.01)
+        running.send_signal(signal.SIGKILL)
+        running.wait()
+        noted = (folder / "_parts.csv").read_text().splitlines()
+        stamps = {file: (folder / file).stat().st_mtime_ns for file in (line.split(",")[3] for line in noted)}
+        assert 5 <= len(noted) < 64
+        how = {"belt": np.linspace(0.05, 0.3, 64), "until": 100, "rtol": 1e-11}
+        s = slip.sweep(**how, resume=folder, jobs=1)
+    finally:
+        try:
+            os.killpg(running.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
     same_tables(slip.sweep(**how), s)
     assert stamps == {file: (folder / file).stat().st_mtime_ns for file in stamps}
 
@@ -181,15 +194,47 @@ def test_half_written_lines_and_files_are_made_again(slip, tmp_path):
     assert journal.read_bytes() == lines and not left.exists()
 
 
+def test_names_that_are_no_folders(slip, tmp_path):
+    with pytest.raises(TypeError, match="resume=5: expected the name of a folder"):
+        slip.sweep(belt=BELTS, until=1, resume=5)
+    (tmp_path / "file").write_text("mine")
+    for name, words in (("file", "there are other files"), ("file/runs", "the folder cannot be made: Not a directory")):
+        with pytest.raises(saltus.ModelError, match=words):
+            slip.sweep(belt=BELTS, until=1, resume=tmp_path / name)
+    assert (tmp_path / "file").read_text() == "mine"
+
+
+@pytest.mark.parametrize("executor", [None, functools.partial(concurrent.futures.ThreadPoolExecutor, 1)])
+def test_who_stops_a_sweep_goes_on_with_it(slip, tmp_path, executor):
+    folder, how = tmp_path / "runs", {"belt": BELTS, "until": 150, "rtol": 1e-11, "jobs": 1}
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    stopping = threading.Thread(target=stop_after, args=(folder / "_parts.csv", 3))
+    stopping.start()
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        slip.sweep(**how, resume=folder, executor=executor)
+    stopping.join()
+    signal.signal(signal.SIGINT, before)
+    kept = stopped.value.result
+    assert 3 <= len(kept) < 40 and not kept.done and kept["run"].tolist() == list(range(1, len(kept) + 1))
+    assert set(kept["status"]) == {"completed"}
+    same_tables(slip.sweep(**how), slip.sweep(**how, resume=folder))
+
+
+def stop_after(journal, lines):
+    while not journal.exists() or journal.read_bytes().count(b"\n") < lines:
+        time.sleep(0.005)
+    os.kill(os.getpid(), signal.SIGINT)
+
+
 def test_one_process_fills_a_folder(slip, tmp_path):
     pytest.importorskip("fcntl")
     folder = tmp_path / "runs"
     how = {"belt": BELTS, "until": 1}
     slip.sweep(**how, resume=folder)
-    command = "import fcntl, sys, time\nf = open(sys.argv[1], 'a')\nfcntl.flock(f, fcntl.LOCK_EX)\nprint(1, flush=True)\ntime.sleep(60)"
+    command = "import fcntl, sys, time\nf = open(sys.argv[1], 'a')\nfcntl.lockf(f, fcntl.LOCK_EX)\nprint(1, flush=True)\ntime.sleep(60)"
     other = subprocess.Popen([sys.executable, "-c", command, folder / "_lock"], stdout=subprocess.PIPE)
     other.stdout.readline()
-    refused(lambda: slip.sweep(**how, resume=folder), "another process fills this folder", folder)
+    refused(lambda: slip.sweep(**how, resume=folder), "another sweep fills this folder", folder)
     other.kill()
     other.wait()
     other.stdout.close()

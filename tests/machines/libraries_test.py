@@ -84,7 +84,7 @@ def test_a_folder_goes_on_when_mpi_has_ended_everything(alone, tmp_path):
     # Its children notice the end of their pipes a little later.
     for _ in range(50):
         done = run("mpi4py", "folder", str(out))
-        if "another process fills this folder" not in done.stderr:
+        if "another sweep fills this folder" not in done.stderr:
             break
         time.sleep(0.2)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -60,12 +60,16 @@ def mpi_pool():
 POOLS = {"loky": loky_pool, "dask": dask_pool, "ray": ray_pool, "mpi4py": mpi_pool, "none": contextlib.nullcontext}
 
 
+def own_id():
+    return os.getpid()
+
+
 def kill_a_worker(pool):
     """One of the two, which has a share then."""
-    pid = pool.submit(os.getpid).result()
+    pid = pool.submit(own_id).result()
 
     def kill():
-        time.sleep(0.4)
+        time.sleep(0.3)
         os.kill(pid, signal.SIGKILL)
 
     threading.Thread(target=kill, daemon=True).start()
@@ -73,7 +77,7 @@ def kill_a_worker(pool):
 
 def main(library, what, out):
     m = saltus.catalogue("stick-slip")
-    how = {"belt": BELTS, "until": 3000, "keep": "events" if what == "plain" else "final", "rtol": 1e-9}
+    how = {"belt": BELTS, "until": 1500, "keep": "events" if what == "plain" else "final", "rtol": 1e-9}
     with POOLS[library]() as pool:
         if what == "kill":
             kill_a_worker(pool)

@@ -204,7 +204,7 @@ ExitCode run_sweep(const SweepArguments& arguments) {
 /// What MODEL and the files behind it are with --join: all are shares.
 ExitCode run_join(const SweepArguments& arguments) {
   if (!arguments.run.model.empty() || !arguments.request.over.empty() || !arguments.request.samples.empty() ||
-      !arguments.task.empty()) {
+      !arguments.task.empty() || !arguments.resume.empty()) {
     return refuse(
         misuse("--join takes the tables of shares, and no model", "saltus sweep --join 1.csv 2.csv --out all.csv"));
   }

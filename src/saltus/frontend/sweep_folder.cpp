@@ -149,7 +149,7 @@ Expected<SweepFolder> SweepFolder::open(const std::string& folder, const std::st
   if (auto begun = opened.read_or_begin(); !begun) return tl::unexpected(begun.error());
   opened.lock_ = std::make_shared<Lock>(opened.folder_ / fmt::format("_lock-{}-of-{}", task.number, task.of));
   if (opened.lock_->is_taken()) {
-    return tl::unexpected(refused_folder(folder, "another process fills it", "wait for it, or end it"));
+    return tl::unexpected(refused_folder(folder, "another sweep fills this folder", "wait for it, or end its process"));
   }
   if (auto counted = opened.count_shares(); !counted) return tl::unexpected(counted.error());
   return opened;
