@@ -9,4 +9,7 @@ foreach(file IN LISTS files)
   string(APPEND text "R\"saltus_text(" "${part}" ")saltus_text\"\n")
 endforeach()
 file(WRITE "${output}" "#pragma once\n#include <string_view>\nnamespace saltus::embedded {\n"
-  "inline constexpr std::string_view ${variable} =\n" "${text}" ";\n}  // namespace saltus::embedded\n")
+  "inline constexpr char ${variable}_letters[] =\n" "${text}" ";\n"
+  # With its length: compilers count no more than so many letters.
+  "inline constexpr std::string_view ${variable}{${variable}_letters, sizeof ${variable}_letters - 1};\n"
+  "}  // namespace saltus::embedded\n")

@@ -241,12 +241,12 @@ class Bodies(Page):
     def test_a_ball_falls_with_the_slider_and_lies_with_the_selected_event(self):
         self.show("sliding-ball")
         at_start = self.value(self.MOVING)[0]
-        # Fourteen frames behind it, and a floor that stands still.
+        # Fourteen frames of it, and a floor that stands still.
         self.assertEqual(self.value("document.querySelectorAll('.bodies .strobe circle').length"), 14)
         self.assertEqual(self.value("document.querySelectorAll('.bodies .strobe polyline, .bodies .moving polyline').length"), 0)
-        self.assertEqual(self.value("document.querySelectorAll('.bodies > g > polyline').length"), 1)
+        self.assertEqual(self.value("document.querySelectorAll('.bodies .inside > polyline').length"), 1)
         self.slide(1000)
-        floor = "Number(document.querySelector('.bodies > g > polyline').getAttribute('points').split(/[ ,]/)[1])"
+        floor = "Number(document.querySelector('.bodies .inside > polyline').getAttribute('points').split(/[ ,]/)[1])"
         radius = "Number(document.querySelector('.bodies .moving circle').getAttribute('r'))"
         self.assertGreater(self.value(self.MOVING)[0], at_start)
         self.assertAlmostEqual(self.value(floor) - self.value(self.MOVING)[0], self.value(radius), delta=1e-6)

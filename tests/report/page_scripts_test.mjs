@@ -8,19 +8,19 @@ const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
       "format.js", "numbers.js", "series.js", "panels.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
-      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js", "bodies.js"
+      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js", "bodies/bodies.js", "bodies/player.js", "bodies/gif.js", "bodies/animation.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
 
 test("every script of the page is one that a browser reads", () => {
-  for (const file of fs.readdirSync(page).filter((name) => name.endsWith(".js"))) {
+  for (const file of fs.readdirSync(page, {recursive: true}).filter((name) => name.endsWith(".js"))) {
     assert.doesNotThrow(() => new vm.Script(fs.readFileSync(new URL(file, page), "utf8")), file);
   }
 });
 
 test("every name has one meaning", () => {
-  const names = fs.readdirSync(page).filter((name) => name.endsWith(".js")).flatMap(
+  const names = fs.readdirSync(page, {recursive: true}).filter((name) => name.endsWith(".js")).flatMap(
       (file) => [...fs.readFileSync(new URL(file, page), "utf8").matchAll(/^saltus\.(\w+) = /gm)].map((match) => match[1]));
   assert.deepEqual(names.filter((name, i) => names.indexOf(name) !== i), []);
 });
@@ -752,4 +752,42 @@ test("small columns beside large ones move; what is below the tolerance is round
   };
   assert.deepEqual(moving([["simulate.atol", 1e-14]]), ["p", "z"]);
   assert.deepEqual(moving([["simulate.atol", 1e-8]]), ["p"]);
+});
+
+test("speeds of a player are round, and a run takes some seconds with the first one", () => {
+  assert.deepEqual(saltus.playSpeeds(10), {first: 1, all: [0.1, 0.2, 0.5, 1, 2, 5, 10]});
+  assert.equal(saltus.playSpeeds(2).first, 0.5);
+  assert.equal(saltus.playSpeeds(1e-3).first, 5e-4);
+  assert.equal(saltus.playSpeeds(3600).first, 200);
+  assert.ok(saltus.playSpeeds(3600).all.includes(1));
+  assert.equal(saltus.playSpeeds(0).first, 1);
+});
+
+test("a GIF plays a run with its speed, in at most 500 frames", () => {
+  const {times, hundredths} = saltus.gifTimes([0, 4], 2);
+  assert.equal(hundredths, 4);
+  assert.deepEqual([times[0], times[50], times.length], [0, 4, 51 + 15]);
+  const long = saltus.gifTimes([0, 100], 1);
+  assert.equal(long.hundredths, 20);
+  assert.equal(long.times.filter((t) => t < 100).length, 500);
+});
+
+test("frames of a GIF are what differs, and equal frames one pixel that changes nothing", () => {
+  const before = Uint8Array.from([1, 1, 1, 1, 1, 1]);
+  const after = Uint8Array.from([1, 1, 1, 1, 2, 1]);
+  assert.deepEqual(saltus.gifDifference(before, after, 3, 2), {left: 1, top: 1, width: 1, height: 1, pixels: Uint8Array.of(2)});
+  assert.deepEqual(saltus.gifDifference(after, after, 3, 2).pixels, Uint8Array.of(255));
+  assert.equal(saltus.gifDifference(null, after, 3, 2).pixels.length, 6);
+});
+
+test("a picture follows what moves where the scene is much larger", () => {
+  const shapes = [{kind: "disc", points: 1}];
+  const run = {t: [0, 1], drawing: [[0, 10], [0, 0], [0.5, 0.5]]};
+  const all = saltus.bodiesBox(shapes, run);
+  const follow = saltus.followBox(shapes, run, [false], all);
+  const [[from, to]] = follow(saltus.placedShapes(shapes, [5, 0, 0.5]));
+  assert.ok(Math.abs((from + to) / 2 - 5) < 1e-12);
+  assert.ok(to - from < (all[0][1] - all[0][0]) / 2);
+  const near = {t: [0, 1], drawing: [[0, 0.1], [0, 0], [0.5, 0.5]]};
+  assert.equal(saltus.followBox(shapes, near, [false], saltus.bodiesBox(shapes, near)), null);
 });

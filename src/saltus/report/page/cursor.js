@@ -1,12 +1,6 @@
 // The cursor: one line through all panels, a dot on every curve, all values at that time beside it.
 "use strict";
 
-saltus.svgElement = (tag, attributes) => {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  return element;
-};
-
 /** How near, in pixels, the pointer must be to an event for the cursor to stand on it. */
 saltus.catchPixels = 6;
 /** More values than this beside the pointer would cover the drawing. */

@@ -15,6 +15,14 @@ saltus.element = (tag, attributes = {}, ...children) => {
   return element;
 };
 
+/** An element of a picture, with attributes and children. */
+saltus.svgElement = (tag, attributes, ...children) => {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+};
+
 /** All digits: reading the text gives the same double. */
 saltus.exact = (value) => {
   if (value === undefined) return "–";

@@ -101,18 +101,18 @@ saltus.start = () => {
   if (orders.length > 0)
     main.append(saltus.element("div", {class: "cards two orders"}, ...orders.map((order) => order.element)));
   main.append(layout);
+  const bodies = saltus.bodiesCard(result, () => timeline);
+  const drawing = saltus.element(
+      "section", {class: "card drawing"}, saltus.legend(result, holder, () => timeline, chooser), chooser.element, frame);
+  // What moves is what one came for; phases of contacts alone stand below.
+  const [above, below] = bodies === null ? [null, null] : bodies.isFirst ? [bodies.element, null] : [null, bodies.element];
   layout.append(
-      saltus.element(
-          "section", {class: "card drawing"}, saltus.legend(result, holder, () => timeline, chooser), chooser.element,
-          frame),
+      saltus.element("div", {class: "column"}, above, drawing),
       saltus.eventSection(result, parts));
   timeline = saltus.timeline(result, holder, {
     windowChanged: drawPhases,
-    // Beside the drawing the table is as tall as it, but never taller than the window.
-    resized: (height) => layout.style.setProperty("--drawing-height", `${height + 92}px`),
   }, address);
   saltus.cursor(result, frame, holder, timeline, select);
-  const bodies = saltus.bodiesCard(result, timeline);
   const cards = saltus.element("div", {class: "cards"});
   const branches = saltus.branchCard(result, {
     select,
@@ -124,7 +124,7 @@ saltus.start = () => {
   });
   const families = saltus.familyCard(result);
   const sensitivities = saltus.sensitivityCard(result);
-  const sections = [saltus.verdictCard(result), bodies?.element ?? null, branches, families, cards, sensitivities];
+  const sections = [saltus.verdictCard(result), below, branches, families, cards, sensitivities];
   main.append(...sections.filter((section) => section !== null), saltus.notes(result));
   if (saltus.columns(result).length > 1 && result.states.length > 0 && result.trajectory.t.length > 0) {
     phases.push(saltus.phasePlane(result, timeline, select, address));

@@ -1,9 +1,11 @@
 // What was solved: the model's text, where it started, the call; and the data as a file.
 "use strict";
 
-saltus.saveText = (name, text, type) => {
+saltus.saveText = (name, text, type) => saltus.saveBlob(name, new Blob([text], {type}));
+
+saltus.saveBlob = (name, blob) => {
   const link = document.createElement("a");
-  link.href = URL.createObjectURL(new Blob([text], {type}));
+  link.href = URL.createObjectURL(blob);
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 1000);

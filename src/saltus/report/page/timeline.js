@@ -2,7 +2,7 @@
 "use strict";
 
 /**
- * @param listeners  windowChanged(window) after every change of the window, resized(height) before every drawing
+ * @param listeners  windowChanged(window) after every change of the window
  * @return           what other parts of the page may do with the drawing
  */
 saltus.timeline = (result, holder, listeners, address) => {
@@ -25,12 +25,11 @@ saltus.timeline = (result, holder, listeners, address) => {
   };
 
   const draw = () => {
-    // As tall as the first screen allows, below head and warnings, above axis and border.
-    const top = holder.getBoundingClientRect().top + window.scrollY;
+    // As tall as the first screen allows, below head and warnings, above axis and border; below bodies as tall as a screen.
+    const top = Math.min(holder.getBoundingClientRect().top + window.scrollY, 0.3 * window.innerHeight);
     stack = saltus.stackPanels(result, Math.max(360, window.innerHeight - top - 64), choice);
     const current = view();
     const layout = {...saltus.figureLayout(result, stack, current), width: holder.clientWidth};
-    listeners.resized(stack.height);
     return Plotly.react(holder, saltus.figureTraces(result, stack, current), layout, saltus.plotConfig);
   };
 

@@ -19,7 +19,7 @@ saltus.placedShapes = (shapes, numbers) => {
   return placed;
 };
 
-/** Numbers of all shapes at a time, linearly between rows; where two rows have one time, behind it. */
+/** Numbers of all shapes at a time, linearly between rows; where two rows have one time, after it. */
 saltus.bodiesAt = ({t, drawing}, time) => {
   if (time >= t[t.length - 1]) return drawing.map((column) => column[t.length - 1]);
   const right = Math.max(1, saltus.upperBound(t, time));
@@ -57,6 +57,39 @@ saltus.bodiesBox = (shapes, {t, drawing}) => {
   if (!(box[0][0] <= box[0][1])) return [[0, 1], [0, 1]];
   const largest = Math.max(box[0][1] - box[0][0], box[1][1] - box[1][0]) || 1;
   return box.map(([from, to]) => [from - 0.04 * largest, to + 0.04 * largest]);
+};
+
+/** The scene must be so many times as wide as what moves before following it shows more. */
+saltus.followFactor = 2;
+
+/**
+ * A box that goes with what moves: a function of the placed moving shapes. Null where all of the scene is little larger.
+ */
+saltus.followBox = (shapes, {t, drawing}, still, all) => {
+  const boundsOf = (placed) => [0, 1].map((axis) => placed.reduce(
+      ([least, most], {points, radius}) => points.reduce(
+          ([a, b], point) => [Math.min(a, point[axis] - radius), Math.max(b, point[axis] + radius)], [least, most]),
+      [Infinity, -Infinity]));
+  const moving = (row) => saltus.placedShapes(shapes, drawing.map((column) => column[row]))
+                              .filter(({index}) => !still[index]);
+  const size = [0, 0];
+  const step = Math.max(1, Math.floor(t.length / 200));
+  for (let row = 0; row < t.length; row += step) {
+    boundsOf(moving(row)).forEach(([least, most], axis) => (size[axis] = Math.max(size[axis], most - least)));
+  }
+  const side = 1.6 * Math.max(...size);
+  const whole = all.map(([from, to]) => to - from);
+  if (!(side > 0) || Math.max(...whole) < saltus.followFactor * side) return null;
+  const wide = whole.map((length) => Math.min(length, Math.max(side, length / saltus.followFactor / 2)));
+  return (placed) => {
+    const bounds = boundsOf(placed);
+    return all.map(([from, to], axis) => {
+      const [least, most] = bounds[axis];
+      const middle = least <= most ? (least + most) / 2 : (from + to) / 2;
+      const start = Math.min(Math.max(middle - wide[axis] / 2, from), to - wide[axis]);
+      return [start, start + wide[axis]];
+    });
+  };
 };
 
 /** Whether shape number `index` stands still. */
