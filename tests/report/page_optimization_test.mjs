@@ -6,7 +6,7 @@ import vm from "node:vm";
 
 const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source = [
-  "format.js", "series.js", "panels.js", "branches.js", "figure.js", "cards.js", "optimization.js", "overlays.js", "drawing_card.js",
+  "format.js", "series.js", "panels.js", "kinds.js", "branches.js", "figure.js", "cards.js", "optimization.js", "overlays.js", "drawing_card.js",
   "homotopy.js", "constraints.js", "open_loop.js"
 ].map((file) => fs.readFileSync(new URL(file, page), "utf8")).join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
@@ -60,10 +60,10 @@ test("bounds are drawn where they do not flatten the curve", () => {
   assert.deepEqual(saltus.boundsNear(result, {...state, index: 7}), []);
 });
 
-test("a state has its bounds behind its curve and the simulation on it, a control no simulation", () => {
-  const panel = {sort: "state", curves: [state]};
+test("a state has its bounds under its curve and the simulation on it, a control no simulation", () => {
+  const panel = {sort: "state", curves: [state], firstColour: 0};
   assert.deepEqual(saltus.curveTraces(result, panel, "y", view).map(({meta}) => meta), ["bound", undefined, "simulated"]);
-  const inputs = saltus.curveTraces(result, {sort: "input", curves: [control]}, "y", view);
+  const inputs = saltus.curveTraces(result, {sort: "input", curves: [control], firstColour: 0}, "y", view);
   assert.deepEqual(inputs.map(({meta}) => meta), ["bound", undefined]);
   assert.equal(inputs[1].line.shape, "hv");
   const plain = {...result, optimization: null};
@@ -83,11 +83,29 @@ test("iterations are added up, residuals of 0 have a place, what failed is cross
   assert.ok(complementarity.text[1].endsWith("5 iterations, iteration limit"));
 });
 
-test("problems behind the last relaxed one are shaded", () => {
+test("problems after the last relaxed one are shaded", () => {
   const [shape] = saltus.crossoverShape(result.optimization.homotopy, {slidingShade: "shade"});
   assert.deepEqual([shape.x0, shape.x1], [15, 18]);
   assert.deepEqual(saltus.crossoverShape([step("relaxed", 4)], {}), []);
   assert.deepEqual(saltus.crossoverShape([], {}), []);
+});
+
+test("tries of other branches are named so, and the path does not run through them", () => {
+  const end = (message, termination, objective) => ({...step("branch", 5), message, termination, objective});
+  const homotopy = [
+    step("relaxed", 4), end("refused: the relaxed objective is 1", "completed", 3), end("", "completed", 3),
+    end("another mode sequence: insertion", "iteration_limit", 7), end("", "completed", 4)
+  ];
+  assert.equal(saltus.solutionPlace(homotopy, 3), 2);
+  assert.deepEqual(saltus.problemRoles(homotopy, 3), ["path", "path", "taken", "other", "other"]);
+  assert.deepEqual(saltus.problemRoles([step("relaxed", 4), end("", "iteration_limit", 7)], 9), ["path", "failed"]);
+  const traces = saltus.homotopyTraces(homotopy, palette, 3);
+  assert.ok(!traces.some(({name}) => name === "not solved"));
+  assert.ok(traces.some(({name}) => name === "another branch, tried"));
+  assert.deepEqual(traces.find(({name}) => name === "objective").x, [4, 9, 14]);
+  const tried = traces.find(({name}) => name === "objective, tried");
+  assert.deepEqual([tried.x, tried.marker.symbol], [[19, 24], "square-open"]);
+  assert.match(tried.text[0], /tried, no solution \(iteration limit\)/);
 });
 
 test("constraints are grouped by name, those that matter most first", () => {
@@ -109,7 +127,7 @@ test("limits of multipliers that are not unique are marks of their own", () => {
   assert.equal(saltus.stemTraces(saltus.constraintGroups([{name: "a", time: 0, value: 1}]), {curves: ["red"]}).length, 2);
 });
 
-test("simulation and solution are compared where both have rows, behind a jump", () => {
+test("simulation and solution are compared where both have rows, after a jump", () => {
   const {trajectory, optimization: {open_loop: simulated}} = result;
   assert.deepEqual(saltus.commonRows(trajectory.t, simulated.t, 1e-9), [[0, 0], [2, 2], [4, 3]]);
   const {x, y} = saltus.openLoopDifference(trajectory, simulated, 0);

@@ -7,7 +7,7 @@ import vm from "node:vm";
 const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
-      "format.js", "numbers.js", "series.js", "panels.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
+      "format.js", "numbers.js", "series.js", "panels.js", "kinds.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
       "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js", "bodies/bodies.js", "bodies/player.js", "bodies/gif.js", "bodies/animation.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");

@@ -103,6 +103,9 @@ saltus.reachCards = () => {
 /** Rows of a table of values at first; the others are in the result file. */
 saltus.firstRows = 100;
 
+/** A long name, which may be broken after its dots and underscores. */
+saltus.breakable = (name) => name.split(/(?<=[._])/).flatMap((part, i) => (i === 0 ? [part] : [saltus.element("wbr"), part]));
+
 /** Of very many pairs the first ones. */
 saltus.pairTable = (pairs) => {
   const shown = pairs.length > 3 * saltus.firstRows ? pairs.slice(0, saltus.firstRows) : pairs;
@@ -113,7 +116,7 @@ saltus.pairTable = (pairs) => {
           "tbody", {},
           ...shown.map(
               ([name, value, about = ""]) => saltus.element(
-                  "tr", {}, saltus.element("td", {title: name}, name), saltus.element("td", {class: "digits"}, value),
+                  "tr", {}, saltus.element("td", {title: name}, ...saltus.breakable(name)), saltus.element("td", {class: "digits"}, value),
                   about === "" ? null : saltus.element("td", {class: "quiet"}, about))),
           ...(left === 0 ? [] : [saltus.element("tr", {}, saltus.element("td", {class: "quiet"}, `and ${left} more`))])));
 };

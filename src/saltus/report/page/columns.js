@@ -130,13 +130,14 @@ saltus.firstPanels = (result) => {
   const columns = saltus.columns(result);
   const numbers = new Map(columns.map((column, i) => [column, i]));
   const of = (sort) => columns.filter((column) => column.sort === sort);
-  const groups = ["state", "output", "input"].flatMap((sort) => saltus.groupCurves(saltus.movingFirst(of(sort))));
+  const kindOf = saltus.kindsOfColumns(result);
+  const groups = ["state", "output", "input"].flatMap((sort) => saltus.panelsByKind(result, saltus.movingFirst(of(sort))));
   for (const sort of ["alpha", "theta"]) {
     const selections = of(sort);
     const all = saltus.movingFirst(selections).slice(0, saltus.firstBands(selections));
     for (let i = 0; i < all.length; i += saltus.perPanel) groups.push(all.slice(i, i + saltus.perPanel));
   }
-  const isLast = (group) => group.every((column) => column.discrete);
+  const isLast = (group) => group.every((column) => column.discrete && kindOf(column) !== "velocity");
   const ordered = [...groups.filter((group) => !isLast(group)), ...groups.filter(isLast)];
   return {
     panels: ordered.map((group) => ({curves: group.map((column) => numbers.get(column)), log: false})),

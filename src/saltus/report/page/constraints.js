@@ -118,7 +118,7 @@ saltus.constraintPicture = (result, timeline) => {
     "How much the optimal objective would fall if a constraint were relaxed by one unit: positive where an upper bound or",
     "<= presses, negative where a lower bound or >= does, 0 (hollow) where it does not matter.",
     groups.some(({ranges}) => ranges.length > 0) ?
-        "Diamonds: limits of multipliers that are not unique, since constraints hold each other there." :
+        "Diamonds: multipliers that are not unique, since gradients of active constraints depend on each other there; the mark is the bound that is known." :
         "",
     all > multipliers.length ? `The first ${multipliers.length} of ${all}.` : ""
   ].join(" ");

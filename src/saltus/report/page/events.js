@@ -137,7 +137,7 @@ saltus.eventFilter = (result, changed) => {
                           hidden.add(kind);
                         apply();
                       }));
-  if (result.events.some((event) => event.unique !== true)) {
+  if (!result.optimization && result.events.some((event) => event.unique !== true)) {
     boxes.push(box("only not unique", false, (on) => {
       onlyUncertain = on;
       apply();

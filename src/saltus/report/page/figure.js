@@ -51,10 +51,7 @@ saltus.modeTraces = (cells, row, axis, palette) => {
   }));
 };
 
-saltus.curveColour = (panel, i, palette) => {
-  const first = {state: 0, output: 1, input: 2, alpha: 3, theta: 4}[panel.sort];
-  return palette.curves[(panel.curves.length === 1 ? first : i) % palette.curves.length];
-};
+saltus.curveColour = ({firstColour}, i, palette) => palette.curves[(firstColour + i) % palette.curves.length];
 
 /** More jumps than this in one view: dotted lines alone, their ends would cover each other. */
 saltus.maximumJumpEnds = 80;
@@ -167,6 +164,7 @@ saltus.panelAxis = (panel, stack, palette) => {
     exponentformat: "power",
     minexponent: 5,
     tickfont: {size: 11},
+    title: {text: saltus.plain(saltus.shorten(panel.title, Math.floor(panel.height / 7))), standoff: 4, font: {size: 11, color: palette.quiet}},
     ...(panel.log ? {type: "log"} : {}),
     ...alpha,
   };
@@ -217,7 +215,7 @@ saltus.labelWidth = (result) => {
 
 saltus.figureLayout = (result, stack, view) => {
   const {palette} = view;
-  const margin = {l: 52, r: saltus.labelWidth(result), t: 10, b: 38};
+  const margin = {l: 66, r: saltus.labelWidth(result), t: 10, b: 38};
   const layout = {
     height: stack.height + margin.t + margin.b,
     margin,

@@ -46,13 +46,14 @@ saltus.markShapes = (result, marks, selected, palette) => {
       jump: {color: palette.jump, width: dense ? 0.5 : 1},
       accumulation: {color: palette.accumulation, width: 2, dash: "dashdot"},
     }[look] ??
-        {color: palette.mark, width: dense ? 0.5 : 1};
+        {color: palette.mark, width: dense ? 0.5 : 0.8};
     shapes.push({
       type: "path",
       layer: "below",
       xref: "x",
       yref: "paper",
-      opacity: look === "jump" ? 0.3 : dense && look !== "accumulation" ? 0.5 : 1,
+      // Fainter than any curve: they say when, not what.
+      opacity: look === "accumulation" ? 0.7 : look === "jump" || dense ? 0.25 : 0.45,
       path: alike.map((i) => `M${time(i)},0L${time(i)},1`).join(""),
       line: style,
     });

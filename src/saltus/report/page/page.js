@@ -20,8 +20,8 @@ saltus.legend = (result, holder, timeline, chooser) => {
       ...saltus.optimizationSwatches(result, swatch),
       ...(result.branches.length > 0 ? [swatch("branch-line", "branches")] : []),
       saltus.element(
-          "span", {class: "quiet help", title: "Keys, when the drawing has the focus: arrows, +, -, 0. A double click shows the whole time again; a click on the line of an event shows the event."},
-          "drag: zoom"),
+          "span", {class: "quiet help", title: "Keys, when the drawing has the focus: arrows, +, -, 0. A click on the line of an event shows the event."},
+          "drag: zoom, with Shift: move, double click: all"),
       saltus.element("button", {onclick: () => timeline().reset()}, "whole time"), chooser.button,
       ...saltus.saveButtons(result, holder, "trajectory"),
       saltus.element(

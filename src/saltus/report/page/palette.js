@@ -21,7 +21,7 @@ saltus.palette = () => {
     jump: colour("jump"),
     accumulation: colour("accumulation"),
     surfaces: [1, 2, 3, 4, 5].map((i) => colour(`surface-${i}`)),
-    curves: [1, 2, 3, 4, 5, 6].map((i) => colour(`curve-${i}`)),
+    curves: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10].map((i) => colour(`curve-${i}`)),
   };
 };
 

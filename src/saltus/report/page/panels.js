@@ -18,8 +18,9 @@ saltus.perPanel = 4;
 /** Curves whose ranges differ by more than this factor would flatten each other. */
 saltus.scaleRatio = 20;
 
-saltus.groupCurves = (curves) => {
-  if (curves.length <= saltus.singlePanels) return curves.map((curve) => [curve]);
+/** @param single  so many curves have a panel each */
+saltus.groupCurves = (curves, single = saltus.singlePanels) => {
+  if (curves.length <= single) return curves.map((curve) => [curve]);
   const groups = [];
   for (const curve of curves) {
     const [least, greatest] = curve.range ?? saltus.range(curve.values);
@@ -51,7 +52,11 @@ saltus.isFraction = (sort) => sort === "alpha" || sort === "theta";
 /** The panels of a choice with their curves. */
 saltus.curvePanels = (result, choice) => {
   const columns = saltus.columns(result);
-  return choice.panels.map(({curves, log}) => ({
+  const kindOf = saltus.kindsOfColumns(result);
+  // Colours go on from panel to panel: one that comes back is far away.
+  let next = 0;
+  const panel = (entry) => ({...entry, title: saltus.panelTitle(entry, kindOf), firstColour: (next += entry.curves.length) - entry.curves.length});
+  return choice.panels.map(({curves, log}) => panel({
                              kind: "curves",
                              sort: columns[curves[0]].sort,
                              log,

@@ -33,6 +33,9 @@ saltus.phaseParts = (result, columns, rows, sliding) => {
   return parts;
 };
 
+/** What the parts of a curve are called that do not slide; where nothing can slide it is all of it. */
+saltus.freeName = (result) => (saltus.bands(result).length > 0 ? "not sliding" : "trajectory");
+
 /** The range of some values with a little room; one that is a point gets room of its own size. */
 saltus.roomyRange = (values, room = 0.06) => {
   const [least, greatest] = saltus.range(values);
@@ -107,11 +110,21 @@ saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
   return notes.join(" ");
 };
 
+/** Of a system with contacts the coordinate whose velocity jumps at most events, with it; null of others. */
+saltus.jumpingPair = (result) => {
+  if ((result.contacts ?? []).length === 0) return null;
+  const jumps = ([, v]) => result.events.filter(({x, x_after: after}) => v < x.length && x[v] !== after[v]).length;
+  const counted = saltus.ratePairs(result).map((pair) => ({pair, count: jumps(pair)}));
+  return counted.reduce((best, one) => (best === null || one.count > best.count ? one : best), null)?.pair ?? null;
+};
+
 /**
  * Columns to begin with: the states of the first surface of moving states, filled up with the first states that move, in
  * space with the time, then with any state; in their order. A counter or a phase of a cycle shows little on an axis.
  */
 saltus.firstChoice = (result, size) => {
+  const mechanical = size === 2 ? saltus.jumpingPair(result) : null;
+  if (mechanical !== null) return mechanical;
   const columns = saltus.columns(result).slice(0, result.states.length);
   const moving = new Set(saltus.movingOf(columns));
   const moves = (state) => moving.has(columns[state]) && !columns[state].discrete;

@@ -93,7 +93,7 @@ saltus.planeTraces = (result, choice, view, palette) => {
   }];
   return [
     ...saltus.branchOrbits(result, choice, view, palette, "scatter"),
-    line(parts.free, "not sliding", {color: palette.curves[0], width: 1.4}),
+    line(parts.free, saltus.freeName(result), {color: palette.curves[0], width: 1.4}),
     line(parts.sliding, "sliding", {color: palette.sliding, width: 3.2}),
     line(parts.jumps, "jump", {color: palette.jump, width: 1.4, dash: "dot"}),
     marks,
@@ -174,7 +174,8 @@ saltus.phasePlane = (result, timeline, select, address) => {
     if (view === null) return Plotly.purge(holder);
     const scales = {equal: equal.input.checked, logs: logs.map(({input}) => input.checked), resets};
     const surfaces = saltus.planeSurfaces(result, choice, view, palette, scales.logs);
-    note.textContent = saltus.surfaceNote({...surfaces, absent: saltus.surfacesNotDrawn(result, choice)}, view.at);
+    const said = saltus.surfaceNote({...surfaces, absent: saltus.surfacesNotDrawn(result, choice)}, view.at);
+    note.textContent = `${said} Drag: zoom, with Shift: move, double click: all.`.trim();
     return Plotly.react(
         holder, [...(field.input.checked ? saltus.fieldTraces(result, choice, view, palette, scales.logs) : []),
                  ...surfaces.traces, ...saltus.planeTraces(result, choice, view, palette)],
@@ -184,7 +185,7 @@ saltus.phasePlane = (result, timeline, select, address) => {
   const element = saltus.element(
       "section", {class: "card phase"},
       saltus.element(
-          "header", {}, saltus.element("h2", {title: "within the time shown above; drag to zoom, double click to see all"}, "Phase plane"),
+          "header", {}, saltus.element("h2", {title: "within the time shown above"}, "Phase plane"),
           saltus.element("span", {class: "controls"}, second, " over ", first), ...logs.map(({label}) => label),
           equal.label, field.label, saltus.element("span", {class: "controls grow"}),
           ...saltus.saveButtons(result, holder, "phase-plane")),

@@ -38,7 +38,7 @@ saltus.portraitTraces = (result, choice, view, palette) => {
     ...saltus.branchOrbits(result, choice, view, palette, "scatter3d"),
     ...saltus.simulatedOrbit(result, choice, view, palette, "scatter3d"),
     ...saltus.overlayOrbits(result, choice, view, palette, "scatter3d"),
-    line(parts.free, "not sliding", {color: palette.curves[0], width: 3}),
+    line(parts.free, saltus.freeName(result), {color: palette.curves[0], width: 3}),
     line(parts.sliding, "sliding", {color: palette.sliding, width: 6}),
     line(parts.jumps, "jump", {color: palette.jump, width: 3, dash: "dot"}),
     points(
@@ -152,7 +152,7 @@ saltus.phasePortrait = (result, timeline, select, address) => {
       saltus.element(
           "header", {}, saltus.element("h2", {}, "Phase portrait"),
           saltus.element("span", {class: "controls"}, third, " over ", first, " and ", second),
-          saltus.element("span", {class: "controls quiet grow"}, possible ? "drag: turn" : ""),
+          saltus.element("span", {class: "controls quiet grow"}, possible ? "drag: turn, wheel: zoom" : ""),
           ...(possible ? saltus.saveButtons(result, holder, "phase-portrait") : [])),
       holder, note);
   const begin = () => {

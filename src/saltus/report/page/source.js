@@ -69,7 +69,7 @@ saltus.modelCard = (result) => {
           saltus.element("p", {class: "quiet"}, `${other.name}: not in the result, SHA-256 ${other.sha256}`) :
           saltus.textFold(other.name, other.text));
   return saltus.card(
-      "Model", ...saltus.equationTable(result), saltus.textFold(name, text), ...others,
+      "Model", ...saltus.equationTable(result), saltus.textFold(/^<.*>$/.test(name) ? "the model as text" : name, text), ...others,
       saltus.element(
           "button", {title: "the model file as it was", onclick: () => saltus.saveText(name, text, "text/plain")},
           "save model"));
