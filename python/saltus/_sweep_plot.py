@@ -18,6 +18,9 @@ if typing.TYPE_CHECKING:
 #: How runs end that did what was asked; where others stopped is no end of theirs.
 _DONE = ("completed", "stopped_by_event")
 
+#: Kind, name and surfaces of an event, as in the table.
+Sort = tuple[str, str, str]
+
 
 def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
     """Lines of a column over what was swept, one for each value of everything else."""
@@ -42,10 +45,7 @@ def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
         label = ", ".join(f"{other} = {_shown(of_runs(other)[runs[0]])}" for other in others)
         marker = "." if len(runs) < 60 or s._sampled else None
         axis.plot(along[runs], column[runs], marker=marker, linewidth=0 if s._sampled else 1.2, label=label or None)
-    if not done.all():
-        # At the foot: they have no value, and their last one may lie far off.
-        foot = axis.get_xaxis_transform()
-        axis.plot(along[~done], np.full((~done).sum(), 0.03), "x", color="black", transform=foot, label="stopped early")
+    _mark_lost_runs(s, x, axis)
     if not done.all() or 1 < len(lines) <= 12:
         axis.legend()
     axis.set_xlabel(_caption(s, x))
@@ -69,25 +69,34 @@ def plot_all(s: Sweep, over: str | None, axes: typing.Any) -> typing.Any:
 
 
 def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str | None, axis: typing.Any) -> typing.Any:
-    """Points: a column at events over what was swept; events of each sort in a colour of their own."""
+    """Points: a column at events over what was swept; other parameters and sorts of events have looks of their own.
+
+    A run that goes on after `after` without any event is drawn by its end, one that stopped early by a cross at the foot.
+    """
     if "kind" not in s.table:
         raise ValueError('a bifurcation diagram is made of events: sweep(…, keep="events")')
     sorts, sort_of_row = _sorts_of_events(s)
     wanted = [i for i, sort in enumerate(sorts) if event is None or event in _names_of(sort)]
     if event is not None and not wanted:
         raise unknown(event, sorted({name for sort in sorts for name in _names_of(sort)}), "the list of events")
-    x, _ = _axes(s, over)
+    x, others = _axes(s, over)
     axis, is_own = _axis(axis), axis is None
-    late = s["t"] > after
-    drawn = [(sorts[i], late & (sort_of_row == i)) for i in wanted]
-    drawn = [(sort, rows) for sort, rows in drawn if rows.any()]
-    if not drawn:
-        _warn_of_nothing(s["t"][np.isin(sort_of_row, wanted)], event, after)
-    for sort, rows in drawn:
-        style = {"color": LINES[0]} if len(drawn) == 1 else {"label": _names_of(sort)[0]}
-        axis.plot(s[x][rows], s[name][rows], ".", markersize=2.5, **style)
-    if 1 < len(drawn) <= 12:
-        axis.legend(markerscale=3, **({"loc": "upper left", "bbox_to_anchor": (1, 1)} if is_own else {}))
+    values, label_of_row = _other_values(s, others)
+    ends = _quiet_ends(s, name, after)
+    looks = _looks(s, [sorts[i] for i in wanted], [sort_of_row == i for i in wanted], label_of_row, values, after)
+    if not looks:
+        _warn_of_nothing(s["t"][np.isin(sort_of_row, wanted)], event, after, len(ends[0]))
+    for rows, style in looks:
+        axis.plot(s[x][rows], s[name][rows], linestyle="none", markersize=2.5, **style)
+    rows, heights = ends
+    if len(rows):
+        named = {"markerfacecolor": "none", "color": "#555555", "label": "at the end, without events"}
+        axis.plot(s[x][rows], heights, linestyle="none", marker="D", markersize=3, **named)
+    _mark_lost_runs(s, x, axis)
+    # One sort of points alone needs no words; some runs that are drawn otherwise do.
+    handles = axis.get_legend_handles_labels()[1]
+    if 0 < len(handles) <= 13:
+        axis.legend(markerscale=2, **({"loc": "upper left", "bbox_to_anchor": (1, 1)} if is_own else {}))
     # All that was swept is along the axis, also where no event is left.
     axis.dataLim.update_from_data_x(s[x], ignore=False)
     axis.autoscale_view()
@@ -96,8 +105,67 @@ def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str 
     return axis
 
 
-#: Kind, name and surfaces of an event, as in the table.
-Sort = tuple[str, str, str]
+#: Markers of sorts of events where colours stand for values of another parameter.
+_MARKERS = (".", "x", "+", "^", "s", "v")
+
+#: Other parameters of at most so many pairs of values are told apart by colours.
+_MOST_VALUES = 12
+
+
+def _other_values(s: Sweep, others: list[str]) -> tuple[list[str], Array]:
+    """What the other parameters are, as words, and of every row which of them."""
+    rows = np.column_stack([np.unique(s[other], return_inverse=True)[1] for other in others]) if others else None
+    if rows is None:
+        return [""], np.zeros(len(s["run"]), dtype=int)
+    _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
+    if len(first) > _MOST_VALUES:
+        return [""], np.zeros(len(s["run"]), dtype=int)
+    words = [", ".join(f"{other} = {_shown(s[other][row])}" for other in others) for row in first]
+    return words, np.ravel(number)
+
+
+def _looks(
+    s: Sweep, sorts: list[Sort], rows_of_sorts: list[Array], label_of_row: Array, values: list[str], after: float
+) -> list[tuple[Array, dict[str, typing.Any]]]:
+    """Rows with their colour, marker and label: colours by value of other parameters, of one value by sort of event."""
+    late = s["t"] > after
+    present = [(sort, rows & late) for sort, rows in zip(sorts, rows_of_sorts) if (rows & late).any()]
+    looks = []
+    for n, (sort, rows) in enumerate(present):
+        for k, words in enumerate(values):
+            chosen = rows & (label_of_row == k)
+            if not chosen.any():
+                continue
+            many = len(values) > 1
+            style: dict[str, typing.Any] = {
+                "color": LINES[(k if many else n) % len(LINES)],
+                "marker": _MARKERS[n % len(_MARKERS)] if many else ".",
+            }
+            named = [words] if many else []
+            named += [_names_of(sort)[0]] if len(present) > 1 else []
+            looks.append((chosen, style | ({"label": ", ".join(named)} if named else {})))
+    return looks
+
+
+def _quiet_ends(s: Sweep, name: str, after: float) -> tuple[Array, Array]:
+    """Rows and values at the end of runs that were done and have no event after a time; none of older tables."""
+    column = name.removesuffix("(after)") + "(end)"
+    if column not in s.table or name == "t":
+        return np.array([], dtype=int), np.array([])
+    moves = (s["event"] > 0) & (s["kind"] != "start") & (s["t"] > after)
+    first = np.unique(s["run"], return_index=True)[1]
+    quiet = ~np.isin(s["run"][first], s["run"][moves]) & np.isin(s["status"][first], _DONE) & (s["t(end)"][first] > after)
+    return first[quiet], s[column][first[quiet]]
+
+
+def _mark_lost_runs(s: Sweep, x: str, axis: typing.Any) -> None:
+    """At the foot: they have no end, and what they have of events may be a part."""
+    first = np.unique(s["run"], return_index=True)[1]
+    lost = first[~np.isin(s["status"][first], _DONE)]
+    if len(lost):
+        foot = axis.get_xaxis_transform()
+        heights = np.full(len(lost), 0.03)
+        axis.plot(s[x][lost], heights, "x", color="black", transform=foot, label="stopped early")
 
 
 def _sorts_of_events(s: Sweep) -> tuple[list[Sort], Array]:
@@ -117,12 +185,14 @@ def _names_of(sort: Sort) -> list[str]:
     return list(dict.fromkeys(filter(None, [name, *(with_surfaces if surfaces else []), kind, *surfaces.split()])))
 
 
-def _warn_of_nothing(times: Array, event: str | None, after: float) -> None:
+def _warn_of_nothing(times: Array, event: str | None, after: float, ends: int) -> None:
     what = f'events "{event}"' if event is not None else "events"
+    instead = f"; {ends} run{' is' if ends == 1 else 's are'} drawn by the end" if ends else ""
     if len(times) == 0:
-        warn([f"nothing is drawn: no run has {what}"])
+        warn([f"no point is drawn: no run has {what}{instead}"])
     else:
-        warn([f"nothing is drawn: the last of the {what} is at t = {times.max():.6g}, and after={after:g} leaves none"])
+        last = f"the last of the {what} is at t = {times.max():.6g}, and after={after:g} leaves none"
+        warn([f"no point is drawn: {last}{instead}"])
 
 
 def _axes(s: Sweep, over: str | None) -> tuple[str, list[str]]:

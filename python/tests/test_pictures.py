@@ -300,6 +300,28 @@ def test_events_of_several_sorts_can_be_told_apart():
     assert s.bifurcation("v", event="enter_sliding").get_legend() is None
 
 
+def test_a_bifurcation_diagram_over_one_of_two_parameters_has_a_colour_for_each_value_of_the_other():
+    m = saltus.catalogue("stick-slip")
+    s = m.sweep(belt=[0.1, 0.2, 0.3], q=[0, 0.1], until=40, keep="events")
+    axis = s.bifurcation("q", event="leave_sliding", after=20)
+    assert [line.get_label() for line in axis.lines] == ["q(0) = 0", "q(0) = 0.1"]
+    assert len({line.get_color() for line in axis.lines}) == 2
+    kept = (s["kind"] == "leave_sliding") & (s["t"] > 20) & (s["q(0)"] == 0.1)
+    assert axis.lines[1].get_ydata().tolist() == s["q"][kept].tolist()
+    several = s.bifurcation("v").lines
+    assert len({(line.get_color(), line.get_marker()) for line in several}) == len(several) == 4
+
+
+def test_runs_that_stopped_early_are_marked_in_a_bifurcation_diagram():
+    m = saltus.Model.from_text(
+        '[model]\nname = "m"\n[parameters]\na = 1\n[states]\nx = 1\ny = 0\n[dynamics]\nx = "sqrt(a - x)*x"\ny = "1"\n'
+        '[[events]]\nname = "early"\nwhen = "y - 0.01"\n[simulate]\nuntil = 0.1\n'
+    )
+    s = m.sweep(a=[2, 0, 3, 0.5], keep="events")
+    lost = next(line for line in s.bifurcation("x").lines if line.get_label() == "stopped early")
+    assert lost.get_xdata().tolist() == [0, 0.5] and lost.get_marker() == "x"
+
+
 def test_a_bifurcation_diagram_has_all_that_was_swept():
     m = saltus.Model.from_text(
         '[model]\nname = "m"\n[parameters]\na = 1\n[states]\nx = 0\n[dynamics]\nx = "a - x"\n'

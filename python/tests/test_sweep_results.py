@@ -149,7 +149,12 @@ def test_a_run_without_an_event_has_a_row_that_names_none(slip):
     assert s["kind"][-1] == s["name"][-1] == s["surfaces"][-1] == "" and s["status"][-1] == "completed"
     assert np.isnan(s["t"][-1]) and np.isnan(s["v"][-1]) and np.isnan(s["v(after)"][-1])
     assert [len(run.events) for run in s] == [1, 2, 0] and s.results[2].whole.parameters == {"belt": 5.0}
-    assert sum(len(line.get_xdata()) for line in s.bifurcation("v").lines) == 3
+    axis = s.bifurcation("v")
+    end = next(line for line in axis.lines if line.get_label() == "at the end, without events")
+    assert sum(len(line.get_xdata()) for line in axis.lines if line is not end) == 3
+    # Where nothing happens any more the state at the end is drawn.
+    assert (end.get_xdata().tolist(), end.get_ydata().tolist()) == ([5.0], [s.results[2].final["v"]])
+    assert s["v(end)"][-1] == s.results[2].final["v"] and s["t(end)"].tolist() == [5.0] * 4
 
 
 def test_counts_are_whole_numbers(slip):

@@ -791,3 +791,58 @@ test("a picture follows what moves where the scene is much larger", () => {
   const near = {t: [0, 1], drawing: [[0, 0.1], [0, 0], [0.5, 0.5]]};
   assert.equal(saltus.followBox(shapes, near, [false], saltus.bodiesBox(shapes, near)), null);
 });
+
+const mechanical = () => {
+  const t = [0, 1, 1, 2];
+  return {
+    ...mixed(),
+    states: ["x", "z", "vx", "vz"],
+    contacts: ["floor"],
+    model: {equations: [["x'", "vx", ""], ["z'", "vz", ""], ["force on vz", "-9.81", ""]]},
+    output_names: ["gap(left)", "force(left)", "gap(right)", "force(right)", "energy"],
+    events: [{t: 1, kind: "impact", x: [1, 0, 2, -1], x_after: [1, 0, 2, 1], unique: true}],
+    switching_functions: [],
+    trajectory: {
+      t,
+      x: [[0, 1, 1, 2], [1, 0, 0, 1], [1, 2, 2, 3], [-1, -1, 1, 1]],
+      outputs: [[1, 0, 0, 1], [0, 0, 5, 5], [2, 1, 1, 2], [0, 0, 4, 4], [3, 3, 2, 2]],
+      u: [], alpha: [], theta: [], modes: [], regions: [],
+    },
+  };
+};
+
+test("positions, velocities, gaps and forces have panels of their own, whose axes say so", () => {
+  const result = mechanical();
+  const curves = saltus.stackPanels(result, 600).panels.filter(({kind}) => kind === "curves");
+  assert.deepEqual(curves.map(({title, curves: own}) => [title, own.map(({name}) => name)]), [
+    ["position", ["x", "z"]], ["velocity", ["vx", "vz"]], ["gap", ["gap(left)", "gap(right)"]],
+    ["force", ["force(left)", "force(right)"]], ["energy", ["energy"]]
+  ]);
+  // A colour comes back after all others.
+  const palette = {curves: Array.from({length: 10}, (_, i) => `c${i}`)};
+  const colours = curves.flatMap((panel) => panel.curves.map((_, i) => saltus.curveColour(panel, i, palette)));
+  assert.equal(new Set(colours).size, colours.length);
+});
+
+test("a system with contacts begins with the coordinate whose velocity jumps, and its curve is the trajectory", () => {
+  const result = mechanical();
+  assert.deepEqual(saltus.firstChoice(result, 2), [1, 3]);
+  assert.equal(saltus.freeName(result), "trajectory");
+  assert.equal(saltus.freeName(mixed()), "not sliding");
+  result.trajectory.x[1] = [0, 0, 0, 0];
+  saltus.columnsOf.delete(result);
+  assert.deepEqual(saltus.firstChoice(result, 2), [0, 2]);
+});
+
+test("curves of one kind with different units do not share an axis", () => {
+  const result = mixed();
+  result.states = Array.from({length: 8}, (_, i) => `s${i}`);
+  result.trajectory.x = result.states.map(() => [0, 1, 1, 1, 2]);
+  result.captions = Object.fromEntries(result.states.map((name, i) => [name, {unit: i < 4 ? "V" : "A", label: ""}]));
+  const panels = saltus.stackPanels(result, 600).panels.filter(({kind, sort}) => kind === "curves" && sort === "state");
+  assert.deepEqual(panels.map(({title}) => title).slice(0, 4), ["s0 [V]", "s1 [V]", "s2 [V]", "s3 [V]"]);
+  result.states.forEach((name, i) => (result.captions[name].unit = i < 7 ? "V" : "A"));
+  saltus.columnsOf.delete(result);
+  const joined = saltus.stackPanels(result, 600).panels.filter(({kind, sort}) => kind === "curves" && sort === "state");
+  assert.deepEqual(joined.map(({title, curves}) => [title, curves.length]), [["states [V]", 4], ["states [V]", 3], ["s7 [A]", 1]]);
+});

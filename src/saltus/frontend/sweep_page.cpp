@@ -5,20 +5,14 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/version.hpp"
 #include "saltus/report/axis_title.hpp"
 #include "saltus/report/page_text.hpp"
 #include "sweep_page_script.hpp"
+#include "sweep_page_style.hpp"
 
 namespace saltus::frontend {
 namespace {
-
-constexpr std::string_view style = R"(
-:root{color-scheme:light dark;--line:#8888;--text:CanvasText}
-body{font:16px/1.4 system-ui,sans-serif;margin:1.5rem auto;max-width:60rem;padding:0 1rem;background:Canvas;color:var(--text)}
-h1{font-size:1.4rem}h2{font-size:1rem;margin:1rem 0 .2rem}svg{width:100%;height:auto;font-size:12px}svg text{fill:var(--text)}
-.frame{fill:none;stroke:var(--line)}.run{cursor:pointer}.run:hover{stroke:var(--text)}.alarm{fill:none;stroke:#d00;stroke-width:2;pointer-events:none}.stopped{fill:none;stroke:var(--text);stroke-width:1.5}select{font:inherit}label{margin-right:1rem}
-#run{position:sticky;bottom:0;background:Canvas;border-top:1px solid var(--line);padding:.5rem 0}code{user-select:all;word-break:break-all}
-)";
 
 /// Rows that are drawn: all, or of every run as many of its last ones as leave room for all runs.
 struct DrawnRows {
@@ -72,8 +66,19 @@ std::string data_of(const std::vector<TableColumn>& table, const DrawnRows& draw
     std::visit([&](const auto& values) { columns.emplace_back(table[k].name, rows_in(values, drawn.rows)); },
                table[k].values);
   }
-  const auto said = script_json(
-      {{"swept", swept}, {"names", page.names}, {"command", page.command}, {"grid", page.grid}, {"axes", axes}});
+  std::string left_out;
+  if (drawn.most_of_run > 0) {
+    left_out = fmt::format("The table has {} rows: the last {} of every run are drawn.", rows_of(table.front()),
+                           drawn.most_of_run);
+  }
+  const auto said = script_json({{"swept", swept},
+                                 {"names", page.names},
+                                 {"command", page.command},
+                                 {"grid", page.grid},
+                                 {"axes", axes},
+                                 {"title", page.title},
+                                 {"left_out", left_out},
+                                 {"saltus", std::string(version)}});
   return fmt::format(R"({{"columns":{},{})", script_json(columns), std::string_view(said).substr(1));
 }
 
@@ -88,15 +93,9 @@ std::string sweep_page(const std::vector<TableColumn>& table, const SweepPage& p
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src 'unsafe-inline'; "
       "style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  html += fmt::format("<title>{} - Saltus</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n<h1>{}</h1>\n", title,
-                      style, title);
-  if (drawn.most_of_run > 0) {
-    html += fmt::format("<p>The table has {} rows: the last {} of every run are drawn.</p>\n", rows_of(table.front()),
-                        drawn.most_of_run);
-  }
-  html +=
-      "<div id=\"controls\"></div>\n<div id=\"pictures\"></div>\n"
-      "<div id=\"run\"><span id=\"chosen\"></span><br><code id=\"command\"></code></div>\n</main>\n";
+  html += fmt::format("<title>{} - Saltus</title>\n<style>\n{}{}</style>\n</head>\n<body>\n", title,
+                      report::page_style(), embedded::sweep_page_style);
+  html += "<noscript><p>The pictures need JavaScript.</p></noscript>\n<main id=\"report\"></main>\n";
   html += fmt::format(
       "<script type=\"application/json\" id=\"sweep\">{}</script>\n<script>\n{}</script>\n</body>\n</html>\n",
       data_of(table, drawn, page), embedded::sweep_page_script);

@@ -134,20 +134,27 @@ Table event_table(const Beginning& beginning, const Result& first, const std::ve
   for (const char* name : {"kind", "name", "surfaces"}) columns.push_back(Table::words(name));
   append(columns, first.states);
   append(columns, first.states, "(after)");
+  append(columns, {"t(end)"});
+  append(columns, first.states, "(end)");
   Table table(std::move(columns));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     double number = 0.0;
+    const auto& end = runs[i].result.final;
+    const double end_time = end.x.empty() ? nothing : end.t;
     for (const auto& event : runs[i].result.events) {
       beginning.write(table, i, runs[i]);
       table << static_cast<double>(runs[i].events) << ++number << event.t << std::string(result::name(event.kind))
             << event.name.value_or("") << fmt::format("{}", fmt::join(event.surfaces, " "));
       table.add(event.x, first.states.size()).add(event.x_after, first.states.size());
+      table << end_time;
+      table.add(end.x, first.states.size());
     }
     if (number > 0.0) continue;
     // A run without an event is no run that is missing: it has a row, too.
     beginning.write(table, i, runs[i]);
     table << 0.0 << 0.0 << nothing << std::string() << std::string() << std::string();
-    table.add({}, 2 * first.states.size());
+    table.add({}, 2 * first.states.size()) << end_time;
+    table.add(end.x, first.states.size());
   }
   return table;
 }

@@ -22,8 +22,10 @@ struct TableColumn {
 /// is a state, whose value has the column "v"), `status`, `unique` (1; 0 if other solutions are admissible; -1 if that
 /// was not decided), then
 ///   final:       t, states, outputs at the end, `events` (their number);
-///   events:      `events`, `event` from 1, t, kind, name, surfaces, states before, states behind ("v(after)"); a run
-///                without one has a row whose `event` is 0, without time and kind;
+///   events:      `events`, `event` from 1, t, kind, name, surfaces, states before, states after ("v(after)"), time and
+///   states
+///                at the end of the run ("t(end)", "v(end)"), the same in all of its rows; a run without an event has a
+///                row whose `event` is 0, without time and kind;
 ///   trajectory:  `events`, t, states, controls, outputs, modes.
 /// @param begin  which run of the plan is the first of `runs`, from 0
 [[nodiscard]] std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<pipeline::SweepRun>& runs,

@@ -2,10 +2,13 @@
 
 #include <variant>
 
+#include "report_style.hpp"
 #include "saltus/report/json_internal.hpp"
 #include "saltus/report/page_data_internal.hpp"
 
 namespace saltus::report {
+
+std::string_view page_style() { return embedded::report_style; }
 
 std::string escape_html(std::string_view text) {
   std::string escaped;

@@ -8,6 +8,9 @@
 
 namespace saltus::report {
 
+/// The style sheet of all pages: colours of both themes, cards, banners, buttons, paper.
+[[nodiscard]] std::string_view page_style();
+
 /// Writes text between tags, or in an attribute.
 [[nodiscard]] std::string escape_html(std::string_view text);
 

@@ -81,7 +81,7 @@ saltus.branchCard = (result, actions) => {
   const rows = branches.map((branch, i) => {
     const depth = branch.label.split(".").length;
     const {event} = branch.left_at;
-    const behind = branch.left_at.later ? "behind " : "";
+    const later = branch.left_at.later ? "after " : "";
     const place = branch.parent === 0 ? saltus.element(
                                             "button", {
                                               title: "show this event",
@@ -90,8 +90,8 @@ saltus.branchCard = (result, actions) => {
                                                 actions.select(event);
                                               }
                                             },
-                                            `${behind}event ${event + 1}`) :
-                                        `${behind}event ${event + 1} of ${branches[branch.parent - 1].label}`;
+                                            `${later}event ${event + 1}`) :
+                                        `${later}event ${event + 1} of ${branches[branch.parent - 1].label}`;
     const cells = [
       "\u2003".repeat(depth - 1) + branch.label, place, saltus.brief(branch.left_at.t, 8),
       branch.left_at.regions === null ? saltus.modeBoxes(branch.left_at.mode) :
@@ -120,7 +120,7 @@ saltus.branchCard = (result, actions) => {
           saltus.element("thead", {}, saltus.element("tr", {}, ...head.map((text) => saltus.element("th", {}, text)))),
           saltus.element("tbody", {}, ...rows)),
       saltus.element(
-          "p", {class: "quiet note"}, `Dashed in the drawings; a click on a line draws that branch solid.${more}`));
+          "p", {class: "quiet note"}, `Branches are dashed in the drawings. Click a row to draw its branch solid.${more}`));
 };
 
 /** The continua of other solutions, in words, one row each; null if there are none. */
@@ -139,7 +139,7 @@ saltus.familyCard = (result) => {
             family.regions.length > 0 ? saltus.regionsText(family.regions) : saltus.modeBoxes(family.mode)]
             .map((cell, column) => saltus.element("td", column > 1 ? {class: "digits"} : {}, cell)));
   });
-  const head = ["family", "behind", "t", "into"];
+  const head = ["family", "after", "t", "into"];
   const more = families.length > most ? ` ${families.length - most} more are in the result.` : "";
   return saltus.element(
       "section", {class: "card branches"},
@@ -152,5 +152,5 @@ saltus.familyCard = (result) => {
           saltus.element("tbody", {}, ...rows)),
       saltus.element(
           "p", {class: "quiet note"},
-          `Each is a continuum of solutions; simulate.event.members follows some of every one.${more}`));
+          `Each family is a continuum of solutions. The option simulate.event.members follows some of each.${more}`));
 };

@@ -225,18 +225,18 @@ saltus.notes = (result) => {
   const tolerance = result.trajectory.line_tolerance ?? 0;
   const lines = tolerance === 0 ?
       "" :
-      `Each column is kept by the points between which lines are within ${saltus.brief(tolerance, 1)} of its range; the result file has all values. `;
+      `Each column is stored as a polyline that is off by at most ${saltus.brief(tolerance, 1)} of its range. The result file has all values. `;
   const kept = t.length === rows ? `This page holds all ${number(rows)} rows of the trajectory and its events. ` : [
     `This page holds ${number(t.length)} of the ${
         number(rows)} rows of the trajectory and its events: the least and greatest value of`,
-    "every curve in each stretch, and both rows of events. The result file has all of them. "
+    "every curve in each stretch of time, and the rows before and after each event. The result file has all rows. "
   ].join(" ");
   const drawn = [
-    "Curves are drawn with the least and greatest value per pixel and, up to 2,000 events in view, both rows",
-    "of every event; zoom in for every row. With more than 400 events in view one line per stretch is drawn. Where modes",
-    "change more than once per pixel their lanes are as full as their part of the time, the middle is hatched, and curves",
-    "that jump are drawn by their envelope and their mean over whole periods. Jumps are dotted lines, those of discrete",
-    "states solid steps."
+    "Curves show the least and the greatest value of each pixel, and the values before and after up to 2,000 events.",
+    "Zoom in to see every row. With more than 400 events in view, one line stands for several events.",
+    "Where a mode changes more than once per pixel, the height of its band is the share of time spent in the mode,",
+    "and the band is hatched. A curve that jumps there is drawn by its envelope and its mean.",
+    "Dotted lines are jumps. Discrete states are drawn as steps."
   ].join(" ");
   const names = {
     states: result.states,
@@ -250,7 +250,7 @@ saltus.notes = (result) => {
   const chosen = Object.entries(result.kept ?? {})
                      .filter(([sort, size]) => size > names[sort].length)
                      .map(([sort, size]) => `${number(names[sort].length)} of ${number(size)} ${sort}`);
-  const few = chosen.length === 0 ? "" : `Rows were asked to have ${chosen.join(", ")} only. `;
+  const few = chosen.length === 0 ? "" : `The run was asked to store ${chosen.join(", ")} only. `;
   const {sha256} = result.model;
   const model = sha256 === "" ? "No model file is recorded." : `SHA-256 of the model file: ${sha256}`;
   return saltus.element(

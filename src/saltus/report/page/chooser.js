@@ -51,7 +51,7 @@ saltus.panelRow = (result, choice, place, apply) => {
   const row = saltus.element(
       "li", {
         draggable: "true",
-        title: "drag between others: its place; onto another: the same axis",
+        title: "drag it between other rows to move it, or onto another row to share its axis",
         ondragstart: (event) => event.dataTransfer.setData("text/plain", String(place)),
         ondragover: (event) => event.preventDefault(),
         ondrop: (event) => {
@@ -155,7 +155,7 @@ saltus.chooser = (result, timeline) => {
       "columns");
   const first = saltus.element(
       "button", {
-        title: "what moves, as at first",
+        title: "show the columns that change, as at first",
         onclick: () => {
           timeline().choose(saltus.firstPanels(result));
           fill();

@@ -50,6 +50,6 @@ saltus.comparisonCard = (result) => {
           .map((run) => saltus.element("p", {class: "note"}, `${run.method} (${run.variant}): ${run.status.message}`)),
       saltus.element(
           "p", {class: "quiet note"},
-          "End states, largest differences from the reference (bars: logarithms from 1e-16 to 1), time with building. ",
-          "The drawings below show the reference."));
+          "Differences are the largest ones from the reference; bars show their logarithms from 1e-16 to 1. ",
+          "Seconds include building the problem. The drawings below show the reference."));
 };

@@ -115,8 +115,8 @@ saltus.constraintPicture = (result, timeline) => {
       ...(together ? [option("all", -1, true)] : []),
       ...groups.map(({name}, i) => option(name, i, !together && i === 0)))];
   const note = [
-    "How much the optimal objective would fall if a constraint were relaxed by one unit: positive where an upper bound or",
-    "<= presses, negative where a lower bound or >= does, 0 (hollow) where it does not matter.",
+    "A multiplier says how much the optimal objective would fall if the constraint were relaxed by one unit. It is",
+    "positive where an upper bound or <= is active, negative where a lower bound or >= is active, and 0 (hollow) elsewhere.",
     groups.some(({ranges}) => ranges.length > 0) ?
         "Diamonds: multipliers that are not unique, since gradients of active constraints depend on each other there; the mark is the bound that is known." :
         "",

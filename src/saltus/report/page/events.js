@@ -162,7 +162,7 @@ saltus.eventTable = (result, select, zoomTo) => {
         tabindex: "0",
         role: "region",
         "aria-label":
-            "events; arrow keys, Home and End choose one, Enter shows its neighbourhood, Escape takes the flag away"
+            "events; arrow keys, Home and End choose one, Enter zooms to it, Escape deselects it"
       },
       table);
   let shown = result.events.map((_, i) => i);

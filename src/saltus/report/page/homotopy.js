@@ -142,7 +142,7 @@ saltus.homotopyPicture = (result) => {
     }),
   });
   const note = [
-    `Each mark is a problem solved. σ is what the product of a complementary pair may be at most; residuals of 0 are drawn at ${saltus.leastResidual}.`,
+    `Each mark is a problem that was solved. σ is the largest value that the product of a complementary pair may have. Residuals of 0 are drawn at ${saltus.leastResidual}.`,
     "Shaded: problems without relaxation after the last relaxed one.",
     saltus.problemRoles(homotopy, objective).includes("other") ?
         "Open squares: with the optimum in hand, other mode sequences were tried; none was better." :

@@ -73,7 +73,7 @@ saltus.inspector = (result, actions) => {
             button("◀", "previous event", () => actions.step(i, -1)),
             button("▶", "next event", () => actions.step(i, 1)),
             button("zoom", "show the neighbourhood of this event", () => actions.zoomTo(i)),
-            button("✕", "take the flag away", () => actions.select(null))),
+            button("✕", "deselect", () => actions.select(null))),
         saltus.element(
             "p", {}, "t = ", saltus.element("span", {class: "digits"}, saltus.exact(event.t)),
             event.name === null ? "" : `, name: ${saltus.eventName(event)}`,

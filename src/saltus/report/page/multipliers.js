@@ -231,8 +231,8 @@ saltus.multiplierPicture = (result, timeline) => {
           ...saltus.saveButtons(result, holder, "multipliers")),
       holder,
       saltus.element(
-          "p", {class: "quiet note"}, `Marks: ${saltus.count(stages, "stage")} of each element; grey lines: its ends. `,
-          "h: lengths of the elements. Shows the window of time of the drawing above."));
+          "p", {class: "quiet note"}, `Marks: ${saltus.count(stages, "stage")} of each element. Grey lines: ends of elements. `,
+          "h: lengths of elements. The picture shows the same time as the drawing above."));
   const start = () => {
     draw();
     holder.on("plotly_relayout", (change) => {

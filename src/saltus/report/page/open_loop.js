@@ -63,9 +63,9 @@ saltus.openLoopPicture = (result, timeline) => {
     }),
   });
   const note = [
-    "The controls simulated from the start to the end, every switch located, without looking at the solution again:",
-    "how far each state is from the optimised one, as a part of its range. An unstable system drives them apart at every",
-    "accuracy; the verdict is about single intervals.",
+    "The optimal controls are simulated over the whole horizon, and every switch is located. Curves show how far each",
+    "state is from the optimised one, as a share of its range. In an unstable system they part at every accuracy; the",
+    "verification above checks each interval on its own.",
     result.states.length > shown.length ? `The first ${shown.length} states.` : ""
   ].join(" ");
   return saltus.drawingCard(

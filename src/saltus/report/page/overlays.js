@@ -153,7 +153,7 @@ saltus.differencePicture = (result, timeline) => {
   const card = saltus.drawingCard(
       result, {
         title: "Differences",
-        note: "The other results minus this one, at the times of both and on both sides of jumps; linear between rows.",
+        note: "The other results minus this one, at the times of both, before and after each jump. Between rows it is linear.",
         file: "differences",
         controls: ["of ", picker],
       },

@@ -101,20 +101,23 @@ saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
   };
   const when = saltus.brief(at.t, 6);
   const notes = [];
-  if (cuts.length > 0) notes.push(`Cuts at t = ${when}, where the other states have their values: ${names(cuts)}.`);
+  if (cuts.length > 0) notes.push(`Sections at t = ${when}, with the other states at their values there: ${names(cuts)}.`);
   if (moving.length > 0) {
     const times = [...new Set(moving.flatMap((surface) => surface.curves.map(({t}) => saltus.brief(t, 4))))];
-    notes.push(`Moves, drawn at t = ${times.slice(0, 9).join(", ")}: ${names(moving)}.`);
+    notes.push(`Moving surfaces, drawn at t = ${times.slice(0, 9).join(", ")}: ${names(moving)}.`);
   }
-  if (absent.length > 0) notes.push(`Not drawn, depends on time or on further states: ${names(absent)}.`);
+  if (absent.length > 0) notes.push(`Not drawn, since they depend on time or on other states: ${names(absent)}.`);
   return notes.join(" ");
 };
 
-/** Of a system with contacts the coordinate whose velocity jumps at most events, with it; null of others. */
+/** Of a system with contacts the moving coordinate whose velocity jumps at most events, with it; null of others. */
 saltus.jumpingPair = (result) => {
   if ((result.contacts ?? []).length === 0) return null;
   const jumps = ([, v]) => result.events.filter(({x, x_after: after}) => v < x.length && x[v] !== after[v]).length;
-  const counted = saltus.ratePairs(result).map((pair) => ({pair, count: jumps(pair)}));
+  const columns = saltus.columns(result);
+  const moving = new Set(saltus.movingOf(columns.slice(0, result.states.length)));
+  const pairs = saltus.ratePairs(result).filter(([position]) => moving.has(columns[position]));
+  const counted = pairs.map((pair) => ({pair, count: jumps(pair)}));
   return counted.reduce((best, one) => (best === null || one.count > best.count ? one : best), null)?.pair ?? null;
 };
 

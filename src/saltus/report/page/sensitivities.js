@@ -45,7 +45,7 @@ saltus.sensitivityCard = (result) => {
           "p", {class: "quiet note"},
           "Rows: states at the end. Orange: positive, blue: negative, shaded by logarithm of the size. ",
           ...(result.method === "timestepping" ?
-                  ["Without switch detection these are derivatives of a saw: wrong, however short the step. "] :
+                  ["Without switch detection these derivatives are wrong, however short the step is. "] :
                   []),
           ...(cut ? ["The result file has all of them."] : [])));
   element.classList.add("sensitivities");
