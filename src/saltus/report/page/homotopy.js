@@ -44,7 +44,7 @@ saltus.problemText = (step, k, role) => {
 saltus.homotopyKeys = (homotopy, roles, palette) => {
   const phases = homotopy.filter((_, k) => roles[k] !== "other").map(({phase}) => phase);
   const kinds = [...new Set(phases)].map((phase) => [saltus.phaseLooks[phase].symbol, saltus.phaseLooks[phase].label]);
-  if (roles.includes("failed")) kinds.push(["x-thin", "not solved"]);
+  if (roles.includes("failed")) kinds.push(["x-thin", roles.includes("taken") ? "not solved, the path went on" : "not solved"]);
   if (roles.includes("other")) kinds.push(["square-open", "another branch, tried"]);
   return kinds.map(([symbol, name]) => ({
     type: "scatter",
