@@ -1,6 +1,6 @@
 # Two commands for everybody; everything else is a CMake preset (CMakePresets.json) or a script (scripts/).
 .DEFAULT_GOAL := help
-.PHONY: help demo test install wheel package site format clean
+.PHONY: help demo test install wheel package site benchmarks format clean
 export OPENBLAS_NUM_THREADS := 1
 
 help:
@@ -10,6 +10,7 @@ help:
 	@echo "make wheel    build the Python package into build/wheel"
 	@echo "make package  build a tarball, a .deb, a wheel and the source for pip into build/package"
 	@echo "make site     build the documentation into build/site, running all that it shows"
+	@echo "make benchmarks  repeat every public figure; ONLY=\"creep fesd\" for some (python3 benchmarks/all.py --list)"
 	@echo "make format   clang-format every source"
 	@echo "make clean    remove build/ and demo/"
 
@@ -39,6 +40,16 @@ package:
 
 site:
 	@scripts/site.sh
+
+# Peers from PyPI and Debian are optional: one that is missing is a row that says so.
+ONLY ?=
+MPCC ?= examples/mpcc
+benchmarks:
+	@scripts/install.sh python
+	@scripts/install_benchmarks.sh
+	cmake --preset release --log-level=NOTICE
+	cmake --build build/release --target saltus saltus_python
+	@python3 benchmarks/all.py $(ONLY) --mpcc $(MPCC)
 
 format:
 	@scripts/format.sh

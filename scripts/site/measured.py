@@ -22,11 +22,17 @@ FILES = {
     "contacts": "Which problems of optimal control with contacts are solved?",
     "monoped": "How far does the one-legged robot get?",
     "mpcc": "How many MPCCs of other programs are solved, beside a plain homotopy and mpecss?",
+    "crisp": "What are contact-implicit problems on Euler grids worth, and how long do they take?",
+    "soft-walls": "What does a control between soft walls cost, beside ADMM and branch and bound?",
+    "mpc": "What does a closed loop cost, beside a warm-started homotopy?",
+    "creep": "Do bodies at rest stay at rest, beside MuJoCo and Drake?",
+    "contact-precision": "How large are errors of bodies that hit the ground, beside MuJoCo and SciPy?",
+    "gradients": "Are derivatives through switches right, beside diffrax?",
     "random_optima": "How many random problems of optimal control come to the best that is known?",
     "large": "How do time and memory grow with the number of states?",
     "sweeps": "How many runs a second do several workers compute, beside SciPy in joblib?",
 }
-NARROW = ("compare", "events", "fesd", "optimal_control", "large")  # tables of numbers, without sentences in their cells
+NARROW = ("compare", "events", "fesd", "optimal_control", "large", "crisp", "soft-walls", "mpc", "creep", "contact-precision", "gradients")  # tables of numbers, without sentences in their cells
 DATE = re.compile(r"\b20\d\d-\d\d-\d\d\b")
 COLOURS = ["#1b9e77", "#66c2a5", "#d95f02", "#7570b3", "#e7298a", "#a6761d"]
 
@@ -160,7 +166,7 @@ def unbroken(text):
 def mended(text):
     """Links of the source tree as links of the site, or as names."""
     text = text.replace("](../README.md)", "](how.md)").replace("](../../docs/", "](../../")
-    text = re.sub(r"\]\(results/([a-z_]+)\.md\)", r"](\1.md)", text)
+    text = re.sub(r"\]\(results/([a-z_-]+)\.md\)", r"](\1.md)", text)
     return re.sub(r"!\[[^\]]*\]\([a-z_]+\.svg\)\n?", "", text)
 
 

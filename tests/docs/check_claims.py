@@ -4,6 +4,9 @@ usage: check_claims.py ROOT
 
 A section of CLAIMS.md is a page. A quotation in it is a sentence of that page; the lines behind it name files in backquotes, or a
 test of a file as `path::Name`. Sentences with a word that promises (PROMISES) must be quoted.
+
+A row of a table in README.md that compares ends with a link to its page of results: every number of the row stands on that page, and
+benchmarks/all.py has a benchmark of that name.
 """
 
 import re
@@ -15,6 +18,8 @@ sys.dont_write_bytecode = True
 PAGES = ("README.md", "docs/index.md")
 PROMISES = re.compile(r"\b(every|never|always|exactly|whatever|any|each|minutes?|seconds?|digits|offline|certified|faster?|independent)\b|%", re.IGNORECASE)
 END = re.compile(r"(?<=[.!?])\s+(?=[A-Z`*\[(])")
+RESULTS = re.compile(r"^\| ([^|]*) \| (.*) \| \[(\w[\w-]*)\]\((benchmarks/results/[\w-]+\.md)\) \|$", re.MULTILINE)
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.]*\d)")
 FILE = re.compile(r"`((?:tests|benchmarks|scripts|python/tests|\.ci|\.github)/[\w./-]+)(?:::(\w+))?`")
 
 
@@ -54,6 +59,20 @@ def complaints_of_files(root, quoted, behind):
             yield f"CLAIMS.md: {path} has no {test}"
 
 
+def complaints_of_figures(root):
+    """Figures of README.md are those of the pages they name, which one command writes again."""
+    rows = RESULTS.findall((root / "README.md").read_text(encoding="utf-8"))
+    known = (root / "benchmarks/all.py").read_text(encoding="utf-8") if rows else ""
+    for what, figures, name, page in rows:
+        if f'"{name}"' not in known:
+            yield f"README.md: benchmarks/all.py does not repeat '{name}' of the row '{what}'"
+        if not (root / page).exists():
+            yield f"README.md: there is no {page}"
+            continue
+        there = set(NUMBER.findall((root / page).read_text(encoding="utf-8")))
+        yield from (f"README.md: {page} has no {figure}, which the row '{what}' says" for figure in NUMBER.findall(figures) if figure not in there)
+
+
 def complaints(root):
     said = {page: sentences((root / page).read_text(encoding="utf-8")) for page in PAGES}
     found = list(claims((root / "CLAIMS.md").read_text(encoding="utf-8")))
@@ -61,6 +80,7 @@ def complaints(root):
         if quoted not in said.get(page, []):
             yield f"CLAIMS.md: {page} does not say '{quoted}'"
         yield from complaints_of_files(root, quoted, behind)
+    yield from complaints_of_figures(root)
     for page, all_of_it in said.items():
         quotations = {quoted for of, quoted, _ in found if of == page}
         for sentence in all_of_it:

@@ -4,6 +4,7 @@ import contextlib
 import io
 import sys
 import tempfile
+import tomllib
 import unittest
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import check_claims
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
 import check_workflows  # noqa: E402
+import name_urls  # noqa: E402
 import release_notes  # noqa: E402
 import stray_logs  # noqa: E402
 
@@ -48,6 +50,16 @@ class ClaimsSelfTest(unittest.TestCase):
         self.assert_complains("there is no benchmarks/c.py", CLAIMS=CLAIMS.replace("b.py", "c.py"))
         self.assert_complains("nothing shows 'It is written", CLAIMS=CLAIMS.replace("`benchmarks/b.py`", "by reading"))
 
+    def test_figures_are_those_of_their_page(self):
+        row = "\n| Measured | Us | Others | Page |\n|---|---|---|---|\n| time | {} ms | A 21.8 ms | [b](benchmarks/results/b.md) |\n"
+        files = {"benchmarks__all": "x", "benchmarks__results__b": "| 1.5 ms | 21.8 ms |\n"}
+        FILES["benchmarks/all.py"] = 'Benchmark("b")'
+        self.addCleanup(FILES.pop, "benchmarks/all.py")
+        self.assertEqual(self.complaints(README=PAGE + row.format("1.5"), **files), [])
+        self.assert_complains("b.md has no 1.4", README=PAGE + row.format("1.4"), **files)
+        FILES["benchmarks/all.py"] = 'Benchmark("c")'
+        self.assert_complains("does not repeat 'b'", README=PAGE + row.format("1.5"), **files)
+
     def test_a_new_promise(self):
         self.assert_complains("what shows 'It never fails.'", README=PAGE + "\nIt never fails.\n")
 
@@ -63,6 +75,16 @@ class ScriptsSelfTest(unittest.TestCase):
             for name in (".pre-commit-config.yaml", "pyproject.toml"):
                 (root / name).write_text("", encoding="utf-8")
             self.assertEqual(list(check_workflows.missing_files(root)), [".github/workflows/ci.yml: there is no scripts/b.py"])
+
+    def test_addresses_of_a_release_are_those_of_its_repository(self):
+        root = Path(__file__).resolve().parents[2]
+        addresses = name_urls.urls("Group", "saltus")
+        self.assertEqual(addresses["Documentation"], "https://group.github.io/saltus/")
+        once = name_urls.with_urls((root / "pyproject.toml").read_text(encoding="utf-8"), addresses)
+        self.assertEqual(name_urls.with_urls(once, addresses), once)
+        self.assertEqual(tomllib.loads(once)["project"]["urls"], addresses)
+        header = (root / "src/saltus/base/docs_page.hpp").read_text(encoding="utf-8")
+        self.assertIn('docs_address = "https://a/"', name_urls.with_address(header, "https://a/"))
 
     def test_logs_and_results_are_stray(self):
         for name, code in (("build.log", 1), ("a/b.log", 1), ("result.json", 1), ("a/x.orig", 1), ("CMakePresets.json", 0), ("tests/r.json", 0)):

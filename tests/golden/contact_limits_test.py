@@ -149,6 +149,14 @@ class ContactLimits(tool.ResultTest):
                 for value, other in zip(result["final"]["x"], expected["final"]["x"], strict=True):
                     self.assertAlmostEqual(value, other, delta=1e-6)
 
+    def test_a_box_sticks_slips_and_hops_ahead(self):
+        result = self.result((tool.SOURCE / "examples/contacts/walking-box.toml").read_text(encoding="utf-8"), "--until", "1.5")
+        modes = {tuple(modes) for modes in result["trajectory"]["contact_modes"]}
+        self.assertTrue({("stick", "stick"), ("slip", "slip"), ("open", "open")} <= modes, modes)
+        self.assertGreater(result["final"]["x"][0], 0.2)
+        self.assertLess(result["penetration"], 1e-9)
+        self.assertEqual(len(result["drawing"]["rows"]), len(result["trajectory"]["t"]))
+
 
 if __name__ == "__main__":
     tool.main()

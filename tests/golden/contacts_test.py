@@ -261,14 +261,6 @@ class Contacts(tool.ResultTest):
             self.assertAlmostEqual(friction[0], -9.81 * math.sin(0.3), delta=1e-9)
             self.assertAlmostEqual(friction[1], 0.0, delta=1e-9)
 
-    def test_a_box_sticks_slips_and_hops_ahead(self):
-        result = self.result((tool.SOURCE / "examples/contacts/walking-box.toml").read_text(encoding="utf-8"), "--until", "1.5")
-        modes = {tuple(modes) for modes in result["trajectory"]["contact_modes"]}
-        self.assertTrue({("stick", "stick"), ("slip", "slip"), ("open", "open")} <= modes, modes)
-        self.assertGreater(result["final"]["x"][0], 0.2)
-        self.assertLess(result["penetration"], 1e-9)
-        self.assertEqual(len(result["drawing"]["rows"]), len(result["trajectory"]["t"]))
-
     def test_a_growing_pull_breaks_a_block_away_in_few_steps(self):
         """Pulled by 5 t against a friction of 5 it moves from t = 1 on like (t - 1)^3 5/6, with a direction at each speed."""
         written = "[model]\nname = 'm'\n[states]\nx = 0\ny = 0\nvx = 0\nvy = 0\n[dynamics]\nx = 'vx'\ny = 'vy'\n" \

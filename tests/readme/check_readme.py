@@ -1,4 +1,4 @@
-"""Runs what README.md shows: its model and its commands, and compares what it says about the result.
+"""Runs what README.md and docs/start.md show: models and commands, and compares what they say about the results.
 
 usage: check_readme.py README.md TOOL
 """
@@ -40,9 +40,11 @@ def main(readme, tool):
     missing = [link for link in re.findall(r"\]\(([^)#:]+)\)", text) if not (Path(readme).parent / link).exists()]
     if missing:
         sys.exit(f"README.md links to what is not there: {missing}")
-    model, problem = blocks(text, "toml")
+    (model,) = blocks(text, "toml")
+    start = (Path(readme).parent / "docs/start.md").read_text(encoding="utf-8")
+    (problem,) = blocks(start, "toml")
     name = re.search(r"Save it as `([^`]+)`", text).group(1)
-    example = re.search(r"\]\((examples/optimize/[^)]+)\) without its remarks", text).group(1)
+    example = re.search(r"`(examples/optimize/[^`]+)` without its remarks", start).group(1)
     commands = [line for block in blocks(text, "") for line in block.splitlines() if line.startswith("saltus ")]
     if not commands:
         sys.exit("README.md shows no saltus command")
@@ -57,9 +59,9 @@ def main(readme, tool):
         for file in (Path(example).name, Path(readme).parent.resolve() / example):
             run(f"saltus optimize {file} --quiet --out optimum.json", tool, folder)
             optima.append(json.loads((Path(folder) / "optimum.json").read_text(encoding="utf-8"))["horizon"])
-    least = float(re.search(r"It takes ([0-9.]+) time units", text).group(1))
+    least = float(re.search(r"It takes ([0-9.]+) time units", start).group(1))
     if abs(optima[0] - least) > 0.001 or abs(optima[0] - optima[1]) > 1e-9:
-        sys.exit(f"README.md claims a least time of {least}; its problem has {optima[0]}, the example {optima[1]}")
+        sys.exit(f"docs/start.md claims a least time of {least}; its problem has {optima[0]}, the example {optima[1]}")
     claimed = float(re.search(r"stops after ([0-9.]+) time units", text).group(1))
     events = result["events"]
     if len(events) != 1 or events[0]["kind"] != "enter_sliding" or abs(events[0]["t"] - claimed) > 0.01:
