@@ -30,7 +30,11 @@ class Array(np.ndarray[typing.Any, np.dtype[typing.Any]]):
         if kwargs.get("out") is not None:
             kwargs["out"] = tuple(_plain(value) for value in kwargs["out"])
         instead = _INSTEAD.get(ufunc.__name__)
-        if instead is not None:
+        if ufunc is np.matmul and instead is not None:
+            made = instead(*plain) if method == "__call__" and not kwargs else NotImplemented
+            if made is not NotImplemented:
+                return own(made)
+        elif instead is not None:
             ufunc = np.frompyfunc(instead, ufunc.nin, 1)
             kwargs.pop("dtype", None)
         elif ufunc.__name__ in _COMPARISONS and method == "__call__":

@@ -199,14 +199,16 @@ def expression(value: Operand) -> Expression:
         return of_casadi(value)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise refuse(f"expected a number or an expression, found {value!r}", _instead_of(value))
-    if isinstance(value, numbers.Integral):
-        text = str(int(value))
-    else:
-        number = float(value)
-        if not math.isfinite(number):
-            raise refuse(f"{number} is no number of a model", "write a finite number")
-        text = repr(number).replace("e-0", "e-").replace("e+", "e")
+    if not isinstance(value, numbers.Integral) and not math.isfinite(value):
+        raise refuse(f"{float(value)} is no number of a model", "write a finite number")
+    text = number_text(int(value) if isinstance(value, numbers.Integral) else float(value))
     return Expression(text, SIGN if text.startswith("-") else PRIMARY)
+
+
+def number_text(value: int | float) -> str:
+    """A finite number as the language writes it."""
+    text = repr(value)
+    return text.replace("e-0", "e-").replace("e+", "e") if "e" in text else text
 
 
 def _instead_of(value: typing.Any) -> str:

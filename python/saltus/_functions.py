@@ -8,6 +8,7 @@ import typing
 from . import _array
 from ._expression import Expression, Operand, call, called, entry_by_entry, number, refuse
 from ._expression import condition as as_condition
+from ._sums import product
 
 
 def _function(name: str, count: int, text: str, argument: str = "x") -> typing.Callable[..., typing.Any]:
@@ -76,7 +77,7 @@ t = Expression("t")
 pi = Expression("pi")
 _array.instead(
     maximum=max, minimum=min, fmax=max, fmin=min, sign=sign, where=if_, clip=lambda x, low, high: min(max(x, low), high),
-    logical_and=lambda a, b: a & b, logical_or=lambda a, b: a | b, logical_not=lambda a: ~a,
+    logical_and=lambda a, b: a & b, logical_or=lambda a, b: a | b, logical_not=lambda a: ~a, matmul=product,
 )  # fmt: skip
 
 

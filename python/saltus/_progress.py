@@ -6,7 +6,16 @@ import contextlib
 import sys
 import typing
 
-Tell = typing.Callable[[float, float, float, int, int], None]
+
+class Tell:
+    """What a run calls on its way; `prepare` before its first step, with `done` of `all` parts (0: nobody knows)."""
+
+    def __call__(self, t: float, begin: float, end: float, steps: int, events: int) -> None:
+        raise NotImplementedError
+
+    def prepare(self, phase: str, done: int, all: int) -> None:
+        raise NotImplementedError
+
 
 
 @contextlib.contextmanager
@@ -22,11 +31,15 @@ def progress_line(name: str, wanted: bool) -> typing.Iterator[Tell | None]:
         return
     with tqdm(total=100.0, desc=name, bar_format="{desc}: {percentage:3.0f}%|{bar}| {postfix}") as bar:
 
-        def tell(t: float, begin: float, end: float, steps: int, events: int) -> None:
-            bar.set_postfix_str(f"t = {t:.6g}, {steps} steps, {events} events", refresh=False)
-            bar.update(max(0.0, 100.0 * (t - begin) / (end - begin) - bar.n))
+        class Bar(Tell):
+            def __call__(self, t: float, begin: float, end: float, steps: int, events: int) -> None:
+                bar.set_postfix_str(f"t = {t:.6g}, {steps} steps, {events} events", refresh=False)
+                bar.update(max(0.0, 100.0 * (t - begin) / (end - begin) - bar.n))
 
-        yield tell
+            def prepare(self, phase: str, done: int, all: int) -> None:
+                bar.set_postfix_str(_prepared(phase, done, all))
+
+        yield Bar()
         bar.update(max(0.0, 100.0 - bar.n))
 
 
@@ -62,15 +75,28 @@ def _plain_of_runs(name: str, what: str) -> typing.Iterator[typing.Callable[[flo
         print(file=sys.stderr)
 
 
+def _prepared(phase: str, done: int, all: int) -> str:
+    return f"{phase}: {done} of {all}" if all else phase
+
+
+class _Line(Tell):
+    def __init__(self, name: str) -> None:
+        self.name, self.width = name, 0
+
+    def show(self, text: str) -> None:
+        self.width = max(self.width, len(text))
+        print("\r" + text.ljust(self.width), end="", file=sys.stderr, flush=True)
+
+    def __call__(self, t: float, begin: float, end: float, steps: int, events: int) -> None:
+        share = 100.0 * (t - begin) / (end - begin)
+        self.show(f"{self.name}: t = {t:.6g}   {share:.0f} %   {steps} steps   {events} events")
+
+    def prepare(self, phase: str, done: int, all: int) -> None:
+        self.show(f"{self.name}: {_prepared(phase, done, all)}")
+
+
 def _plain(name: str) -> typing.Iterator[Tell]:
-    width = 0
-
-    def tell(t: float, begin: float, end: float, steps: int, events: int) -> None:
-        nonlocal width
-        text = f"{name}: t = {t:.6g}   {100.0 * (t - begin) / (end - begin):.0f} %   {steps} steps   {events} events"
-        width = max(width, len(text))
-        print("\r" + text.ljust(width), end="", file=sys.stderr, flush=True)
-
-    yield tell
-    if width:
-        print("\r" + " " * width + "\r", end="", file=sys.stderr, flush=True)
+    line = _Line(name)
+    yield line
+    if line.width:
+        print("\r" + " " * line.width + "\r", end="", file=sys.stderr, flush=True)

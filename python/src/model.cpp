@@ -46,6 +46,18 @@ nb::object finished(Expected<result::Result> result, const frontend::ModelInput&
   return run;
 }
 
+/// What `compute` returns; where a signal or `progress` has stopped it while the model was prepared, raises that.
+template <class Compute>
+nb::object watched(Watch& watch, Compute compute) {
+  const PreparationScope scope([&](const Preparation& preparation) { return watch.goes_on(preparation); });
+  try {
+    return compute();
+  } catch (const Stopped&) {
+    watch.raise_what_came(nb::none());
+    throw;
+  }
+}
+
 /// One of the commands that simulate: what it computes from a system and options.
 template <class Compute>
 nb::object run_simulation(Model& model, const Request& request, nb::object progress, nb::list warnings,
@@ -53,18 +65,20 @@ nb::object run_simulation(Model& model, const Request& request, nb::object progr
   const auto input = model.stated(request);
   value_or_raise(io::check_options(input.file));
   if (request.methods == frontend::RunMethods::chosen) append(warnings, frontend::options_without_effect(input.file));
-  const auto system = model.system(input, request);
-  append(warnings, system->warnings);
   Watch watch(std::move(progress));
-  std::optional<std::string> note;
-  auto result = [&] {
-    const nb::gil_scoped_release released;
-    auto computed = compute(*system, input.file.simulate, watch.observers());
-    if (computed) note = frontend::complete_record(input, *computed);
-    return computed;
-  }();
-  if (note) warnings.append(*note);
-  return finished(std::move(result), input, system, watch);
+  return watched(watch, [&] {
+    const auto system = model.system(input, request);
+    append(warnings, system->warnings);
+    std::optional<std::string> note;
+    auto result = [&] {
+      const nb::gil_scoped_release released;
+      auto computed = compute(*system, input.file.simulate, watch.observers());
+      if (computed) note = frontend::complete_record(input, *computed);
+      return computed;
+    }();
+    if (note) warnings.append(*note);
+    return finished(std::move(result), input, system, watch);
+  });
 }
 
 nb::object simulate(Model& model, std::vector<std::string> settings, std::vector<Option> options, nb::object progress,

@@ -26,6 +26,17 @@ bool Watch::look(const pipeline::StepRecord* step) {
   return came_.has_value();
 }
 
+bool Watch::goes_on(const Preparation& preparation) {
+  attempt([&] {
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+    if (!progress_.is_none() && nb::hasattr(progress_, "prepare")) {
+      const std::string phase(preparation.phase);
+      progress_.attr("prepare")(nb::str(phase.c_str()), preparation.done, preparation.of);
+    }
+  });
+  return !came_.has_value();
+}
+
 void Watch::call(const nb::object& function, const std::string& line) {
   attempt([&] { function(nb::str(line.c_str())); });
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "saltus/base/preparation.hpp"
 #include "saltus/pipeline/simulate.hpp"
 
 namespace saltus::python {
@@ -13,12 +14,15 @@ namespace saltus::python {
 /// Looks for signals, and tells progress, some ten times a second. The interpreter's lock need not be held.
 class Watch {
  public:
-  /// @param progress  None, or called with (t, from, until, steps, events)
+  /// @param progress  None, or called with (t, from, until, steps, events); its `prepare`, if it has one, before that
+  ///                  with (phase, done, of): of = 0 where nobody knows how many
   explicit Watch(nanobind::object progress) : progress_(std::move(progress)) {}
 
   [[nodiscard]] pipeline::Observers observers();
   /// Whether a handler of signals or `progress` has raised an exception: then the run is to end.
   [[nodiscard]] bool look(const pipeline::StepRecord* step = nullptr);
+  /// Looks for signals, and tells what is prepared to `progress.prepare` where there is one. Returns whether to go on.
+  [[nodiscard]] bool goes_on(const Preparation& preparation);
   /// Calls `function` with a line of text; what it raises ends the run.
   void call(const nanobind::object& function, const std::string& line);
   /// Calls `function` with two numbers, at most ten times a second; likewise.

@@ -99,3 +99,58 @@ def test_a_model_of_arrays():
 
 def test_whole_divisions():
     assert texts(saltus.array([saltus.t // 2, 7 % saltus.t, 7 // saltus.t])) == ["floor(t/2)", "mod(7,t)", "floor(7/t)"]
+
+
+def term_by_term(rows, entries, numbers_first):
+    sums = []
+    for row in rows:
+        terms = [weight * entry if numbers_first else entry * weight for weight, entry in zip(row, entries)]
+        whole = terms[0]
+        for term in terms[1:]:
+            whole = whole + term
+        sums.append(whole)
+    return sums
+
+
+def full_text(whole):
+    """With the text of every part in its place."""
+    parts, text = {}, whole.text
+    waiting = [whole]
+    while waiting:
+        found = waiting.pop().parts
+        parts.update(found)
+        waiting += found.values()
+    while any(key in text for key in parts):
+        for key, part in parts.items():
+            text = text.replace(key, f"{{{part.text}}}")
+    return text
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(1, 1), (2, 3), (3, 1500), (1, 4000)])
+@pytest.mark.parametrize("whole_numbers", [False, True])
+def test_a_product_with_a_matrix_has_the_text_of_its_sums(rows, columns, whole_numbers):
+    x = saltus.Builder("m").states("x", np.ones(columns))
+    entries = saltus.step(x - 0.5)
+    entries[0] = x[0] + 2 * x[-1]
+    matrix = np.random.default_rng(0).normal(size=(rows, columns))
+    matrix[0, 0], matrix[0, -1] = 0, 1e-9
+    matrix = (10 * matrix).astype(int) if whole_numbers else matrix
+    for made, numbers_first in ((matrix @ entries, True), (entries @ matrix.T, False)):
+        for found, expected in zip(made, term_by_term(matrix.tolist(), list(entries), numbers_first)):
+            assert full_text(found) == full_text(expected)
+            assert (found.height, found.reach, found.depth, found.level) == (
+                expected.height, expected.reach, expected.depth, expected.level
+            )  # fmt: skip
+    alone = matrix[0] @ entries
+    assert isinstance(alone, saltus.Expression)
+    assert full_text(alone) == full_text((matrix @ entries)[0])
+
+
+def test_a_matrix_that_does_not_fit_is_refused():
+    x = saltus.Builder("m").states("x", np.ones(3))
+    with pytest.raises(ValueError):
+        np.ones((2, 2)) @ x
+    with pytest.raises(saltus.ModelError, match="nan"):
+        np.array([[1.0, np.nan, 0.0]]) @ x
+    with pytest.raises(saltus.ModelError, match="more than 5000 terms"):
+        np.ones((1, 5100)) @ saltus.Builder("m").states("y", np.ones(5100))

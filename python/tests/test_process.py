@@ -10,6 +10,7 @@ import textwrap
 import threading
 import time
 
+import numpy as np
 import pytest
 
 import saltus
@@ -183,6 +184,41 @@ def test_progress_and_what_it_raises():
     times = [what[0] for what in heard]
     assert times == sorted(times)
     assert saltus._core.Run is type(stopped.value.result)
+
+
+class Heard:
+    def __init__(self, most=None):
+        self.phases, self.steps, self.most = [], 0, most
+
+    def __call__(self, *step):
+        self.steps += 1
+
+    def prepare(self, phase, done, all):
+        assert 0 <= done <= all
+        self.phases.append(phase)
+        if len(self.phases) == self.most:
+            raise RuntimeError("enough")
+
+
+def dense_network(n):
+    b = saltus.Builder("dense")
+    x = b.states("x", np.ones(n))
+    b.rate(x, np.random.default_rng(0).normal(size=(n, n)) @ np.maximum(x - 0.5, 0) - 9 * x)
+    return b.model()
+
+
+def test_what_is_prepared_is_told_and_can_be_stopped():
+    model = dense_network(150)
+    options = [("simulate.until", "1e-6", "until")]
+    stopping = Heard(most=1)
+    with pytest.raises(RuntimeError, match="enough") as stopped:
+        model._core.simulate([], options, stopping, [])
+    assert stopped.value.result is None
+    hearing = Heard()
+    assert model._core.simulate([], options, hearing, []).termination == "completed"
+    assert hearing.phases and set(hearing.phases) <= {
+        "reading the model", "finding what jumps", "writing right-hand sides", "compiling the model"
+    }  # fmt: skip
 
 
 ENDLESS_SWEEP = """

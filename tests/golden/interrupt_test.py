@@ -122,6 +122,31 @@ class Interrupt(tool.ToolTest):
         self.assertIn("the simulation stopped at t = ", out)
         self.assertIn("stopped_by_user", err)
 
+    def test_a_model_that_is_prepared_says_so_and_can_be_stopped(self):
+        n = 300
+        terms = ["".join(f"{1 + 0.01 * ((7 * i + 3 * j) % 11):+}*max(x{j}-0.5,0)" for j in range(n)) for i in range(n)]
+        states = "".join(f"x{i} = 1\n" for i in range(n))
+        rates = "".join(f'x{i} = "-9*x{i}{terms[i]}"\n' for i in range(n))
+        self.write("m.toml", f'[model]\nname = "dense"\n[states]\n{states}[dynamics]\n{rates}[simulate]\nuntil = 1\n')
+        seen, shown = self.terminal()
+        process = subprocess.Popen([tool.TOOL, "simulate", "m.toml", "--out", "r.json"], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=shown)
+        os.close(shown)
+        text = b""
+        while b"preparing" not in text:
+            text += os.read(seen, 4096)
+        process.send_signal(signal.SIGINT)
+        while True:
+            try:
+                text += os.read(seen, 4096)
+            except OSError:  # the other side closed
+                break
+        os.close(seen)
+        self.assertEqual(process.wait(timeout=tool.WAIT), 3)
+        self.assertRegex(text.decode(), r"\rpreparing   [a-z -]+: \d+ of \d+")
+        self.assertIn("stopped while the model was prepared", text.decode())
+        self.assertFalse((self.folder / "r.json").exists())
+
     def test_a_terminal_sees_progress(self):
         seen, shown = self.terminal()
         process = self.start(stdout=subprocess.DEVNULL, stderr=shown)

@@ -25,6 +25,14 @@ std::string progress_text(const pipeline::StepRecord& step) {
 
 }  // namespace
 
+std::unique_ptr<PreparationScope> watched_preparation(ProgressLine& progress) {
+  catch_interrupt();
+  return std::make_unique<PreparationScope>([&progress](const Preparation& preparation) {
+    progress.show([&] { return "preparing   " + preparation.text(); });
+    return !interrupted();
+  });
+}
+
 pipeline::Observers watched(ProgressLine& progress) {
   catch_interrupt();
   pipeline::Observers observers;

@@ -3,9 +3,11 @@
 
 #include <chrono>
 #include <cstddef>
+#include <memory>
 #include <string>
 
 #include "saltus/base/function_ref.hpp"
+#include "saltus/base/preparation.hpp"
 #include "saltus/pipeline/simulate.hpp"
 
 namespace saltus::cli {
@@ -33,6 +35,10 @@ class ProgressLine {
   std::size_t width_ = 0;
   Clock::time_point next_;
 };
+
+/// Shows what is done before a run, and has it stop at Ctrl-C, which is caught from here on: Stopped is thrown.
+/// @param progress  must outlive what is returned
+[[nodiscard]] std::unique_ptr<PreparationScope> watched_preparation(ProgressLine& progress);
 
 /// Shows the progress of a run and has it stop at Ctrl-C, which is caught from here on.
 /// @param progress  must outlive what is returned

@@ -36,11 +36,13 @@ Expected<void> check_shown(const RunArguments& arguments, const model::System& s
 /// @param growing  gets rows and events on the way; may be null
 Expected<result::Result> compute_all(const RunArguments& arguments, const frontend::ModelInput& input,
                                      const Outputs& outputs, GrowingOutputs* growing, Compute compute) {
+  ProgressLine progress(progress_of(arguments));
+  const auto preparing = watched_preparation(progress);
   const auto system = model::build(input.file.description, input.overrides);
+  progress.clear();
   if (!system) return tl::unexpected(system.error());
   if (auto known = check_shown(arguments, *system); !known) return tl::unexpected(known.error());
   print_warnings(system->warnings);
-  ProgressLine progress(progress_of(arguments));
   auto observers = watched(progress);
   bool can_write = true;
   if (growing != nullptr) {
@@ -247,7 +249,13 @@ ExitCode run_model(const char* command, const RunArguments& arguments, Compute c
   if (one_run) print_warnings(frontend::options_without_effect(input->file));
   tell_whose_controls(*input);
   auto growing = one_run ? outputs->growing(*shown) : std::nullopt;
-  auto result = compute_all(arguments, *input, *outputs, growing ? &*growing : nullptr, compute);
+  Expected<result::Result> result = tl::unexpected(Error{});
+  try {
+    result = compute_all(arguments, *input, *outputs, growing ? &*growing : nullptr, compute);
+  } catch (const Stopped&) {
+    print_error("stopped while the model was prepared: nothing was computed, nothing is written");
+    return ExitCode::stopped_early;
+  }
   if (!result) return refuse_with_source(io::located(result.error(), input->file), *text);
 
   const bool has_grown = growing && growing->begun();

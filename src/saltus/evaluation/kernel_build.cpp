@@ -3,10 +3,12 @@
 #include <exception>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/base/preparation.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/base/without_repeats.hpp"
 #include "saltus/evaluation/field_split_internal.hpp"
@@ -19,6 +21,12 @@
 namespace saltus::evaluation {
 
 using casadi::SX;
+
+namespace {
+/// Said of a compilation, in parts that take about as long as each other.
+constexpr std::string_view compiling = "compiling the model";
+constexpr std::size_t compiled_parts = 7;
+}  // namespace
 
 std::vector<std::vector<int>> dependencies_of_rows(const SX& expression, const SX& variables) {
   std::vector<std::vector<int>> rows(at(expression.numel()));
@@ -91,13 +99,17 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
   for (auto& end : start.cells.rows(system)) rows.push_back(std::move(end));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
 
+  prepares(compiling, 1, compiled_parts);
   const RootLimits limits = limit_roots(free.f, phi(casadi::Slice(0, n_psi)), symbols(), system.parameter_values);
   free.f = limits.f;
   by_values = limits.by_values;
   rooted = limits.rooted;
   continued_roots = limits.continued;
+  prepares(compiling, 2, compiled_parts);
   find_structure(system);
+  prepares(compiling, 3, compiled_parts);
   compile_functions(system);
+  prepares(compiling, 6, compiled_parts);
   find_layout(system);
 }
 
@@ -140,6 +152,7 @@ ModelFunction CompiledModel::range_function(casadi_int moving) const {
 void CompiledModel::compile_functions(const model::System& system) {
   const std::vector<SX> arguments{t, x, p, alpha};
   compile_field(free, "saltus_field");
+  prepares(compiling, 4, compiled_parts);
   functions.functions = ModelFunction("saltus_functions", arguments, {phi});
   functions.output_function = ModelFunction("saltus_outputs", arguments, {outputs});
   functions.input_function = ModelFunction("saltus_inputs", arguments, {input});
@@ -147,6 +160,7 @@ void CompiledModel::compile_functions(const model::System& system) {
   // Modes of contacts are exact: what has a rounding, and an error, are the states before them.
   const casadi_int moved = system.contacts.empty() ? x.numel() : system.contacts.first_hidden;
   const SX moving = x(casadi::Slice(0, moved));
+  prepares(compiling, 5, compiled_parts);
   const SX slope = SX::jacobian(phi, moving);
   const SX rate = SX::jacobian(phi, t);
   const SX magnitude = SX::mtimes(fabs(slope), fabs(moving)) + fabs(rate * t) + sizes_of_contact_guards(system);
@@ -263,6 +277,8 @@ Expected<ModelKernel> ModelKernel::compile(const model::System& system, NativeCo
       delete model;
     };
     return of(std::shared_ptr<CompiledModel>(new CompiledModel(system), drop), native);
+  } catch (const Stopped&) {
+    throw;
   } catch (const std::exception& error) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
                                 std::string("the model's expressions cannot be compiled: ") + error.what(),

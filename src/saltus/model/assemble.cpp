@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/preparation.hpp"
 #include "saltus/model/recognition/guards_internal.hpp"
 #include "saltus/model/recognition/reduction_internal.hpp"
 #include "saltus/model/recognition/surface_points_internal.hpp"
@@ -286,6 +287,7 @@ class Assembly {
     }
     std::vector<SXElem> as_written, reduced;
     for (std::size_t i = 0; i < f_.size(); ++i) {
+      prepares("writing right-hand sides", i, f_.size());
       const auto& state = statement_.states[i];
       as_written.push_back(*state.dynamics);
       if (bends(f_[i])) system_.inclusion_differences.push_back(state.name);

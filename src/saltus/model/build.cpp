@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/preparation.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/frozen_system.hpp"
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
@@ -26,7 +27,6 @@
 
 namespace saltus::model {
 namespace {
-
 using expression::NodePtr;
 using MaybeError = std::optional<Error>;
 using Of = ComputedNumber::Of;
@@ -89,9 +89,9 @@ class Build {
   template <class Entries, class Take>
   MaybeError take_each(const Entries& entries, Take take) {
     for (const auto& entry : entries) {
+      prepares("reading the model", static_cast<std::size_t>(&entry - entries.data()), entries.size());
       MaybeError error = take(entry);
-      if (error) error = scope_.end_at(std::move(*error));
-      if (error) return error;
+      if (error && (error = scope_.end_at(std::move(*error)))) return error;
     }
     return std::nullopt;
   }
@@ -457,6 +457,8 @@ template <class Make>
 Expected<System> build_guarded(const Description& description, Make make) {
   try {
     return make();
+  } catch (const Stopped&) {
+    throw;
   } catch (const std::exception& exception) {
     return tl::unexpected(refused_by_casadi(description, exception));
   }

@@ -1,10 +1,12 @@
 #include "saltus/model/structure.hpp"
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <unordered_map>
 #include <utility>
 
+#include "saltus/base/at.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::model {
@@ -40,49 +42,55 @@ class Writer {
   [[nodiscard]] std::vector<std::uint64_t> words() && { return std::move(words_); }
 
  private:
-  std::uint64_t number(const SXElem& node) {
-    keep_alive_.push_back(node);
-    return numbers_.emplace(node.get(), numbers_.size()).first->second;
-  }
-  void leaf(const SXElem& node) {
+  /// The expressions of the system keep the node where it is.
+  std::uint64_t number(const SXElem& node) { return numbers_.emplace(node.get(), numbers_.size()).first->second; }
+  std::uint64_t leaf(const SXElem& node) {
     if (node.is_constant()) {
       write(std::uint64_t{1});
       write(static_cast<double>(node));
     } else {
       write(std::uint64_t{2});  // a symbol nobody declared: numbered where it is met
     }
-    number(node);
+    return number(node);
   }
   /// Operands first, without recursion: sums may be thousands of operations deep.
   std::uint64_t visit(const SXElem& root) {
-    std::vector<SXElem> waiting{root};
+    struct Open {
+      SXElem node;
+      casadi_int operands = 0;
+      std::array<std::uint64_t, 2> numbers{};
+      casadi_int next = 0;  ///< operand
+    };
+    const auto open = [](const SXElem& node) { return Open{node, node.is_leaf() ? 0 : node.n_dep()}; };
+    if (const auto known = numbers_.find(root.get()); known != numbers_.end()) return known->second;
+    std::vector<Open> waiting{open(root)};
+    std::uint64_t last = 0;
     while (!waiting.empty()) {
-      const SXElem node = waiting.back();
-      if (numbers_.contains(node.get())) {
-        waiting.pop_back();
+      auto& [node, operands, numbers, next] = waiting.back();
+      if (next < operands) {
+        const SXElem operand = node.dep(next);
+        if (const auto known = numbers_.find(operand.get()); known != numbers_.end()) {
+          numbers[at(next++)] = known->second;
+        } else {
+          waiting.push_back(open(operand));
+        }
         continue;
       }
-      const auto before = waiting.size();
-      const casadi_int operands = node.is_leaf() ? 0 : node.n_dep();
-      for (casadi_int k = operands; k-- > 0;) {
-        if (!numbers_.contains(node.dep(k).get())) waiting.push_back(node.dep(k));
+      if (operands == 0) {
+        last = leaf(node);
+      } else {
+        write(std::uint64_t{3} + static_cast<std::uint64_t>(node.op()));
+        for (std::size_t k = 0; k < at(operands); ++k) write(numbers[k]);
+        last = number(node);
       }
-      if (waiting.size() > before) continue;
       waiting.pop_back();
-      if (node.is_leaf()) {
-        leaf(node);
-        continue;
-      }
-      write(std::uint64_t{3} + static_cast<std::uint64_t>(node.op()));
-      for (casadi_int k = 0; k < operands; ++k) write(numbers_.at(node.dep(k).get()));
-      number(node);
+      if (!waiting.empty()) waiting.back().numbers[at(waiting.back().next++)] = last;
     }
-    return numbers_.at(root.get());
+    return last;
   }
 
   std::vector<std::uint64_t> words_;
   std::unordered_map<const void*, std::uint64_t> numbers_;
-  std::vector<SXElem> keep_alive_;  // the addresses in numbers_ stay theirs
 };
 
 void write_cells(Writer& writer, const System& system) {

@@ -197,12 +197,14 @@ void SharingIndex::insert(const Tape& tape, int psi, int function) {
   } else {
     irregular_.push_back(position);
   }
+  by_psi_.emplace(psi, known_.size());
   known_.push_back(samples);
 }
 
 std::optional<SharedFunction> SharingIndex::find(const Tape& tape, int psi,
                                                  const std::function<bool(const SharedFunction&)>& accepts) const {
-  const Samples asked = sample(tape, psi);
+  const auto own = by_psi_.find(psi);
+  const Samples asked = own != by_psi_.end() ? known_[own->second] : sample(tape, psi);
   std::vector<int> candidates = irregular_;
   if (const auto ratio = key(asked)) {
     const double margin = 1e-9 * std::abs(*ratio);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,8 @@ class SharingIndex {
   /// Finds the first-met function that is a multiple of psi and that `accepts` takes.
   [[nodiscard]] std::optional<SharedFunction> find(const Tape& tape, int psi,
                                                    const std::function<bool(const SharedFunction&)>& accepts) const;
+  /// Returns whether this very expression is one of them.
+  [[nodiscard]] bool has(int psi) const { return by_psi_.contains(psi); }
 
  private:
   struct Samples {
@@ -54,8 +57,9 @@ class SharingIndex {
   [[nodiscard]] static int same(const Samples& known, const Samples& asked);
 
   std::vector<Samples> known_;
-  std::multimap<double, int> by_ratio_;  ///< value at the second point over value at the first
-  std::vector<int> irregular_;           ///< those without such a ratio
+  std::unordered_map<int, std::size_t> by_psi_;  ///< the first of each expression
+  std::multimap<double, int> by_ratio_;          ///< value at the second point over value at the first
+  std::vector<int> irregular_;                   ///< those without such a ratio
 };
 
 /// Returns for every psi the position of the first one that it is a multiple of (its own, if of none before).

@@ -37,10 +37,11 @@ bool is_polynomial_operation(int operation) {
   }
 }
 
-std::uint64_t operation_key(int operation, int left, int right) {
+std::uint64_t hash_of(const TapeNode& node) {
   constexpr std::uint64_t a = 0x9e3779b97f4a7c15, b = 0xbf58476d1ce4e5b9, c = 0x94d049bb133111eb;
-  const std::uint64_t hash = (static_cast<std::uint64_t>(operation) * a) ^ (static_cast<std::uint64_t>(left + 2) * b) ^
-                             (static_cast<std::uint64_t>(right + 2) * c);
+  const std::uint64_t hash =
+      (static_cast<std::uint64_t>(node.operation) * a) ^ (static_cast<std::uint64_t>(node.left + 2) * b) ^
+      (static_cast<std::uint64_t>(node.right + 2) * c) ^ (std::bit_cast<std::uint64_t>(node.constant) * a);
   return hash ^ (hash >> 29U);
 }
 
@@ -76,17 +77,30 @@ double share(double derivative, double bound) {
 
 int Tape::append(TapeNode node) {
   if (node.variable < 0) {
-    auto& candidates =
-        by_key_[operation_key(node.operation, node.left, node.right) ^ std::bit_cast<std::uint64_t>(node.constant)];
-    for (const int candidate : candidates) {
-      if (same_operation((*this)[candidate], node)) return candidate;
+    make_room();
+    std::size_t place = hash_of(node) & (places_.size() - 1);
+    while (places_[place] >= 0) {
+      if (same_operation((*this)[places_[place]], node)) return places_[place];
+      place = (place + 1) & (places_.size() - 1);
     }
-    candidates.push_back(size());
+    places_[place] = size();
   }
   node.number = size();
   set_kinds(node);
   nodes_.push_back(node);
   return size() - 1;
+}
+
+/// Keeps half of the places free, so that few are looked at.
+void Tape::make_room() {
+  if (2 * at(size() + 1) <= places_.size()) return;
+  places_.assign(std::bit_ceil(4 * at(size() + 1)), -1);
+  for (int number = 0; number < size(); ++number) {
+    if ((*this)[number].variable >= 0) continue;
+    std::size_t place = hash_of((*this)[number]) & (places_.size() - 1);
+    while (places_[place] >= 0) place = (place + 1) & (places_.size() - 1);
+    places_[place] = number;
+  }
 }
 
 int Tape::constant(double value) {
@@ -208,6 +222,7 @@ std::vector<int> Tape::cone(std::span<const int> roots, Links links) const {
     if (links == Links::through_alpha) open.push_back(node.psi);
   }
   std::sort(nodes.begin(), nodes.end());
+  walked_ += nodes.size();
   return nodes;
 }
 

@@ -3,10 +3,10 @@
 // else of CasADi.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "saltus/base/at.hpp"
@@ -90,6 +90,8 @@ class Tape {
 
   /// Returns all nodes the roots consist of, ascending (hence in order of evaluation). Negative roots are skipped.
   [[nodiscard]] std::vector<int> cone(std::span<const int> roots, Links links) const;
+  /// Counts the nodes of all cones that this thread has asked for: tests compare it with the size of models.
+  [[nodiscard]] static std::size_t walked() { return walked_; }
 
   /// Returns the nodes of a cone (through alphas) as a tape of their own, in the same order: what is asked of it costs
   /// as much as they are, however long this one is. Nothing is to be added to it.
@@ -101,8 +103,10 @@ class Tape {
 
  private:
   int append(TapeNode node);
+  void make_room();
   void set_kinds(TapeNode& node) const;
 
+  inline static thread_local std::size_t walked_ = 0;
   std::vector<TapeNode> nodes_;
   std::vector<Variable> variables_;
   struct CellConstant {
@@ -110,7 +114,7 @@ class Tape {
     int column = 0;
   };
   std::vector<CellConstant> cells_;  ///< by the index of their variables
-  std::unordered_map<std::uint64_t, std::vector<int>> by_key_;
+  std::vector<int> places_;          ///< of nodes, where their hashes find them, or beyond (open addressing); -1: none
 };
 
 /// One value per variable of a tape. NaN for an alpha means: the step of its switching function at this point; for a

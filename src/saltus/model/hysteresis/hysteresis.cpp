@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/preparation.hpp"
 #include "saltus/model/hysteresis/hysteresis_internal.hpp"
 #include "saltus/model/statement/start_values_internal.hpp"
 
@@ -172,6 +173,7 @@ std::optional<Error> state_all_hysteresis(const Description& description, ModelS
                                           const std::map<std::string, double>& initial, const StateHysteresis& take) {
   auto state = static_cast<int>(description.states.size());
   for (const auto& entry : description.hysteresis) {
+    prepares("reading the model", at(state) - description.states.size(), description.hysteresis.size());
     HysteresisThresholds thresholds{.name = entry.name,
                                     .location = entry.location,
                                     .input_location = entry.input->location,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -29,6 +30,21 @@ Error mechanics_error(const SourceLocation& location, std::string message, std::
   return {ErrorCode::invalid_model, std::move(message), std::move(remedy), location, {"in [mechanics]"}};
 }
 
+/// Entries below the diagonal with those above it, where one of them is not 0 by its form, by row and column.
+using Pairs = std::map<std::pair<casadi_int, casadi_int>, std::array<SXElem, 2>>;
+
+Pairs pairs_of(const SX& matrix) {
+  Pairs pairs;
+  const auto rows = matrix.sparsity().get_row(), columns = matrix.sparsity().get_col();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const casadi_int i = rows[k], j = columns[k];
+    if (i == j || matrix.nonzeros()[k].is_zero()) continue;
+    auto& pair = pairs.try_emplace({std::max(i, j), std::min(i, j)}, std::array<SXElem, 2>{0.0, 0.0}).first->second;
+    pair[i > j ? 0 : 1] = matrix.nonzeros()[k];
+  }
+  return pairs;
+}
+
 class MechanicsBuild {
  public:
   MechanicsBuild(Recognition& recognition, Statement& statement, const MechanicsStatement& mechanics,
@@ -42,8 +58,7 @@ class MechanicsBuild {
 
   [[nodiscard]] std::optional<Error> run() {
     if (auto error = check_free_of_dynamics()) return error;
-    const SX mass = SX::densify(mechanics_.mass);
-    for (const SXElem& e : mass.nonzeros()) {
+    for (const SXElem& e : mechanics_.mass.nonzeros()) {
       if (auto error = check_reach(e, "the mass matrix", mechanics_.mass_location)) return error;
     }
     if (auto error = check_reach(mechanics_.potential.scalar(), "the potential", mechanics_.potential_location)) {
@@ -121,14 +136,12 @@ class MechanicsBuild {
   }
 
   [[nodiscard]] std::optional<Error> check_symmetry() {
-    const SX mass = SX::densify(mechanics_.mass);
-    for (casadi_int i = 0; i < mass.size1(); ++i) {
-      for (casadi_int j = 0; j < i; ++j) {
-        const SXElem below = SX(mass(i, j)).scalar(), above = SX(mass(j, i)).scalar();
-        // Positions that are 0 at the start hide what they are factors of.
-        for (const double moved : {0.0, 0.3, -0.2}) {
-          if (auto error = check_equal(i, j, {below, above}, moved)) return error;
-        }
+    for (const auto& [place, entries] : pairs_of(mechanics_.mass)) {
+      const auto& [below, above] = entries;
+      if (SXElem::is_equal(below, above, 0) && below.is_constant()) continue;
+      // Positions that are 0 at the start hide what they are factors of.
+      for (const double moved : {0.0, 0.3, -0.2}) {
+        if (auto error = check_equal(place.first, place.second, entries, moved)) return error;
       }
     }
     return std::nullopt;
@@ -149,30 +162,32 @@ class MechanicsBuild {
         "write the same expression in both places");
   }
 
-  [[nodiscard]] std::optional<Error> check_definite(const SX& pivots) {
-    for (casadi_int i = 0; i < pivots.numel(); ++i) {
-      const auto pivot = at_start(SX(pivots(i)).scalar());
+  [[nodiscard]] std::optional<Error> check_definite(const std::vector<SXElem>& pivots) {
+    const auto diagonals = SX::densify(SX::diag(mechanics_.mass)).nonzeros();
+    for (std::size_t i = 0; i < pivots.size(); ++i) {
+      const auto pivot = at_start(pivots[i]);
       if (!pivot) return pivot.error();
-      const auto diagonal = at_start(SX(SX::densify(mechanics_.mass)(i, i)).scalar());
+      const auto diagonal = at_start(diagonals[i]);
       // What is left of a diagonal entry that the rows above determine is their rounding.
       if (*pivot > 1e-13 * std::abs(*diagonal) && std::isfinite(*pivot)) continue;
       return mechanics_error(
           mechanics_.mass_location,
           fmt::format("the mass matrix is not positive definite at the start: row {} ('{}') depends on the rows above, "
                       "or has no positive mass (pivot {})",
-                      i + 1, name_of(mechanics_.velocities[static_cast<std::size_t>(i)]), *pivot),
+                      i + 1, name_of(mechanics_.velocities[i]), *pivot),
           "every velocity needs a positive mass or inertia of its own");
     }
     return std::nullopt;
   }
 
   /// Those that may become negative on the way.
-  [[nodiscard]] std::optional<Error> note_pivots(const SX& pivots) {
-    for (casadi_int i = 0; i < pivots.numel(); ++i) {
-      if (!SX::depends_on(pivots(i), q_)) continue;
-      const auto node = recognition_.graph.add(SX(pivots(i)).scalar());
+  [[nodiscard]] std::optional<Error> note_pivots(const std::vector<SXElem>& pivots) {
+    constexpr KindSet states = kind_bit(VariableKind::state) | kind_bit(VariableKind::discrete);
+    for (std::size_t i = 0; i < pivots.size(); ++i) {
+      const auto node = recognition_.graph.add(pivots[i]);
       if (!node) return with_location(node.error(), mechanics_.mass_location);
-      statement_.mass_pivots.push_back({static_cast<int>(i), mechanics_.velocities[at(i)], *node});
+      if ((recognition_.graph.tape()[*node].written & states) == 0) continue;
+      statement_.mass_pivots.push_back({static_cast<int>(i), mechanics_.velocities[i], *node});
     }
     return std::nullopt;
   }

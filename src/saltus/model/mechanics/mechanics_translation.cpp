@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/preparation.hpp"
 #include "saltus/model/mechanics/contacts_internal.hpp"
 
 namespace saltus::model {
@@ -14,6 +15,16 @@ namespace {
 
 Error mechanics_mistake(const SourceLocation& location, std::string message, std::string remedy) {
   return {ErrorCode::invalid_model, std::move(message), std::move(remedy), location, {}};
+}
+
+/// A matrix of the entries that are not 0.
+SX sparse_matrix(casadi_int n, const std::vector<casadi_int>& rows, const std::vector<casadi_int>& columns,
+                 const std::vector<SXElem>& entries) {
+  std::vector<casadi_int> order;
+  const auto pattern = casadi::Sparsity::triplet(n, n, rows, columns, order, false);
+  std::vector<SXElem> sorted;
+  for (const auto k : order) sorted.push_back(entries[at(k)]);
+  return SX(pattern, sorted);
 }
 
 class MechanicsTranslation {
@@ -72,7 +83,7 @@ class MechanicsTranslation {
 
   std::optional<Error> mass() {
     const auto n = static_cast<casadi_int>(stated_.positions.size());
-    stated_.mass = SX::densify(SX::eye(n));
+    stated_.mass = SX::eye(n);
     if (mechanics_.mass.empty()) return std::nullopt;
     if (mechanics_.mass.size() != static_cast<std::size_t>(n)) {
       return mechanics_mistake(
@@ -80,8 +91,11 @@ class MechanicsTranslation {
           fmt::format("the mass matrix has {} rows, and there are {} velocities", mechanics_.mass.size(), n),
           "it has a row and a column for every velocity");
     }
+    std::vector<casadi_int> rows, columns;
+    std::vector<SXElem> entries;
     for (casadi_int i = 0; i < n; ++i) {
-      const auto& row = mechanics_.mass[static_cast<std::size_t>(i)];
+      prepares("reading the mass matrix", at(i), at(n));
+      const auto& row = mechanics_.mass[at(i)];
       if (row.size() != static_cast<std::size_t>(n)) {
         return mechanics_mistake(
             row.empty() ? mechanics_.mass_location : row.front()->location,
@@ -89,11 +103,15 @@ class MechanicsTranslation {
             "it has a row and a column for every velocity");
       }
       for (casadi_int j = 0; j < n; ++j) {
-        auto entry = scope_.expression(*row[static_cast<std::size_t>(j)]);
+        auto entry = scope_.expression(*row[at(j)]);
         if (!entry) return with_context(entry.error(), "in mass");
-        stated_.mass(i, j) = *entry;
+        if (entry->is_zero()) continue;
+        rows.push_back(i);
+        columns.push_back(j);
+        entries.push_back(*entry);
       }
     }
+    stated_.mass = sparse_matrix(n, rows, columns, entries);
     return std::nullopt;
   }
 

@@ -111,7 +111,9 @@ Expected<Recognition::Selection> Recognition::selection(const SXElem& e, const s
   const auto node = graph.add(e);
   if (!node) return tl::unexpected(node.error());
   const Tape& tape = graph.tape();
-  if (const auto constant = constant_value(tape, *node)) {
+  // What is a switching function already is no constant.
+  const auto constant = index_.has(*node) ? std::nullopt : constant_value(tape, *node);
+  if (constant) {
     note({.kind = Decision::Kind::sign, .node = *node}, [&] { return quoted(e, name); });
     return Selection{.constant = *constant};
   }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <set>
 #include <unordered_map>
 
 #include "saltus/model/recognition/recognition_internal.hpp"
@@ -23,51 +24,67 @@ Alphas common(const Alphas& a, const Alphas& b) {
   return result;
 }
 
-/// Alphas a node depends on, and those among them in which it is not affine.
-struct Degrees {
-  Alphas all, nonaffine;
-};
-
-Degrees degrees_of(const TapeNode& node, int number, const std::unordered_map<int, Degrees>& known) {
-  if (node.psi >= 0) return {{number}, {}};
-  if (node.left < 0) return {};
-  const Degrees none;
-  const Degrees& a = known.at(node.left);
-  const Degrees& b = node.right < 0 ? none : known.at(node.right);
-  Degrees result{joined(a.all, b.all), joined(a.nonaffine, b.nonaffine)};
-  switch (node.operation) {
-    case casadi::OP_ADD:
-    case casadi::OP_SUB:
-    case casadi::OP_NEG:
-    case casadi::OP_TWICE:
-      break;
-    case casadi::OP_IF_ELSE_ZERO:
-      return b;  // the guard of a blend only repeats the zero of its weight
-    case casadi::OP_MUL:
-      result.nonaffine = joined(result.nonaffine, common(a.all, b.all));
-      break;
-    case casadi::OP_DIV:
-      result.nonaffine = joined(a.nonaffine, b.all);
-      break;
-    default:
-      result.nonaffine = result.all;
+/// Alphas a node has in it. The guard of a blend only repeats the zero of its weight.
+Alphas alphas_of(const Tape& tape, int root) {
+  Alphas found;
+  std::vector<int> open{root};
+  std::set<int> met;
+  while (!open.empty()) {
+    const int current = open.back();
+    open.pop_back();
+    if (current < 0 || (tape[current].written & kind_bit(VariableKind::alpha)) == 0) continue;
+    if (!met.insert(current).second) continue;
+    const TapeNode& node = tape[current];
+    if (node.psi >= 0) found.push_back(current);
+    if (node.operation != casadi::OP_IF_ELSE_ZERO) open.push_back(node.left);
+    open.push_back(node.right);
   }
-  return result;
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
-/// Degrees of every node asked for and of those below, each computed once.
-class DegreeTable {
+/// Alphas in which nodes are not affine, of every node asked for and of those below. Only products and quotients ask
+/// which alphas their operands have: a sum costs what its terms do.
+class NonaffineTable {
  public:
-  const Degrees& of(const Tape& tape, int node) {
+  const Alphas& of(const Tape& tape, int node) {
     if (const auto it = known_.find(node); it != known_.end()) return it->second;
     for (const int current : tape.cone(std::span(&node, 1), Links::written)) {
-      if (!known_.contains(current)) known_.emplace(current, degrees_of(tape[current], current, known_));
+      if (has_alphas(tape, current) && !known_.contains(current)) known_.emplace(current, nonaffine(tape, current));
     }
-    return known_.at(node);
+    return known_[node];
   }
 
  private:
-  std::unordered_map<int, Degrees> known_;
+  static bool has_alphas(const Tape& tape, int node) {
+    return node >= 0 && (tape[node].written & kind_bit(VariableKind::alpha)) != 0;
+  }
+
+  [[nodiscard]] Alphas nonaffine(const Tape& tape, int number) const {
+    const TapeNode& node = tape[number];
+    if (node.psi >= 0) return {};
+    const auto of_operand = [&](int operand) { return has_alphas(tape, operand) ? known_.at(operand) : Alphas(); };
+    const bool both = has_alphas(tape, node.left) && has_alphas(tape, node.right);
+    switch (node.operation) {
+      case casadi::OP_ADD:
+      case casadi::OP_SUB:
+      case casadi::OP_NEG:
+      case casadi::OP_TWICE:
+        return joined(of_operand(node.left), of_operand(node.right));
+      case casadi::OP_IF_ELSE_ZERO:
+        return of_operand(node.right);
+      case casadi::OP_MUL: {
+        auto result = joined(of_operand(node.left), of_operand(node.right));
+        return both ? joined(result, common(alphas_of(tape, node.left), alphas_of(tape, node.right))) : result;
+      }
+      case casadi::OP_DIV:
+        return joined(of_operand(node.left), alphas_of(tape, node.right));
+      default:
+        return alphas_of(tape, number);
+    }
+  }
+
+  std::unordered_map<int, Alphas> known_;
 };
 
 class Interpolation {
@@ -91,7 +108,7 @@ class Interpolation {
 
  private:
   std::optional<int> first_nonaffine(int node) {
-    for (const int alpha : degrees_.of(graph_.tape(), node).nonaffine) {
+    for (const int alpha : nonaffine_.of(graph_.tape(), node)) {
       if (alphas_.contains(alpha)) return alpha;
     }
     return std::nullopt;
@@ -112,7 +129,7 @@ class Interpolation {
 
   SxGraph& graph_;
   const std::set<int>& alphas_;
-  DegreeTable degrees_;
+  NonaffineTable nonaffine_;
   int corners_ = 0;
 };
 
@@ -120,7 +137,7 @@ class Interpolation {
 
 std::vector<int> nonaffine_alphas(const Tape& tape, int node) {
   if ((tape[node].written & kind_bit(VariableKind::alpha)) == 0) return {};
-  return DegreeTable().of(tape, node).nonaffine;
+  return NonaffineTable().of(tape, node);
 }
 
 Expected<SXElem> interpolate(SxGraph& graph, int node, const std::set<int>& alphas, const std::string& name) {

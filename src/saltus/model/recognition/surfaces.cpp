@@ -7,116 +7,20 @@
 #include <unordered_map>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/preparation.hpp"
 #include "saltus/model/graph/sharing_internal.hpp"
+#include "saltus/model/recognition/jump_paths_internal.hpp"
 #include "saltus/model/recognition/surfaces_internal.hpp"
 
 namespace saltus::model {
 namespace {
 
 /// Points that count, and starts at most; a surface that few starts reach is given up as listed.
-constexpr int enough_points = 64;
+constexpr int enough_points = 64, few_points = 4;
 constexpr int seeded_starts = 192;
 constexpr std::size_t corner_points = 16;
-/// Part of a branch difference nearby that still counts as none on the surface. Ten times larger would hide weak
-/// friction beside strong springs, ten times smaller would come near the accuracy of the points.
-constexpr double jump_tolerance = 1e-9;
-
-/// Three values of a target: for alpha_j = 0, 1/2 and 1.
-using Triple = std::array<double, 3>;
-
-/// Targets at a point on a surface and a step away from it, the other alphas being the signs at the point.
-class Profiler {
- public:
-  Profiler(const Tape& tape, const Surface& surface, const std::vector<int>& targets)
-      : tape_(tape), surface_(surface), targets_(targets) {
-    std::vector<int> roots = targets;
-    roots.push_back(surface.psi);
-    cone_ = tape.cone(roots, Links::through_alpha);
-    cells_ = std::any_of(cone_.begin(), cone_.end(), [&](int i) { return tape[i].operation == cell_operation; });
-  }
-
-  void at(Point point, const std::vector<double>& scale) {
-    hold_others(point);
-    psi_here_ = triples(point, scale, here_, Rounding::bounded);
-    for (std::size_t i = 0; i < scale.size(); ++i) {
-      if (scale[i] > 0.0) point[i] += 0.1 * scale[i] * seeded_draw(9000, seed_of(tape_, i));
-    }
-    psi_nearby_ = triples(point, scale, nearby_, Rounding::ignored);
-  }
-
-  /// Whether a difference of a target's three values is more than what remains of a difference that vanishes on the
-  /// surface itself: rounding, and the part of its value nearby that belongs to the |psi| the point is left with (its
-  /// square root, as for sqrt(abs(psi))). Differences that are not finite do not count.
-  [[nodiscard]] std::optional<bool> exceeds(std::size_t target, double (*difference)(const Triple&)) const {
-    const double found = std::abs(difference(here_[target]));
-    if (!std::isfinite(found)) return std::nullopt;
-    const double nearby = std::abs(difference(nearby_[target]));
-    const double size = std::max(std::abs(here_[target][0]), std::abs(here_[target][2]));
-    // A branch that is undefined on the other side (sqrt) has no value nearby; its size has to do.
-    const double reference = std::isfinite(nearby) ? nearby : size;
-    const double distance = std::sqrt(std::abs(psi_here_ / psi_nearby_));
-    const double part = std::isfinite(distance) ? std::max(jump_tolerance, 10.0 * distance) : jump_tolerance;
-    // Where a surface lies on a break of a table, values may vanish on it and be constant away from it: their size says
-    // nothing then. Values may also vanish where both branches do: that of their neighbours counts, too.
-    const double around = std::max(std::abs(nearby_[target][0]), std::abs(nearby_[target][2]));
-    const double most = cells_
-                            ? bound_[target]
-                            : std::min(bound_[target], 1e-5 * (std::isfinite(around) ? std::max(size, around) : size));
-    const double rounding = std::isfinite(bound_[target]) ? most : 0.0;
-    return found > part * reference + rounding;
-  }
-
- private:
-  enum class Rounding { bounded, ignored };
-
-  /// Read once with alpha_j = 1 and then held: where another psi vanishes at the point, too, its rounding must not pass
-  /// for a jump.
-  void hold_others(Point& point) {
-    const auto own = static_cast<std::size_t>(tape_[surface_.alpha].variable);
-    point[own] = 1.0;
-    evaluate(tape_, cone_, point, values_);
-    for (const int node : cone_) {
-      if (tape_[node].psi < 0 || node == surface_.alpha) continue;
-      point[saltus::at(tape_[node].variable)] = entry(values_.value, node) > 0.5 ? 1.0 : 0.0;
-    }
-  }
-
-  /// @return psi_j at the point
-  double triples(Point& point, const std::vector<double>& scale, std::vector<Triple>& triples, Rounding rounding) {
-    constexpr double unit = 4.0 * std::numeric_limits<double>::epsilon();
-    const auto own = static_cast<std::size_t>(tape_[surface_.alpha].variable);
-    std::vector<double> position_error;
-    if (rounding == Rounding::bounded) {
-      for (const double size : scale) position_error.push_back(unit * size);
-      bound_.assign(targets_.size(), 0.0);
-    }
-    triples.assign(targets_.size(), {});
-    for (std::size_t k = 0; k < 3; ++k) {
-      point[own] = 0.5 * static_cast<double>(k);
-      evaluate_with_bounds(tape_, cone_, point, position_error, unit, values_);
-      for (std::size_t i = 0; i < targets_.size(); ++i) {
-        triples[i][k] = entry(values_.value, targets_[i]);
-        if (rounding == Rounding::bounded) bound_[i] = std::max(bound_[i], entry(values_.bound, targets_[i]));
-      }
-    }
-    return entry(values_.value, surface_.psi);
-  }
-
-  const Tape& tape_;
-  Surface surface_;
-  const std::vector<int>& targets_;
-  std::vector<int> cone_;
-  bool cells_ = false;
-  TapeValues values_;
-  std::vector<Triple> here_, nearby_;
-  std::vector<double> bound_;
-  double psi_here_ = 0.0, psi_nearby_ = 0.0;
-};
-
-double jump_of(const Triple& values) { return values[2] - values[0]; }
-double bend_of(const Triple& values) { return values[1] - 0.5 * (values[0] + values[2]); }
-
-using Difference = double (*)(const Triple&);
+/// Nodes that are evaluated in looking where the jump of a selection ends, beside those of its smallest target.
+constexpr std::size_t nearby_nodes = 256;
 
 /// Sides of the other surfaces on which a target would show a difference. A term that needs many conditions at once
 /// shows none at random points, so the corner is searched, not drawn. The search starts between the corners, where the
@@ -187,35 +91,36 @@ class CornerSearch {
 class SurfaceSearch {
  public:
   SurfaceSearch(const Tape& tape, const Surface& surface, const Selections& discrete, const std::vector<int>& targets,
-                Difference difference)
+                bool with_cells, Difference difference)
       : tape_(tape),
         surface_(surface),
         discrete_(discrete),
         targets_(targets),
         difference_(difference),
         projection_(tape, surface.psi),
-        profiler_(tape, surface, targets) {}
+        profile_(tape, surface, targets, with_cells) {}
 
   /// Assumed where no point shows anything.
-  [[nodiscard]] bool found() { return seen_at_seeded_points() || !reached_ || seen_at_corners(); }
+  [[nodiscard]] bool found() { return seen_at_seeded_points(enough_points) || !reached_ || seen_at_corners(); }
+  [[nodiscard]] bool found_soon() { return seen_at_seeded_points(few_points); }
 
  private:
   bool seen_at(const Point& point, const std::vector<double>& scale) {
-    profiler_.at(point, scale);
+    profile_.at(point, scale);
     bool seen = false;
     for (std::size_t i = 0; i < targets_.size(); ++i) {
-      const auto exceeds = profiler_.exceeds(i, difference_);
+      const auto exceeds = profile_.exceeds(i, difference_);
       reached_ = reached_ || exceeds.has_value();
       seen = seen || exceeds.value_or(false);
     }
     return seen;
   }
 
-  bool seen_at_seeded_points() {
+  bool seen_at_seeded_points(int enough) {
     std::vector<int> roots = targets_;
     roots.push_back(surface_.psi);
     const auto variables = moving_variables(tape_, roots);
-    for (int k = 0; k < seeded_starts && static_cast<int>(points_.size()) < enough_points; ++k) {
+    for (int k = 0; k < seeded_starts && static_cast<int>(points_.size()) < enough; ++k) {
       std::vector<double> scale;
       Point point = start_point(tape_, variables, k);
       if (!projection_.onto(0.0, point, scale)) continue;
@@ -249,61 +154,135 @@ class SurfaceSearch {
   const std::vector<int>& targets_;
   Difference difference_;
   Projection projection_;
-  Profiler profiler_;
+  SurfaceProfile profile_;
   std::vector<Point> points_;
   bool reached_ = false;
 };
 
-/// Whether a difference is found in the part of the tape that the targets and the surface are.
-bool is_found(const Tape& whole, const Surface& surface, const Selections& discrete, const std::vector<int>& targets,
-              Difference difference) {
-  std::vector<int> roots = targets;
-  roots.push_back(surface.psi);
-  roots.push_back(surface.alpha);
-  const Tape tape = whole.part(roots);
-  std::vector<int> targets_here;
-  for (const int target : targets) targets_here.push_back(tape.place_of(target));
-  Selections discrete_here;
-  for (const auto& [alpha, side] : discrete) {
-    if (const int place = tape.place_of(alpha); place >= 0) discrete_here.emplace(place, side);
-  }
-  const Surface surface_here{tape.place_of(surface.psi), tape.place_of(surface.alpha)};
-  return SurfaceSearch(tape, surface_here, discrete_here, targets_here, difference).found();
+bool has_cells(const Tape& tape, std::span<const int> cone) {
+  return std::any_of(cone.begin(), cone.end(), [&](int node) { return tape[node].operation == cell_operation; });
 }
+
+/// A surface and targets in the part of the tape that they are.
+class PartSearch {
+ public:
+  /// @param with_cells  these targets, or others of the surface, have tables or whole parts
+  PartSearch(const Tape& whole, const Surface& surface, const Selections& discrete, std::span<const int> targets,
+             bool with_cells, Difference difference)
+      : tape_(part(whole, surface, targets)), surface_{tape_.place_of(surface.psi), tape_.place_of(surface.alpha)} {
+    for (const int target : targets) targets_.push_back(tape_.place_of(target));
+    for (int place = 0; place < tape_.size(); ++place) {
+      if (tape_[place].psi < 0) continue;
+      if (const auto known = discrete.find(tape_[place].number); known != discrete.end()) {
+        discrete_.emplace(place, known->second);
+      }
+    }
+    search_.emplace(tape_, surface_, discrete_, targets_, with_cells, difference);
+  }
+  PartSearch(const PartSearch&) = delete;
+  PartSearch& operator=(const PartSearch&) = delete;
+
+  /// Whether a difference is found.
+  [[nodiscard]] bool found() { return search_->found(); }
+  /// Likewise, at a few points.
+  [[nodiscard]] bool found_soon() { return search_->found_soon(); }
+
+ private:
+  static Tape part(const Tape& whole, const Surface& surface, std::span<const int> targets) {
+    std::vector<int> roots(targets.begin(), targets.end());
+    roots.insert(roots.end(), {surface.psi, surface.alpha});
+    return whole.part(roots);
+  }
+
+  Tape tape_;
+  Surface surface_;
+  std::vector<int> targets_;
+  Selections discrete_;
+  std::optional<SurfaceSearch> search_;
+};
+
+/// Surfaces of a tape, and what could jump on them.
+class Classification {
+ public:
+  Classification(const Tape& tape, const Selections& discrete, const std::vector<int>& targets)
+      : tape_(tape), discrete_(discrete), users_(tape, targets) {
+    for (const int target : targets) note(target);
+  }
+
+  [[nodiscard]] SurfaceClass of(const Surface& surface) const {
+    const KindSet reached = tape_[surface.psi].reached;
+    constexpr KindSet states = kind_bit(VariableKind::state) | kind_bit(VariableKind::discrete);
+    const bool still = (reached & moving_kinds) == 0 && (reached & jumping_kinds) != 0;
+    if ((reached & states) == 0 && !still) return {SwitchingRole::time_event, false};
+    const auto affected = affected_.find(surface.alpha);
+    const bool jump = affected != affected_.end() && jumps(surface, affected->second);
+    if ((reached & moving_kinds) == 0) return {SwitchingRole::discrete, jump};
+    return {jump ? SwitchingRole::listed : SwitchingRole::kink, jump};
+  }
+
+ private:
+  /// Holds what a selection is in.
+  struct Affected {
+    std::vector<int> targets;
+    std::size_t least_nodes = 0;  ///< of the smallest target, which is the first
+    bool with_cells = false;
+  };
+
+  void note(int target) {
+    const auto cone = tape_.cone(std::span(&target, 1), Links::through_alpha);
+    const bool with_cells = has_cells(tape_, cone);
+    for (const int alpha : alpha_nodes(tape_, std::span(&target, 1), Links::written)) {
+      Affected& affected = affected_[alpha];
+      affected.targets.push_back(target);
+      affected.with_cells = affected.with_cells || with_cells;
+      if (affected.least_nodes != 0 && affected.least_nodes <= cone.size()) continue;
+      affected.least_nodes = cone.size();
+      std::swap(affected.targets.front(), affected.targets.back());
+    }
+  }
+
+  /// Asks what costs least first: the smallest target, then the operations near the selection, then ever more targets
+  /// at few points. What none of them shows is searched for in all targets together.
+  [[nodiscard]] bool jumps(const Surface& surface, const Affected& affected) const {
+    const std::span<const int> all(affected.targets);
+    const bool with_cells =
+        affected.with_cells || has_cells(tape_, tape_.cone(std::span(&surface.psi, 1), Links::through_alpha));
+    const auto part = [&](std::span<const int> targets) {
+      return PartSearch(tape_, surface, discrete_, targets, with_cells, jump_of);
+    };
+    if (part(all.first(1)).found_soon()) return true;
+    if (ends_nearby(tape_, surface, users_, nearby_nodes + affected.least_nodes)) return false;
+    std::size_t count = 1;
+    for (std::size_t first = 1; first < all.size(); first += count) {
+      count = std::min(2 * count, all.size() - first);
+      if (part(all.subspan(first, count)).found_soon()) return true;
+    }
+    return part(all).found();
+  }
+
+  const Tape& tape_;
+  const Selections& discrete_;
+  Users users_;
+  std::unordered_map<int, Affected> affected_;  ///< by selection
+};
 
 }  // namespace
 
 std::vector<SurfaceClass> classify(const Tape& tape, const std::vector<Surface>& surfaces, const Selections& discrete,
                                    const std::vector<int>& targets) {
-  std::unordered_map<int, std::vector<int>> targets_of_alpha;
-  for (const int target : targets) {
-    for (const int alpha : alpha_nodes(tape, std::span(&target, 1), Links::written)) {
-      targets_of_alpha[alpha].push_back(target);
-    }
-  }
+  const Classification classification(tape, discrete, targets);
   std::vector<SurfaceClass> classes;
   for (const Surface& surface : surfaces) {
-    const KindSet reached = tape[surface.psi].reached;
-    constexpr KindSet states = kind_bit(VariableKind::state) | kind_bit(VariableKind::discrete);
-    const bool still = (reached & moving_kinds) == 0 && (reached & jumping_kinds) != 0;
-    if ((reached & states) == 0 && !still) {
-      classes.push_back({SwitchingRole::time_event, false});
-      continue;
-    }
-    const auto affected = targets_of_alpha.find(surface.alpha);
-    const bool jumps =
-        affected != targets_of_alpha.end() && is_found(tape, surface, discrete, affected->second, jump_of);
-    if ((reached & moving_kinds) == 0) {
-      classes.push_back({SwitchingRole::discrete, jumps});
-    } else {
-      classes.push_back({jumps ? SwitchingRole::listed : SwitchingRole::kink, jumps});
-    }
+    prepares("finding what jumps", classes.size(), surfaces.size());
+    classes.push_back(classification.of(surface));
   }
   return classes;
 }
 
 bool bends_on_surface(const Tape& tape, const Surface& surface, const Selections& discrete, int target) {
-  return is_found(tape, surface, discrete, {target}, bend_of);
+  const int roots[] = {target, surface.psi};
+  const bool with_cells = has_cells(tape, tape.cone(roots, Links::through_alpha));
+  return PartSearch(tape, surface, discrete, std::span(&target, 1), with_cells, bend_of).found();
 }
 
 }  // namespace saltus::model

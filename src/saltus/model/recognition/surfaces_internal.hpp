@@ -6,15 +6,10 @@
 
 #include "saltus/model/graph/tape_internal.hpp"
 #include "saltus/model/recognition/surface_points_internal.hpp"
+#include "saltus/model/recognition/surface_profile_internal.hpp"
 #include "saltus/model/system.hpp"
 
 namespace saltus::model {
-
-/// Holds one switching function, by node numbers.
-struct Surface {
-  int psi = 0;
-  int alpha = 0;
-};
 
 struct SurfaceClass {
   SwitchingRole role = SwitchingRole::listed;

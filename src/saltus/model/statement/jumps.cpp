@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/preparation.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/model/recognition/guards_internal.hpp"
 #include "saltus/model/statement/jumps_internal.hpp"
@@ -228,6 +229,7 @@ std::optional<Error> fill_execution(Recognition& recognition, const JumpStatemen
 
 std::optional<Error> state_jumps(const Description& description, ModelScope& scope, Statement& statement) {
   for (const auto& jump : description.jumps) {
+    prepares("reading the model", statement.jumps.size(), description.jumps.size());
     auto stated = JumpTranslation(jump, scope).run();
     if (!stated) return stated.error();
     if (*stated) statement.jumps.push_back(std::move(**stated));

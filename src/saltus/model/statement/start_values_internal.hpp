@@ -14,7 +14,7 @@ namespace saltus::model {
 /// @param moved  by how much of their sizes, each by another part of it, states are moved from there
 [[nodiscard]] inline double value_at_start(const Recognition& recognition, const Statement& statement, int node,
                                            double moved = 0.0) {
-  const auto& tape = recognition.graph.tape();
+  const Tape tape = recognition.graph.tape().part(std::span(&node, 1));
   Point point = blank_point(tape);
   for (std::size_t i = 0; i < point.size(); ++i) {
     const auto& variable = tape.variables()[i];
@@ -26,8 +26,9 @@ namespace saltus::model {
     point[i] = start + moved * (1.0 + std::abs(start)) * (1.0 + 0.37 * static_cast<double>(variable.index % 5));
   }
   TapeValues values;
-  evaluate(tape, tape.cone(std::span(&node, 1), Links::through_alpha), point, values);
-  return values.value[at(node)];
+  const int place = tape.size() - 1;
+  evaluate(tape, tape.cone(std::span(&place, 1), Links::through_alpha), point, values);
+  return values.value.back();
 }
 
 }  // namespace saltus::model
