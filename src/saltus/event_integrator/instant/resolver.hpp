@@ -1,4 +1,4 @@
-// From what a run comes to at one time to the mode behind it: the one place where modes begin.
+// From what a run comes to at one time to the mode after it: modes begin here, but for those after ordinary switches.
 #pragma once
 
 #include <cstdint>
