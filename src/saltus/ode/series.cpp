@@ -243,13 +243,16 @@ void Series::mean_slopes(double h, double* __restrict low, double* __restrict hi
 }
 
 /// Of the last two terms one follows from the other by h A / degree.
-double Series::stability_ratio() const {
+double Series::stability_ratio(const Tolerances& tolerances) const {
   const double* terms = terms_.data();
   Pair after{}, before{}, size{};  // squares
   for (std::size_t i = 0; i < n_; i += 2, terms += series_stride) {
-    after += term_of(terms, degree) * term_of(terms, degree);
-    before += term_of(terms, degree - 1) * term_of(terms, degree - 1);
-    size += term_of(terms, 0) * term_of(terms, 0);
+    const Pair x = term_of(terms, 0);
+    const Pair unit = error_scale(tolerances, x, x);
+    const Pair last = term_of(terms, degree) / unit, one_before = term_of(terms, degree - 1) / unit;
+    after += last * last;
+    before += one_before * one_before;
+    size += (x / unit) * (x / unit);
   }
   constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
   const double divisor = sum_of_lanes(before);

@@ -38,7 +38,7 @@ class Series {
   [[nodiscard]] double error_norm(const double* x_new, const Tolerances& tolerances) const;
   void bounds(double* low, double* high) const { series_bounds(terms_.data(), n_, low, high); }
   void mean_slopes(double h, double* low, double* high) const;
-  [[nodiscard]] double stability_ratio() const;
+  [[nodiscard]] double stability_ratio(const Tolerances& tolerances) const;
   /// Returns h^k v_k.
   [[nodiscard]] const std::vector<double>& terms() const { return terms_; }
 

@@ -40,7 +40,8 @@ class StepControl {
 
 /// Tells whether stability limits the accepted steps of an explicit method: 15 suspicious ones, and not six others in a
 /// row between them (codes DOPRI5 and DOP853 of Hairer & Wanner; here one step of 16 is looked at while there is no
-/// suspicion). So are steps nearly as long that change the state by less than its tolerance.
+/// suspicion). Suspicious are steps longer than 0.65 of what is stable, and shorter ones that change the state by less
+/// than its tolerance.
 class StiffnessWatch {
  public:
   /// Is asked after every accepted step; true once, when the suspicion is enough.

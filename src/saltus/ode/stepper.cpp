@@ -175,10 +175,10 @@ Attempt Stepper::attempt_series(RightHandSide f, const LinearField& linear, cons
   return Attempt::finite;
 }
 
-double Stepper::stability_ratio() const {
+double Stepper::stability_ratio(const Tolerances& tolerances) const {
   if (known_ != nullptr) return 0.0;
-  if (took_series_) return series_->stability_ratio();
-  return explicit_ != nullptr ? explicit_->stability_ratio(explicit_step()) : 0.0;
+  if (took_series_) return series_->stability_ratio(tolerances);
+  return explicit_ != nullptr ? explicit_->stability_ratio(explicit_step(), tolerances) : 0.0;
 }
 
 double Stepper::stability_ratio_of_explicit() {

@@ -163,10 +163,10 @@ class Stepper {
   void restart();
 
   /// Returns the length of the last attempt, which was finite, over the one at which an explicit method becomes
-  /// unstable, from its two last stages (Hairer & Wanner, Solving Ordinary Differential Equations II, IV.2): about 1 or
-  /// more in step after step means that stability, not accuracy, limits the steps. 0 where that is not known, and for
-  /// Radau methods.
-  [[nodiscard]] double stability_ratio() const;
+  /// unstable. It follows from the two last stages, in units of the tolerances (Hairer & Wanner, Solving Ordinary
+  /// Differential Equations II, IV.2). About 1 or more in step after step means that stability, not accuracy, limits
+  /// the steps. 0 where that is not known, and for Radau methods.
+  [[nodiscard]] double stability_ratio(const Tolerances& tolerances) const;
   /// Returns, of a Radau method, the length of the last attempt over that at which dop853 would become unstable: by the
   /// spectral radius of its Jacobian, which is found better from call to call (power iteration). Cost: two products
   /// with the Jacobian.

@@ -13,6 +13,8 @@ constexpr int enough_steps = 15;
 /// Newton's iteration that lead to them.
 constexpr int least_age = 10;
 constexpr double fast_rate = 0.002, slow_rate = 0.8;
+/// Of the limit of stability, for explicit steps to return: less than the test for stiffness suspects.
+constexpr double comfortable = 0.5;
 /// Attempts without stages, each a quarter as long as the one before.
 constexpr int most_failures = 6;
 
@@ -83,7 +85,7 @@ void MethodChoice::look_at_explicit(const ode::Stepper& stepper, const ode::Tole
 }
 
 void MethodChoice::look_at_implicit(ode::Stepper& stepper) {
-  short_enough_ = stepper.stability_ratio_of_explicit() < 1.0 ? short_enough_ + 1 : 0;
+  short_enough_ = stepper.stability_ratio_of_explicit() < comfortable ? short_enough_ + 1 : 0;
   if (short_enough_ >= enough_steps) return change_to(first_);
   if (++age_ < least_age) return;
   const double rate = stepper.contraction();

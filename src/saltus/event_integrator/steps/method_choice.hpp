@@ -20,9 +20,9 @@ namespace saltus::event_integrator {
 
 /// A MethodChoice watches accepted steps. An explicit method that stability limits gives way to a Radau method, whose
 /// order follows from the contraction of Newton's iteration: up where it is fast, down where it is slow. A Radau method
-/// gives way where explicit steps could be as long. Each mode has its own choice, which is kept for its next visit. A
-/// method that was named stays; where stability limits it, that is noted. Cost: a few operations a step; after a switch
-/// O(n_psi), once any mode was stiff.
+/// gives way where explicit steps could be twice as long. Each mode has its own choice, which is kept for its next
+/// visit. A method that was named stays; where stability limits it, that is noted. Cost: a few operations a step; after
+/// a switch O(n_psi), once any mode was stiff.
 class MethodChoice {
  public:
   MethodChoice(const IntegrationOptions& options, const Position& here);

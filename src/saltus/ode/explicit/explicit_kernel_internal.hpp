@@ -141,18 +141,20 @@ struct ExplicitKernel {
     return true;
   }
 
-  /// Returns h |k_last - k_before| / |x_new - x_before|, both stages at t + h: about h times the largest eigenvalue.
-  static double stability_ratio(const ExplicitStep& step) {
+  /// Returns h |k_last - k_before| / |x_new - x_before|, both stages at t + h, in units of the tolerances: about h
+  /// times the largest eigenvalue. In other units a large component that moves slowly hides a small one that is stiff.
+  static double stability_ratio(const ExplicitStep& step, const Tolerances& tolerances) {
     const std::size_t n = size_of<Size>(step);
     const double* stages = step.stages;
     double slopes = 0.0, states = 0.0, size = 0.0;  // squares
     for (std::size_t i = 0; i < n; ++i) {
       const double before = step.start[i] + step.h * stage_sum<Tableau::a, last - 1>(stages, n, i);
-      const double slope = stages[last * n + i] - stages[(last - 1) * n + i];
-      const double state = step.x_new[i] - before;
+      const double unit = error_scale(tolerances, step.start[i], step.x_new[i]);
+      const double slope = (stages[last * n + i] - stages[(last - 1) * n + i]) / unit;
+      const double state = (step.x_new[i] - before) / unit;
       slopes += slope * slope;
       states += state * state;
-      size += step.x_new[i] * step.x_new[i];
+      size += step.x_new[i] * step.x_new[i] / (unit * unit);
     }
     constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
     if (!(states > rounding * rounding * size)) return 0.0;

@@ -40,7 +40,7 @@ struct ExplicitMethod {
   void (*mean_slopes)(const ExplicitStep& step, double* low, double* high);
   /// Evaluates coefficients of the dense output; false if a further stage is not finite, and then those of the cubic.
   bool (*dense)(const ExplicitStep& step, const StageWork& work, double* coefficients);
-  double (*stability_ratio)(const ExplicitStep& step);
+  double (*stability_ratio)(const ExplicitStep& step, const Tolerances& tolerances);
   std::size_t last_stage;  ///< f(t + h, x_new) is k_last, counted from 0
   std::size_t stages;      ///< of the dense output
 };
