@@ -145,7 +145,8 @@ nb::object simulate_between(Model& model, std::vector<std::string> settings, std
   const Request request{std::move(settings), std::move(options), frontend::RunMethods::chosen};
   auto input = model.stated(request);
   auto& chosen = input.file.simulate;
-  chosen.continuous = chosen.event_rows = true;
+  chosen.continuous = true;
+  chosen.event_rows = true;
   chosen.kept = {};
   chosen.output = pipeline::EveryStep{};  // has both sides where inputs break
   if (!branches) chosen.event.trajectories = 1;

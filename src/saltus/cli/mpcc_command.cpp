@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,13 +11,12 @@
 #include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
+#include "saltus/cli/mpcc_input.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/text/terminal.hpp"
-#include "saltus/foreign/parse.hpp"
+#include "saltus/foreign/problem.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/mpcc/json_mpcc.hpp"
-#include "saltus/io/option_text.hpp"
-#include "saltus/io/sha256.hpp"
 #include "saltus/pipeline/mpcc/solve_mpcc.hpp"
 #include "saltus/pipeline/options/mpcc_options.hpp"
 #include "saltus/report/mpcc_table.hpp"
@@ -35,15 +33,13 @@ struct MpccArguments {
   bool quiet = false;
 };
 
-Error at_option(Error error, const std::string& option) {
-  error.location = {option, 0, 0};
-  return error;
-}
-
 Expected<void> set_setting(solver::SolveOptions& options, const std::string& setting) {
   constexpr std::string_view root = "mpcc.";
   const auto equal = setting.find('=');
-  const auto failed = [&](Error error) { return tl::unexpected(at_option(std::move(error), "--set " + setting)); };
+  const auto failed = [&](Error error) {
+    error.location = {"--set " + setting, 0, 0};
+    return tl::unexpected(std::move(error));
+  };
   if (equal == std::string::npos || equal == 0 || equal + 1 == setting.size()) {
     return failed(
         {ErrorCode::parse_failure, "expected mpcc.KEY=VALUE", "for example --set mpcc.sigma_factor=0.2", {}, {}});
@@ -56,9 +52,7 @@ Expected<void> set_setting(solver::SolveOptions& options, const std::string& set
                    {},
                    {}});
   }
-  auto done = pipeline::set_mpcc_option(options, key.substr(root.size()), io::option_value(setting.substr(equal + 1)));
-  if (!done) return failed(done.error());
-  return {};
+  return set_mpcc_option(options, key.substr(root.size()), setting.substr(equal + 1), "--set " + setting);
 }
 
 Expected<solver::SolveOptions> options_of(const MpccArguments& arguments) {
@@ -66,41 +60,17 @@ Expected<solver::SolveOptions> options_of(const MpccArguments& arguments) {
   for (const auto& setting : arguments.settings) {
     if (auto done = set_setting(options, setting); !done) return tl::unexpected(done.error());
   }
-  const auto shortcut = [&](const char* flag, const char* key,
+  const auto shortcut = [&](const char* key, const std::string& flag,
                             const std::optional<std::string>& text) -> Expected<void> {
     if (!text) return {};
-    auto done = pipeline::set_mpcc_option(options, key, io::option_value(*text));
-    if (!done) return tl::unexpected(at_option(done.error(), fmt::format("{} {}", flag, *text)));
-    return {};
+    return set_mpcc_option(options, key, *text, fmt::format("{} {}", flag, *text));
   };
-  if (auto done = shortcut("--solver", "solver", arguments.solver); !done) return tl::unexpected(done.error());
-  if (auto done = shortcut("--method", "method", arguments.method); !done) return tl::unexpected(done.error());
-  if (arguments.time_limit) {
-    const auto value = io::option_value(*arguments.time_limit);
-    const auto* real = std::get_if<double>(&value);
-    const auto* whole = std::get_if<std::int64_t>(&value);
-    options.time_limit = real != nullptr ? *real : whole != nullptr ? static_cast<double>(*whole) : -1.0;
-    if (!(*options.time_limit > 0.0)) {
-      return tl::unexpected(Error{ErrorCode::invalid_option,
-                                  fmt::format("expected a number of seconds > 0, found {}", *arguments.time_limit),
-                                  "",
-                                  {fmt::format("--time-limit {}", *arguments.time_limit), 0, 0},
-                                  {}});
-    }
-  }
+  if (auto done = shortcut("solver", "--solver", arguments.solver); !done) return tl::unexpected(done.error());
+  if (auto done = shortcut("method", "--method", arguments.method); !done) return tl::unexpected(done.error());
+  if (auto done = shortcut("time_limit", "--time-limit", arguments.time_limit); !done)
+    return tl::unexpected(done.error());
   if (auto fits = pipeline::check_mpcc_options(options); !fits) return tl::unexpected(fits.error());
   return options;
-}
-
-/// What AMPL may have written beside an .nl file.
-foreign::Names names_beside(const std::string& file) {
-  const auto text_of = [&](const char* suffix) {
-    const auto path = std::filesystem::path(file).replace_extension(suffix);
-    std::error_code failed;
-    if (!std::filesystem::is_regular_file(path, failed)) return std::string();
-    return io::read_file(path).value_or("");
-  };
-  return {text_of(".col"), text_of(".row")};
 }
 
 /// A line per problem that was solved, where somebody looks.
@@ -137,10 +107,9 @@ ExitCode run_mpcc(const MpccArguments& arguments) {
   auto options = options_of(arguments);
   if (!options) return refuse(options.error());
   const Stopwatch stopwatch;
-  const auto text = io::read_file(arguments.file);
-  if (!text) return refuse(text.error());
-  auto problem = foreign::parse(*text, arguments.file, names_beside(arguments.file));
-  if (!problem) return refuse(problem.error());
+  const auto input = read_mpcc(arguments.file);
+  if (!input) return refuse(input.error());
+  auto& problem = *input->problem;
   const auto outputs = Outputs::make({.files = arguments.outputs, .suffixes = {".json"}}, arguments.file);
   if (!outputs) return refuse(outputs.error());
   std::optional<std::vector<double>> start;
@@ -150,20 +119,20 @@ ExitCode run_mpcc(const MpccArguments& arguments) {
     start = std::move(*x);
   }
   if (!arguments.quiet) {
-    for (const auto& note : (*problem)->notes()) print_error(fmt::format("note: {}: {}", arguments.file, note));
+    for (const auto& note : problem.notes()) print_error(fmt::format("note: {}: {}", arguments.file, note));
   }
   const double building = stopwatch.seconds();
 
   catch_interrupt();
   options->is_interrupted = interrupted;
-  show_steps(arguments, **problem, *options);
-  auto result = pipeline::solve_mpcc(**problem, *options, start);
+  show_steps(arguments, problem, *options);
+  auto result = pipeline::solve_mpcc(problem, *options, start);
   if (!result) {
     if (result.error().location.file.empty()) result.error().location.file = arguments.file;
     return refuse(result.error());
   }
   result->file = arguments.file;
-  result->sha256 = io::sha256(*text);
+  result->sha256 = input->sha256;
   result->statistics.build_seconds = building;
   return finish(arguments, *result);
 }

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/report/findings.hpp"
 #include "saltus/report/optimization_table_internal.hpp"
 #include "saltus/report/optimization_words_internal.hpp"
 
@@ -238,6 +239,17 @@ std::vector<std::pair<std::string, double>> objective_terms(const result::Object
                                                    {"penalties", terms.penalties}};
   std::erase_if(list, [](const auto& term) { return term.second == 0.0; });
   return list;
+}
+
+std::vector<SaidOfOptimum> said_of_optimum(const result::Result& result) {
+  std::vector<SaidOfOptimum> said;
+  if (!result.optimization) return said;
+  const auto word = [](Tone tone) { return tone == Tone::good ? "good" : tone == Tone::bad ? "bad" : "neutral"; };
+  for (const auto& finding : certificate_findings(result))
+    said.push_back({"certificate", word(finding.tone), finding.text});
+  for (const auto& finding : verification_findings(*result.optimization))
+    said.push_back({"simulation", word(finding.tone), finding.text});
+  return said;
 }
 
 }  // namespace saltus::report

@@ -136,8 +136,8 @@ TEST(TomlModel, ReadsEveryFormOfOutput) {
   EXPECT_TRUE(std::holds_alternative<pipeline::EveryStep>(parsed_file(head + "'steps'").simulate.output));
   EXPECT_TRUE(std::holds_alternative<pipeline::Automatic>(parsed_file(head + "'auto'").simulate.output));
   EXPECT_TRUE(std::holds_alternative<pipeline::Automatic>(parsed_file("[model]\nname='m'\n").simulate.output));
-  EXPECT_FALSE(parsed_file(head + "{ every = 0.25, events = false }").simulate.event_rows);
-  EXPECT_TRUE(parsed_file(head + "{ every = 0.25 }").simulate.event_rows);
+  EXPECT_EQ(parsed_file(head + "{ every = 0.25, events = false }").simulate.event_rows, false);
+  EXPECT_TRUE(has_event_rows(parsed_file(head + "{ every = 0.25 }").simulate));
   EXPECT_EQ(std::get<pipeline::EveryInterval>(parsed_file(head + "{ every = 0.25 }").simulate.output).interval, 0.25);
   EXPECT_EQ(std::get<pipeline::NumberOfPoints>(parsed_file(head + "{ points = 7 }").simulate.output).points, 7);
 }

@@ -49,7 +49,7 @@ TEST(OptionFields, WhatIsRecordedSetsTheSameOptionsAgain) {
     EXPECT_EQ(copy.until, original.until);
     EXPECT_EQ(copy.initial_mode, original.initial_mode);
     EXPECT_EQ(copy.output.index(), original.output.index());
-    EXPECT_FALSE(copy.event_rows);
+    EXPECT_EQ(copy.event_rows, false);
   }
 }
 

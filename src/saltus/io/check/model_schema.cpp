@@ -94,12 +94,13 @@ void put(Json& tables, std::string_view key, Json schema) {
 }
 
 Json simulate_schema() {
-  Json json = table(
-      {{"inputs",
-        names(or_table(table({{"file", text("two columns, t and the value")}, {"result", text("a stored result")}},
-                             "piecewise constant samples")),
-              "values of controls")}},
-      "how to simulate");
+  Json json = table({{"inputs", names(or_table(table({{"file", text("two columns, t and the value")},
+                                                      {"result", text("a stored result")},
+                                                      {"times", list_of({{"type", "number"}}, "increasing")},
+                                                      {"values", list_of({{"type", "number"}}, "from its time on")}},
+                                                     "piecewise constant samples")),
+                                      "values of controls")}},
+                    "how to simulate");
   for (const auto& field : pipeline::simulate_fields()) {
     put(json, field.key, described(option_schema(field.kind), fmt::format("{} ({})", field.doc, expects(field.kind))));
   }
@@ -129,8 +130,10 @@ Json problem_schema(std::string_view key) {
   if (key == "path_complementarities") return list_of(expressions, "");
   if (key == "initial_guess") return names(expression, "");
   if (key != "least_squares") return expression;
-  const Json file = table({{"file", text("rows of t and the references")}}, "measurements", {"file"});
-  const Json references = {{"anyOf", Json::array({expressions, file})}};
+  const Json measured = table({{"file", text("rows of t and the references")},
+                               {"rows", list_of(list_of({{"type", "number"}}, "a row"), "the same here")}},
+                              "measurements: one of both");
+  const Json references = {{"anyOf", Json::array({expressions, measured})}};
   const Json weights = {{"anyOf", Json::array({expression, expressions})}};
   return list_of(table({{"of", expressions},
                         {"reference", references},

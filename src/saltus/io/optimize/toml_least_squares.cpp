@@ -69,7 +69,7 @@ class LeastSquaresReader {
   void read_reference(const TomlValue& value) {
     const auto* table = std::get_if<TomlTable>(&value.value);
     if (table == nullptr) {
-      part_.reference = list(value, "a list of numbers and expressions, or { file = \"ref.csv\" }");
+      part_.reference = list(value, "a list of numbers and expressions, { file = \"ref.csv\" } or { rows = [[…], …] }");
       if (part_.reference.empty()) {
         fail("the list of references is empty", "leave it out where they are all 0", value.location);
       }
@@ -78,11 +78,46 @@ class LeastSquaresReader {
     for (const auto& entry : *table) {
       if (entry.key == "file") {
         part_.file = reader_.string(entry.value, "a file name in quotes");
+      } else if (entry.key == "rows") {
+        read_rows(entry.value);
       } else {
-        reader_.unknown_key(entry, {"file"});
+        reader_.unknown_key(entry, {"file", "rows"});
       }
     }
-    if (part_.file.empty()) fail("the reference names no file", "write { file = \"ref.csv\" }", value.location);
+    if (part_.file.empty() == part_.samples.empty()) {
+      fail("the reference has one of file and rows", "write { file = \"ref.csv\" } or { rows = [[1, 2], [3, 4]] }",
+           value.location);
+    }
+  }
+
+  /// [[1, 2], [3, 4]]: what stands in a file else.
+  void read_rows(const TomlValue& value) {
+    constexpr std::string_view expected = "a list of rows of numbers, e.g. [[1, 2], [3, 4]]";
+    const auto* rows = std::get_if<TomlArray>(&value.value);
+    if (rows == nullptr) return reader_.wrong_type(expected, value);
+    for (const auto& element : *rows) {
+      const auto* row = std::get_if<TomlArray>(&element.value);
+      if (row == nullptr) return reader_.wrong_type(expected, element);
+      auto& numbers = part_.samples.emplace_back();
+      part_.rows.push_back(element.location);
+      for (const auto& entry : *row) {
+        const auto number = reader_.number(entry);
+        if (!number) return;
+        numbers.push_back(*number);
+      }
+    }
+  }
+
+  /// Those of the model file have one length.
+  void check_rows(std::size_t width, const std::string& what) {
+    for (std::size_t row = 0; row < part_.samples.size(); ++row) {
+      const auto found = part_.samples[row].size();
+      if (found == width) continue;
+      fail(fmt::format("expected {} number{} in row {} of the reference, found {}", width, width == 1 ? "" : "s",
+                       row + 1, found),
+           what, part_.rows[row]);
+      return;
+    }
   }
 
   /// [1, 2] or [[1, 0], [0, 2]].
@@ -105,18 +140,29 @@ class LeastSquaresReader {
            "write one reference per expression", reference_);
     }
     const bool with_times = part_.at == model::CostPoints::times;
-    if (part_.file.empty()) {
-      if (!with_times) return;
-      fail("at = \"times\" needs measurements in a file",
-           "write reference = { file = \"data.csv\" }: rows with a time, then a number per expression", part_.location);
+    const std::string what = with_times
+                                 ? "a row has a time, then one number per expression"
+                                 : "a row has one number per expression; beside a column of times write at = \"times\"";
+    const auto width = expected + (with_times ? 1 : 0);
+    if (!part_.file.empty()) {
+      read_file_rows(width, what);
+    } else if (!part_.samples.empty()) {
+      check_rows(width, what);
+      part_.file = "the reference";
+    } else if (with_times) {
+      fail("at = \"times\" needs measurements",
+           "write reference = { file = \"data.csv\" } or { rows = [[0, 1.5], …] }: rows with a time, then a number per "
+           "expression",
+           part_.location);
       return;
     }
+    if (with_times && !reader_.failed()) take_times();
+  }
+
+  void read_file_rows(std::size_t width, const std::string& what) {
     const auto file = beside(reader_.file(), part_.file);
     auto rows = read_named(reader_.files(), file).and_then([&](const std::string& text) {
-      return parse_rows(text, file.string(), expected + (with_times ? 1 : 0),
-                        with_times ? "a row has a time, then one number per expression"
-                                   : "a row has one number per expression; beside a column of times write at = "
-                                     "\"times\"");
+      return parse_rows(text, file.string(), width, what);
     });
     if (!rows) {
       reader_.fail(with_context(rows.error(), fmt::format("line {} of {}", reference_.line, reader_.file())));
@@ -124,7 +170,6 @@ class LeastSquaresReader {
     }
     part_.samples = std::move(rows->rows);
     part_.rows = std::move(rows->places);
-    if (with_times) take_times();
   }
 
   /// The first column.

@@ -318,6 +318,12 @@ Error located(Error error, const ModelFile& model) {
 Expected<void> check_options(const ModelFile& model) {
   auto problem = pipeline::find_problem(model.simulate);
   if (!problem) return {};
+  // Of a file that states nothing it is not said first that it has no end time: that it has no states comes next.
+  const auto& stated = model.description;
+  if (problem->key == "until" && stated.states.empty() && stated.outputs.empty() && stated.events.empty() &&
+      stated.hysteresis.empty()) {
+    return {};
+  }
   auto& error = problem->error;
   error.location = {model.description.file, 1, 1};
   for (const auto& [table, location] : model.table_locations) {

@@ -36,6 +36,9 @@ void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
                                                           const SourceLocation& location,
                                                           std::vector<result::NamedFile>& files);
 
+/// Reads samples of a control that stand in the model file: { times = [0, 1], values = [2, 3] }.
+void read_listed_samples(TomlReader& reader, const TomlEntry& field, const TomlTable& source, ModelFile& model);
+
 /// Reads the value of an option: truth, number, word or list of numbers; nullopt and an error for anything else.
 [[nodiscard]] std::optional<result::OptionValue> read_option_value(TomlReader& reader, const TomlValue& value);
 

@@ -116,11 +116,16 @@ void read_options(TomlReader& reader, const std::string& prefix, const TomlTable
   }
 }
 
-/// { file = "u.csv" } or { result = "r.json" }.
+/// { file = "u.csv" }, { result = "r.json" } or { times = [0, 1], values = [2, 3] }.
 void read_samples(TomlReader& reader, const TomlEntry& field, const TomlTable& source, ModelFile& model) {
+  const auto is_list = [](const TomlEntry& entry) { return entry.key == "times" || entry.key == "values"; };
+  if (std::any_of(source.begin(), source.end(), is_list)) {
+    read_listed_samples(reader, field, source, model);
+    return;
+  }
   const bool one = source.size() == 1;
   if (one && source.front().key != "file" && source.front().key != "result") {
-    reader.unknown_key(source.front(), {"file", "result"});
+    reader.unknown_key(source.front(), {"file", "result", "times", "values"});
     return;
   }
   if (!one) {

@@ -1,4 +1,4 @@
-// [tables.name], and inputs from files and results.
+// [tables.name], and inputs that are samples.
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -168,6 +168,35 @@ std::vector<std::string> table_names(const TomlTable& document) {
     }
   }
   return names;
+}
+
+void read_listed_samples(TomlReader& reader, const TomlEntry& field, const TomlTable& source, ModelFile& model) {
+  StatedTable stated;
+  for (const auto& entry : source) {
+    if (entry.key == "times") {
+      stated.x = number_list(reader, entry.value);
+    } else if (entry.key == "values") {
+      stated.y = number_list(reader, entry.value);
+    } else {
+      reader.unknown_key(entry, {"times", "values"});
+    }
+  }
+  if (reader.failed()) return;
+  if (!stated.x || !stated.y) {
+    reader.fail({ErrorCode::parse_failure,
+                 fmt::format("the input '{}' has no {}", field.key, stated.x ? "values" : "times"),
+                 "write e.g. u = { times = [0, 1], values = [2, 3] }",
+                 field.value.location,
+                 {}});
+    return;
+  }
+  if (const auto mistake = model::find_mistake(stated.x->values, stated.y->values)) {
+    reader.fail(
+        with_context(located(*mistake, stated, field.value.location), fmt::format("in the input of {}", field.key)));
+    return;
+  }
+  model.description.sampled_inputs.push_back(
+      {field.key, std::move(stated.x->values), std::move(stated.y->values), field.location});
 }
 
 Expected<model::SampledInput> sampled_input(const std::string& control, std::string_view source,

@@ -21,7 +21,6 @@ constexpr auto from_of = [](auto& o) -> auto& { return o.from; };
 constexpr auto method_of = [](auto& o) -> auto& { return o.method; };
 constexpr auto rtol_of = [](auto& o) -> auto& { return o.rtol; };
 constexpr auto atol_of = [](auto& o) -> auto& { return o.atol; };
-constexpr auto event_rows_of = [](auto& o) -> auto& { return o.event_rows; };
 constexpr auto continuous_of = [](auto& o) -> auto& { return o.continuous; };
 constexpr auto error_estimate_of = [](auto& o) -> auto& { return o.error_estimate; };
 constexpr auto native_of = [](auto& o) -> auto& { return o.native; };
@@ -85,8 +84,16 @@ constexpr std::array signs{-1, 0, 1};
 void set_output_word(SimulateOptions& options, std::string_view, const OptionValue& value) {
   options.output = std::get<std::string>(value) == "auto" ? OutputGrid(Automatic{}) : OutputGrid(EveryStep{});
   // A word stands for the whole table: what a table before it left out is there again.
-  options.event_rows = true;
+  options.event_rows = std::nullopt;
   options.kept = {};
+}
+
+void set_event_rows(SimulateOptions& options, std::string_view, const OptionValue& value) {
+  options.event_rows = std::get<bool>(value);
+}
+
+void record_event_rows(const SimulateOptions& options, std::string_view key, OptionRecord& record) {
+  record.emplace_back(key, has_event_rows(options));
 }
 
 void name_output_tables(Error& error, const OptionValue&) {
@@ -216,11 +223,14 @@ constexpr std::array fields{
                 record_output<NumberOfPoints>},
     OptionField{"output.times",
                 {.list = ListOf::increasing_numbers},
-                "Instead: rows at these times, all within the span.",
+                "Instead: exactly these rows, all within the span; those at events with events = true.",
                 set_output<AtTimes>,
                 record_output<AtTimes>},
-    truth_field<event_rows_of>(
-        "output.events", "Rows before and behind every event; false leaves them out, so that no time has two rows."),
+    OptionField{"output.events",
+                {.truth = true},
+                "Rows before and after every event; without them (with `times` unless true) no time has two rows.",
+                set_event_rows,
+                record_event_rows},
     OptionField{"output.states",
                 {.list = ListOf::names, .pattern = "v*"},
                 "Rows have these states only; end state and events stay complete. Default: all.",

@@ -21,8 +21,8 @@ Generated from the option table of the source (`saltus options-page > docs/optio
 Write them in the model file under `[simulate]` (`[simulate.event]` for those that begin with `event.`, and so on), or on
 the command line as `--set simulate.KEY=VALUE`, tables as they stand in a file, in quotes of the shell:
 `--set 'simulate.output={ points = 101 }'`. `*` stands for the name of a switching function. `output` is one of
-`"auto"`, `"steps"` (no rows between), `{ every = … }`, `{ points = … }`, `{ times = […] }`; `until` is always a row, and events and end state
-do not depend on it. Of more than 250 000 rows `"auto"` leaves out those between events that are less than the span / 250 000
+`"auto"`, `"steps"` (no rows between), `{ every = … }`, `{ points = … }`, `{ times = […] }`; `until` is a row, unless rows are at given times, and
+events and end state do not depend on it. Of more than 250 000 rows `"auto"` leaves out those between events that are less than the span / 250 000
 behind another row (`thinned_from` in the statistics); `"steps"` never does.
 
 | key | value | default | meaning |
@@ -31,8 +31,9 @@ behind another row (`thinned_from` in the statistics); `"steps"` never does.
 
 constexpr std::string_view page_tail = R"md(
 Values of the controls during a simulation stand in `inputs = { u = "sin(t)" }`: expressions of the time and the
-parameters, or piecewise constant as `{ file = "u.csv" }` (columns t and u) or `{ result = "r.json" }` (the control of that
-name in a stored result), files being relative to the model's; without one a control keeps its `initial`. On the command line:
+parameters, or piecewise constant as `{ file = "u.csv" }` (columns t and u), `{ result = "r.json" }` (the control of that
+name in a stored result; files are relative to the model's) or `{ times = [0, 1], values = [2, 3] }`; without one a control
+keeps its `initial`. On the command line:
 `--set simulate.inputs.u="sin(t)"`, `--set simulate.inputs.u.file=u.csv`.
 )md";
 

@@ -99,7 +99,8 @@ struct SimulateOptions {
   double atol = 1e-10;
   OutputGrid output = Automatic{};
   KeptNames kept{};
-  bool event_rows = true;       ///< rows before and behind every event; without them no two rows have the same time
+  /// Rows before and after every event; without them no two rows have the same time. Not stated: see has_event_rows.
+  std::optional<bool> event_rows{};
   bool error_estimate = false;  ///< asks for Result::error_estimate
   bool continuous = false;      ///< asks for Result::continuous
   Native native = Native::automatic;
@@ -110,5 +111,10 @@ struct SimulateOptions {
   SmoothedOptions smoothed{};
   ElementOptions fesd{.error_limit = 0.03}, timestepping{};
 };
+
+/// Returns whether there are rows at events: what is stated, else everywhere but at given times, which are all rows.
+[[nodiscard]] inline bool has_event_rows(const SimulateOptions& options) {
+  return options.event_rows.value_or(!std::holds_alternative<AtTimes>(options.output));
+}
 
 }  // namespace saltus::pipeline

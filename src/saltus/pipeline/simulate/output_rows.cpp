@@ -22,12 +22,19 @@ std::vector<double> row_times(const OutputGrid& grid, double from, double until)
   return times;
 }
 
-void leave_out_event_rows(const std::vector<double>& times, result::Trajectory& rows) {
+WantedRows wanted_rows(const OutputGrid& grid, std::vector<double> times) {
+  return {std::move(times), !std::holds_alternative<AtTimes>(grid)};
+}
+
+bool WantedRows::has(double t) const { return times.empty() || std::binary_search(times.begin(), times.end(), t); }
+
+void leave_out_event_rows(const WantedRows& wanted, result::Trajectory& rows) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < rows.t.size(); ++i) {
     const bool last = i + 1 == rows.t.size();
     if (!last && rows.t[i + 1] == rows.t[i]) continue;  // values are continuous from the right
-    if (last || times.empty() || std::binary_search(times.begin(), times.end(), rows.t[i])) kept.push_back(i);
+    const bool stays = last && (wanted.last || kept.empty());
+    if (stays || wanted.has(rows.t[i])) kept.push_back(i);
   }
   rows.keep(kept);
 }

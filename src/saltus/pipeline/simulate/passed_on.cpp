@@ -4,25 +4,26 @@
 #include <numeric>
 #include <utility>
 
-#include "saltus/pipeline/simulate/output_rows_internal.hpp"
 #include "saltus/pipeline/simulate/passed_on_internal.hpp"
 #include "saltus/result/kept_columns.hpp"
 
 namespace saltus::pipeline {
 
-PassingOn::PassingOn(const Observers& observers, const result::Result& frame, const std::vector<double>* times)
-    : observers_(observers), times_(times), part_(frame) {
+PassingOn::PassingOn(const Observers& observers, const result::Result& frame, std::optional<WantedRows> wanted)
+    : observers_(observers), wanted_(std::move(wanted)), part_(frame) {
   known_.least.assign(frame.states.size(), std::numeric_limits<double>::infinity());
   known_.greatest.assign(frame.states.size(), -std::numeric_limits<double>::infinity());
 }
 
 void PassingOn::take(result::Trajectory rows, result::Events events) {
-  if (times_ != nullptr) rows = without_event_rows(rows);
+  if (wanted_) rows = without_event_rows(rows);
   pass(std::move(rows), std::move(events));
 }
 
 result::PassedOn PassingOn::end() {
-  pass(std::exchange(last_, {}), {});
+  const bool stays = last_.t.empty() || wanted_->last || known_.rows == 0 || wanted_->has(last_.t.back());
+  auto rows = std::exchange(last_, {});
+  pass(stays ? std::move(rows) : result::Trajectory(), {});
   return std::move(known_);
 }
 
@@ -56,7 +57,7 @@ result::Trajectory PassingOn::without_event_rows(const result::Trajectory& rows)
   for (std::size_t row = 0; row < rows.t.size(); ++row) kept.append(rows, row);
   if (kept.t.empty()) return kept;
   last_.append(kept, kept.t.size() - 1);
-  leave_out_event_rows(*times_, kept);
+  leave_out_event_rows({wanted_->times, true}, kept);
   std::vector<std::size_t> all_but_last(kept.t.size() - 1);
   std::iota(all_but_last.begin(), all_but_last.end(), std::size_t{0});
   kept.keep(all_but_last);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "saltus/pipeline/simulate.hpp"
+#include "saltus/pipeline/simulate/output_rows_internal.hpp"
 #include "saltus/result/result.hpp"
 
 namespace saltus::pipeline {
@@ -14,8 +16,9 @@ namespace saltus::pipeline {
 class PassingOn {
  public:
   /// @param frame  a result with the names of its columns
-  /// @param times  of OutputTimes, where no rows are wanted at events; they must outlive this, as the observers must
-  PassingOn(const Observers& observers, const result::Result& frame, const std::vector<double>* times);
+  /// @param observers  must outlive this
+  /// @param wanted     where no rows are wanted at events
+  PassingOn(const Observers& observers, const result::Result& frame, std::optional<WantedRows> wanted);
 
   void take(result::Trajectory rows, result::Events events);
   /// Returns the last row, which is known as such only now; then what is known of all.
@@ -27,7 +30,7 @@ class PassingOn {
   [[nodiscard]] result::Trajectory without_event_rows(const result::Trajectory& rows);
 
   const Observers& observers_;
-  const std::vector<double>* times_;
+  std::optional<WantedRows> wanted_;
   result::Result part_;
   result::PassedOn known_;
   result::Trajectory last_;  ///< without rows at events: the last one so far, of which it is not known whether it stays

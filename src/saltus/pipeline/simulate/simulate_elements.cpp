@@ -118,7 +118,7 @@ Expected<result::Result> simulate_elements(const Simulation& asked) {
   if (options.continuous) {
     result.continuous = continuous(result.trajectory, system, options, std::move(run->solution));
   }
-  if (!options.event_rows) leave_out_event_rows(asked.times, result.trajectory);
+  if (!has_event_rows(options)) leave_out_event_rows(wanted_rows(options.output, asked.times), result.trajectory);
   result.statistics.wall_seconds = stopwatch.seconds();
   return result;
 }

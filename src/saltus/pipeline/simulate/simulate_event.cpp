@@ -57,7 +57,9 @@ class Trajectories {
     std::optional<PassingOn> passing;
     event_integrator::TakeRecorded take;
     if (passes_on(asked_)) {
-      passing.emplace(asked_.observers, asked_.frame, asked_.options.event_rows ? nullptr : &asked_.times);
+      std::optional<WantedRows> wanted;
+      if (!has_event_rows(asked_.options)) wanted = wanted_rows(asked_.options.output, asked_.times);
+      passing.emplace(asked_.observers, asked_.frame, std::move(wanted));
       take = [&](result::Trajectory rows, result::Events events) { passing->take(std::move(rows), std::move(events)); };
     }
     auto run = event_integrator::integrate(kernel_, options_, observer, take);
@@ -70,7 +72,9 @@ class Trajectories {
       result.continuous = continuous(result.trajectory, of_it, kernel_, std::move(run.pieces));
     }
     if (passing) result.passed_on = passing->end();
-    if (!asked_.options.event_rows) leave_out_event_rows(asked_.times, result.trajectory);
+    if (!has_event_rows(asked_.options)) {
+      leave_out_event_rows(wanted_rows(asked_.options.output, asked_.times), result.trajectory);
+    }
     result.statistics.wall_seconds = watch_.seconds();
     watch_ = {};
     return followed;

@@ -161,14 +161,14 @@ Expected<result::Result> simulate_frozen(const Simulation& asked) {
   run->switching_functions = to_physical_time(model::layout_of(made), *made.freezing, standing, *run);
   if (auto error = compare_impacts(system, *run)) return tl::unexpected(*error);
   std::set<double> event_times;
-  const bool has_event_rows = options.event_rows || options.continuous;
-  for (std::size_t i = 0; has_event_rows && i < run->events.size(); ++i) event_times.insert(run->events.t(i));
+  const bool with_event_rows = has_event_rows(options) || options.continuous;
+  for (std::size_t i = 0; with_event_rows && i < run->events.size(); ++i) event_times.insert(run->events.t(i));
   put_on_times(asked.times, until, event_times, run->trajectory);
   if (options.continuous) {
     run->continuous = continuous(rows_at_events(run->trajectory), system, options, nullptr);
   }
-  if (!options.event_rows) leave_out_event_rows(asked.times, run->trajectory);
   run->final.t = run->trajectory.t.back();
+  if (!has_event_rows(options)) leave_out_event_rows(wanted_rows(options.output, asked.times), run->trajectory);
   return run;
 }
 

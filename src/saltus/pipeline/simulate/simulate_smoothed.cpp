@@ -94,7 +94,7 @@ Expected<result::Result> simulate_smoothed(const Simulation& asked, KernelStore&
                          [regularisation](auto& rows) { restate_rows(*regularisation, rows); }};
     result.continuous = continuous(result.trajectory, of_it, kept->kernel, std::move(run.pieces));
   }
-  if (!options.event_rows) leave_out_event_rows(asked.times, result.trajectory);
+  if (!has_event_rows(options)) leave_out_event_rows(wanted_rows(options.output, asked.times), result.trajectory);
   result.statistics.wall_seconds = watch.seconds();
   kernels.give_back(std::move(*kept));
   return result;
