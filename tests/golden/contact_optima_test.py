@@ -272,7 +272,7 @@ terminal_cost = "x^2"
     def test_turns_of_a_slip_and_impulses_are_told(self):
         """A block on a spring with friction turns twice before it sticks, and a ball's impact has its impulse in its row."""
         spring = (BALL.replace("x = 0\nz = 1\nvx = 4", "x = 2\nz = 0\nvx = 0").replace('"10*z"', '"10*z + 2.5*x^2"')
-                  .replace("friction = 0.3", "friction = 0.2").replace("until = 2\noutput = { times = [0.25, 1.0] }", "until = 4"))
+                  .replace("friction = 0.3", "friction = 0.2").replace("until = 2\noutput = { times = [0.25, 1.0], events = true }", "until = 4"))
         self.run_tool("simulate", self.write("s.toml", spring), "--out", "e.json", code=0)
         self.run_tool("simulate", "s.toml", "--method", "fesd", "--out", "f.json", code=0)
         events, frozen = (json.loads((self.folder / f).read_text())["events"] for f in ("e.json", "f.json"))

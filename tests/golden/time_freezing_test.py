@@ -8,7 +8,7 @@ import tool
 
 HEAD = "[model]\nname = 'm'\n"
 
-BALL = contacts_test.BALL.replace("\"mu\"", "0.3") + "output = { times = [0.25, 1.0] }\n"
+BALL = contacts_test.BALL.replace("\"mu\"", "0.3") + "output = { times = [0.25, 1.0], events = true }\n"
 
 # A sloped, curved gap, and a mass matrix that is neither diagonal nor constant.
 BOWL = HEAD + """[states]
