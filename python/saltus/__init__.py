@@ -9,14 +9,17 @@
 
 from __future__ import annotations
 
+import contextlib as _contextlib
 import pathlib as _pathlib
+import sys as _sys
 
 from . import _libraries
 
 _libraries.load()
 
 from . import _core  # noqa: E402
-from ._errors import ModelError, ModelWarning, Stopped  # noqa: E402
+from . import _casadi, _sympy  # noqa: E402, F401  (they say how expressions of these packages are read)
+from ._errors import ModelError, ModelWarning  # noqa: E402
 
 _shared = _pathlib.Path(__file__).parent / "share"
 if _shared.is_dir():
@@ -58,9 +61,15 @@ from ._functions import (  # noqa: E402
     tanh,
 )
 from ._model import Model  # noqa: E402
+from ._mpcc import Mpcc, mpcc  # noqa: E402
 from ._outcome import Final, Sensitivities, Status  # noqa: E402
-from ._result import Result, load  # noqa: E402
+from ._result import Result, Stopped, load  # noqa: E402
 from ._sweep import Sweep  # noqa: E402
+
+with _contextlib.suppress(AttributeError, KeyError):
+    # TAB behind r.final[" asks for an attribute, which IPython does only where it knows that this has no effect.
+    _policies = _sys.modules["IPython.core.guarded_eval"].EVALUATION_POLICIES
+    _policies["limited"].allowed_getattr |= {Model, Result}
 
 del annotations  # is no word of the package
 __version__: str = _core.version
@@ -77,6 +86,7 @@ __all__ = [
     "Model",
     "ModelError",
     "ModelWarning",
+    "Mpcc",
     "Result",
     "Status",
     "Stopped",
@@ -88,6 +98,7 @@ __all__ = [
     "diff",
     "load",
     "models",
+    "mpcc",
     "order",
     "sin",
     "cos",

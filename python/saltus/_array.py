@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import typing
 
 import numpy as np
@@ -26,6 +27,8 @@ class Array(np.ndarray[typing.Any, np.dtype[typing.Any]]):
     __array_priority__ = 2000
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: typing.Any, **kwargs: typing.Any) -> typing.Any:
+        if ufunc is np.matmul and len(inputs) == 2 and is_sparse(inputs[1]):
+            return (Sparse(inputs[1]).T @ inputs[0].T).T
         plain = [_plain(value) for value in inputs]
         if kwargs.get("out") is not None:
             kwargs["out"] = tuple(_plain(value) for value in kwargs["out"])
@@ -44,6 +47,8 @@ class Array(np.ndarray[typing.Any, np.dtype[typing.Any]]):
     def __array_function__(
         self, func: typing.Any, types: typing.Any, args: typing.Any, kwargs: typing.Any
     ) -> typing.Any:
+        if func is np.ravel and sys._getframe(2).f_globals.get("__name__", "").startswith("scipy.sparse"):
+            raise TypeError("a matrix of scipy.sparse cannot multiply expressions: write saltus.array(A) @ X")
         if func is np.where and len(args) == 3 and isinstance(args[0], Array):
             return own(np.frompyfunc(_INSTEAD["where"], 3, 1)(*map(_plain, args)))
         return own(super().__array_function__(func, types, args, kwargs))
@@ -71,6 +76,73 @@ def array(entries: typing.Any) -> Array:
     >>> saltus.array([x, v]) <= saltus.array([1, x])
     Array([x<=1, v<=x], dtype=object)
     """
-    if type(entries).__module__.startswith("casadi"):
-        entries = [entries[i] for i in range(entries.numel())]
-    return np.array(entries, dtype=object).view(Array)
+    if is_sparse(entries):
+        return Sparse(entries)  # type: ignore[return-value]
+    found = entries_of(entries)
+    return np.array(entries if found is None else found, dtype=object).view(Array)
+
+
+def entries_of(matrix: typing.Any) -> typing.Any:
+    """Entries of a matrix of another package as lists, of a column as one list; None of what is no such matrix."""
+    if is_sparse(matrix):
+        return matrix.toarray().tolist()
+    package = type(matrix).__module__.partition(".")[0]
+    if package == "casadi" and hasattr(matrix, "numel"):
+        rows, columns = matrix.shape
+        if columns == 1:
+            return [matrix[i] for i in range(rows)]
+        return [[matrix[i, j] for j in range(columns)] for i in range(rows)]
+    if package == "sympy" and hasattr(matrix, "tolist"):
+        rows = matrix.tolist()
+        return [row[0] for row in rows] if matrix.shape[1] == 1 else rows
+    return None
+
+
+def is_sparse(matrix: typing.Any) -> bool:
+    """Whether it is a matrix of scipy.sparse."""
+    return type(matrix).__module__.startswith("scipy.sparse") and hasattr(matrix, "tocoo")
+
+
+class Sparse:
+    """A matrix of scipy.sparse that multiplies arrays of expressions: only its entries are in the sums.
+
+    >>> import scipy.sparse  # doctest: +SKIP
+    >>> saltus.array(scipy.sparse.eye(2)) @ saltus.Builder("m").states("x", [0, 1])  # doctest: +SKIP
+    Array([x1, x2], dtype=object)
+    """
+
+    def __init__(self, matrix: typing.Any) -> None:
+        self.matrix = matrix.tocsr()
+        self.shape: tuple[int, ...] = self.matrix.shape
+
+    @property
+    def T(self) -> Sparse:
+        """The transpose."""
+        return Sparse(self.matrix.T)
+
+    def __matmul__(self, other: typing.Any) -> typing.Any:
+        right = np.asarray(other, dtype=object)
+        if right.ndim not in (1, 2) or right.shape[0] != self.shape[1]:
+            raise ValueError(f"a sparse matrix of shape {self.shape} times an array of shape {right.shape}: expected {self.shape[1]} rows")
+        columns = right.reshape(right.shape[0], -1)
+        made = np.empty((self.shape[0], columns.shape[1]), dtype=object)
+        begin, places, values = self.matrix.indptr, self.matrix.indices, self.matrix.data
+        for i in range(self.shape[0]):
+            row = range(begin[i], begin[i + 1])
+            for j in range(columns.shape[1]):
+                made[i, j] = _sum(_times(values[k], columns[places[k], j]) for k in row)
+        return made.reshape(self.shape[0], *right.shape[1:]).view(Array)
+
+    def __repr__(self) -> str:
+        return f"<saltus matrix of shape {self.shape}, {self.matrix.nnz} entries>"
+
+
+def _times(factor: typing.Any, entry: typing.Any) -> typing.Any:
+    return entry if factor == 1 else -entry if factor == -1 else float(factor) * entry
+
+
+def _sum(terms: typing.Iterable[typing.Any]) -> typing.Any:
+    total: typing.Any = None
+    for term in terms:
+        total = term if total is None else total + term
+    return 0 if total is None else total

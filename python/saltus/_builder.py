@@ -2,23 +2,48 @@
 
 from __future__ import annotations
 
+import functools
 import html
 import typing
 
 import numpy as np
 
 from . import _array
-from ._checks import one_of, points
+from ._entries import input_entry, one_of, points
 from ._errors import ModelError
 from ._expression import Expression, Operand, called, number, refuse
-from ._model import Model
+from ._model import Model, Start
 from ._result import Result
-from ._settings import states_the_problem
+from ._settings import Settings, is_result, states_the_problem
+from ._signature import with_options
 from ._statement import Rates, given
 from ._structure import Structure
 from ._sweep import Sweep
 
+if typing.TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import OptimizeOptions, SweepCall
+
 Entries = typing.Union[np.ndarray[typing.Any, typing.Any], list[typing.Any], tuple[typing.Any, ...]]
+
+
+Arguments = typing.ParamSpec("Arguments")
+Returned = typing.TypeVar("Returned")
+
+
+def of_model(
+    method: typing.Callable[typing.Concatenate[Model, Arguments], Returned],
+) -> typing.Callable[typing.Concatenate[Builder, Arguments], Returned]:
+    """The method of the model that a builder states."""
+
+    @functools.wraps(method)
+    def of_builder(self: Builder, *arguments: Arguments.args, **keywords: Arguments.kwargs) -> Returned:
+        model = self.model()
+        self._need_end(arguments[0] if arguments else keywords.get("until"), keywords)
+        return method(model, *arguments, **keywords)
+
+    return typing.cast(typing.Any, of_builder)  # type: ignore[no-any-return]
 
 
 class Builder(Structure):
@@ -89,16 +114,63 @@ class Builder(Structure):
         beside = {"lower": lower, "upper": upper, "free": free or None, "unit": unit, "label": label}
         return self._declare("states", name, self._value("initial", initial, beside))
 
-    def states(self, name: str, initial: typing.Sequence[Operand]) -> _array.Array:
-        """Several states as an array, NAME1, NAME2, …, with a list of initial values.
+    def states(self, name: str, initial: typing.Any, **beside: typing.Any) -> _array.Array:
+        """Several states as an array of the shape of the initial values: NAME1, NAME2, …; of two axes NAME1_1, NAME1_2, ….
+
+        What is given beside them, as to :meth:`state`, is one value for all of them, or an array.
 
         >>> saltus.Builder("m").states("x", [1, 0, 0])
         Array([x1, x2, x3], dtype=object)
+        >>> saltus.Builder("m").states("T", np.zeros((2, 2)), unit="K")
+        Array([[T1_1, T1_2],
+               [T2_1, T2_2]], dtype=object)
         """
-        if np.ndim(initial) != 1:
-            raise refuse(f"{initial!r} is no list of initial values", f'm.states("{name}", [0] * 3)')
+        return self._array(self.state, name, initial, beside, "initial values", "[0] * 3")
+
+    def parameters(self, name: str, values: typing.Any, **beside: typing.Any) -> _array.Array:
+        """Several parameters as an array, named as :meth:`states` are.
+
+        >>> m = saltus.Builder("m")
+        >>> k = m.parameters("k", [1, 2])
+        >>> k @ m.states("x", [1, 0])
+        k1*x1+k2*x2
+        """
+        return self._array(self.parameter, name, values, beside, "values", "[1, 2]")
+
+    def controls(self, name: str, initial: typing.Any, **beside: typing.Any) -> _array.Array:
+        """Several controls as an array, named as :meth:`states` are.
+
+        >>> saltus.Builder("m").controls("u", [0, 0], lower=-1, upper=[1, 2])
+        Array([u1, u2], dtype=object)
+        """
+        return self._array(self.control, name, initial, beside, "initial values", "[0] * 3")
+
+    def _array(
+        self,
+        declare: typing.Callable[..., Expression],
+        name: str,
+        values: typing.Any,
+        beside: dict[str, typing.Any],
+        what: str,
+        example: str,
+    ) -> _array.Array:
+        shape = np.shape(values)
+        if len(shape) not in (1, 2) or 0 in shape:
+            raise refuse(
+                f"{values!r} is no list of {what}, nor an array of one or two axes", f'm.{declare.__name__}s("{name}", {example})'
+            )
+        given = np.array(values, dtype=object)
+        try:
+            more = {key: np.broadcast_to(np.array(value, dtype=object), shape) for key, value in beside.items()}
+        except ValueError:
+            wrong = next(key for key, value in beside.items() if np.shape(value) not in ((), shape))
+            raise refuse(f"{wrong} has the shape {np.shape(beside[wrong])}", f"expected one value, or the shape {shape}") from None
+        made = np.empty(shape, dtype=object)
         with self._all_or_nothing():
-            return _array.array([self.state(f"{name}{i + 1}", value) for i, value in enumerate(initial)])
+            for place in np.ndindex(*shape):
+                of_one = {key: value[place] for key, value in more.items()}
+                made[place] = declare(name + "_".join(str(i + 1) for i in place), given[place], **of_one)
+        return made.view(_array.Array)
 
     def control(
         self,
@@ -147,21 +219,21 @@ class Builder(Structure):
     def table(
         self,
         name: str,
-        x: typing.Sequence[float] | None = None,
-        y: typing.Sequence[float] | None = None,
+        x: typing.Any = None,
+        y: typing.Any = None,
         kind: str = "linear",
         *,
         file: str | None = None,
     ) -> typing.Callable[[Operand], typing.Any]:
-        """A function through points, "linear" or "cubic" between them, constant outside. The points are two lists, or
-        the two columns of a `file`.
+        """A function through points, "linear" or "cubic" between them, constant outside. The points are two lists,
+        one array or DataFrame of two columns, or those of a `file`.
 
         >>> m = saltus.Builder("m")
         >>> road = m.table("road", [0, 1, 2], [0, 0.1, 0])
         >>> road(m.state("s", 0))
         road(s)
         """
-        if (file is None) == (x is None) or (x is None) != (y is None):
+        if (file is None) == (x is None) or x is None and y is not None:
             raise refuse(f"the points of the table '{name}' are not clear", 'give x and y, or file="points.csv"')
         one_of("kind", kind, "linear", "cubic")
         stated = {"file": file} if file is not None else points(name, x, y, kind)
@@ -220,8 +292,8 @@ class Builder(Structure):
         self._declare("outputs", name, self._value("value", value, {"unit": unit, "label": label}))
 
     def input(self, control: Expression | str, value: Operand) -> None:
-        """A control during simulations: an expression of time and parameters, or piecewise constant of a file,
-        ``{"file": "u.csv"}``, whose columns are t and the control.
+        """A control during simulations: an expression of time and parameters; or piecewise constant data, ``(times, values)``,
+        a DataFrame, an earlier result, or a file, ``{"file": "u.csv"}``, whose columns are t and the control.
 
         >>> m = saltus.Builder("cart")
         >>> x, u = m.state("x", 0), m.control("u")
@@ -233,7 +305,7 @@ class Builder(Structure):
         name = self._name_in("controls", control)
         if name in self._inputs:
             raise refuse(f"the control '{name}' has two inputs", "add them: m.input(u, a + b)")
-        self._inputs[name] = self._own_all(value) if isinstance(value, typing.Mapping) else self._own(value)
+        self._inputs[name] = input_entry(name, value, self._own)
 
     def event(
         self, when: Expression, *, name: str | None = None, direction: str | None = None, stop: bool = False
@@ -250,7 +322,7 @@ class Builder(Structure):
         ('stopped_by_event', <user of low at t = 3>)
         """
         one_of("direction", direction, "up", "down", "both")
-        entry = {"when": self._own(when), "name": name, "direction": direction, "stop": stop or None}
+        entry = {"when": self._own(when), "name": self._named(name), "direction": direction, "stop": stop or None}
         self._lists["events"].append(given(entry))
 
     def mode(self, when: Expression, rates: Rates, *, group: str | None = None) -> None:
@@ -303,6 +375,8 @@ class Builder(Structure):
         >>> m.model()
         <saltus.Model 'decay'>
         """
+        if not self._parts["states"] and not self._lists["jumps"]:
+            raise refuse("the model has no states", 'state one: x = m.state("x", 0), and its rate: m.rate(x, -x)')
         moved = {name for entry in self._lists["modes"] for name in entry["dynamics"]}
         moved.update(self._mechanics.get("positions", []), self._mechanics.get("velocities", []))
         for name in self._parts["states"]:
@@ -310,19 +384,27 @@ class Builder(Structure):
                 raise refuse(f"the state '{name}' has no rate", f"state it: m.rate({name}, …)")
         return Model.from_text(self.to_toml(), f"<{self.name}>")
 
-    def simulate(self, until: float | None = None, **options: typing.Any) -> Result:
-        """:meth:`Model.simulate` of :meth:`model`.
+    simulate = of_model(Model.simulate)
+    compare = of_model(Model.compare)
+    order = of_model(Model.order)
 
-        >>> m = saltus.Builder("decay")
-        >>> x = m.state("x", 1)
-        >>> m.rate(x, -x)
-        >>> round(m.simulate(until=1).final["x"], 6)
-        0.367879
-        """
-        self._need_end(until, options)
-        return self.model().simulate(until, **options)
+    @typing.overload
+    def sweep(self, over: Settings | None = None, **keywords: Unpack[SweepCall]) -> Sweep: ...
+    @typing.overload
+    def sweep(self, over: Settings | None = None, **keywords: typing.Any) -> Sweep: ...
+    @functools.wraps(Model.sweep)
+    def sweep(self, over: Settings | None = None, **keywords: typing.Any) -> Sweep:
+        return self.model().sweep(over, **keywords)
 
-    def optimize(self, **options: typing.Any) -> Result:
+    @with_options("optimize")
+    def optimize(
+        self,
+        *,
+        set: Settings | None = None,
+        start: Start | None = None,
+        progress: bool = False,
+        **options: Unpack[OptimizeOptions],
+    ) -> Result:
         """:meth:`Model.optimize` of :meth:`model`. What is to be optimised is said here, or by :meth:`optimal_control`.
 
         >>> m = saltus.Builder("car")
@@ -333,51 +415,21 @@ class Builder(Structure):
         0.5
         """
         known = {*self._parts["states"], *self._parts["parameters"]}
-        problem = {name: options.pop(name) for name in list(options) if states_the_problem(name) and name not in known}
+        stated: dict[str, typing.Any] = {**options}
+        problem = {
+            name: stated.pop(name)
+            for name in list(stated)
+            if states_the_problem(name) and name not in known and not is_result(stated[name])
+        }
         if not self._optimize and not problem:
             raise refuse("no problem of optimal control is stated", "state it: m.optimal_control(horizon=…, …)")
         before = self._optimize
-        self._optimize = {**before, **self._keys(problem)}
+        self._optimize = {**before, **self._problem(problem)}
         try:
             model = self.model()
         finally:
             self._optimize = before
-        return model.optimize(**options)
-
-    def sweep(self, over: typing.Mapping[str, typing.Any] | None = None, **arguments: typing.Any) -> Sweep:
-        """:meth:`Model.sweep` of :meth:`model`.
-
-        >>> m = saltus.Builder("decay")
-        >>> x = m.state("x", 1)
-        >>> m.rate(x, -x)
-        >>> m.sweep(x=[1, 2], until=1)["x"].round(6).tolist()
-        [0.367879, 0.735759]
-        """
-        return self.model().sweep(over, **arguments)
-
-    def compare(self, until: float | None = None, **options: typing.Any) -> Result:
-        """:meth:`Model.compare` of :meth:`model`.
-
-        >>> m = saltus.Builder("decay")
-        >>> x = m.state("x", 1)
-        >>> m.rate(x, -x)
-        >>> m.compare(until=1).comparison["runs"][0]["method"]
-        'event'
-        """
-        self._need_end(until, options)
-        return self.model().compare(until, **options)
-
-    def order(self, until: float | None = None, **options: typing.Any) -> Result:
-        """:meth:`Model.order` of :meth:`model`.
-
-        >>> m = saltus.Builder("decay")
-        >>> x = m.state("x", 1)
-        >>> m.rate(x, -x)
-        >>> m.order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]).order["series"][0]["stages"]
-        2
-        """
-        self._need_end(until, options)
-        return self.model().order(until, **options)
+        return model.optimize(set=set, start=start, progress=progress, **stated)
 
     def check(self) -> str:
         """:meth:`Model.check` of :meth:`model`.
@@ -390,7 +442,7 @@ class Builder(Structure):
         """
         return self.model().check()
 
-    def _need_end(self, until: float | None, options: typing.Mapping[str, typing.Any]) -> None:
+    def _need_end(self, until: object, options: typing.Mapping[str, typing.Any]) -> None:
         if until is None and "until" not in self._simulate and "simulate.until" not in (options.get("set") or {}):
             raise refuse("no end time", "say how long: m.simulate(until=10), or m.simulation(until=10) for all runs")
 

@@ -9,11 +9,30 @@ import numpy as np
 
 from ._shape import as_drawn, broken_at_jumps, corners, is_stepwise, sliding_spans, thinned
 
-if typing.TYPE_CHECKING:
-    from ._events import Event
-    from ._model import Model
-    from ._result import Result
-    from ._sweep import Sweep
+from ._events import Event
+from ._recorded import Recorded
+
+
+class Model(typing.Protocol):
+    """What a card shows of a model."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def description(self) -> str: ...
+    @property
+    def states(self) -> dict[str, float]: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    def equations(self, *, latex: bool = False) -> list[tuple[str, str, str]]: ...
+
+
+class Sweep(typing.Protocol):
+    """What a card shows of a sweep."""
+
+    @property
+    def table(self) -> dict[str, typing.Any]: ...
+
 
 #: Of a picture, and of a panel of it, with room above for its caption.
 WIDTH, HEIGHT, LEFT, ABOVE = 520, 56, 46, 18
@@ -26,7 +45,7 @@ MOST_EQUATIONS = 40
 MOST_COLUMNS = 12
 
 
-def card(r: Result) -> str:
+def card(r: Recorded) -> str:
     """At most some tens of kilobytes of HTML."""
     colour = "#1b7f4b" if r.status.done else "#b3261e"
     message = f"<div style='color:{colour}'>{html.escape(r.status.message)}</div>" if r.status.message else ""
@@ -34,15 +53,36 @@ def card(r: Result) -> str:
         "<div style='font:13px/1.45 system-ui,sans-serif;max-width:580px'>"
         f"<b>{html.escape(r.model)}</b> &nbsp; {html.escape(r.method)} &nbsp; "
         f"<span style='color:{colour}'>{html.escape(str(r.status))}</span>{r._reached(6)} &nbsp; "
-        f"{r._counts}{message}{_picture(r)}{_events(r)}</div>"
+        f"{r._counts}{message}{_optimum(r)}{_picture(r)}{_events(r)}</div>"
     )
+
+
+#: What stands before a sentence, and its colour.
+_MARKS = {"good": ("✓", "#1b7f4b"), "neutral": ("·", "inherit"), "bad": ("✗", "#b3261e")}
+
+
+def _optimum(r: Recorded) -> str:
+    """Of an optimum its objective, and what the certificate and the simulation that verifies it say."""
+    found = r.optimization
+    if found is None:
+        return ""
+    chosen = "".join(f", {html.escape(name)} = {value:.8g}" for name, value in found.get("parameters", {}).items())
+    lines = [f"<div>objective <b>{found['objective']:.10g}</b>, horizon {found['horizon']:.8g}{chosen}</div>"]
+    about = ""
+    for kind, tone, text in r._run.said():
+        if kind != about:
+            lines.append(f"<div style='opacity:0.7'>{kind}</div>")
+            about = kind
+        mark, colour = _MARKS[tone]
+        lines.append(f"<div><span style='color:{colour}'>{mark}</span> {html.escape(text)}</div>")
+    return "".join(lines)
 
 
 def table_card(title: str, text: str) -> str:
     """What the tool prints, below a title."""
     return (
         "<div style='font:13px/1.45 system-ui,sans-serif;max-width:900px'>"
-        f"<b>{html.escape(title)}</b><pre style='overflow-x:auto'>{html.escape(text.rstrip())}</pre></div>"
+        f"<b>{html.escape(title)}</b><pre style='overflow-x:auto;font-family:monospace'>{html.escape(text.rstrip())}</pre></div>"
     )
 
 
@@ -89,7 +129,7 @@ def _values(title: str, values: dict[str, float]) -> str:
     return f"<div>{title}: {shown}{more}</div>"
 
 
-def _shown(r: Result) -> tuple[list[str], int]:
+def _shown(r: Recorded) -> tuple[list[str], int]:
     """The first columns, at least half of them outputs if there are so many, and how many others there are."""
     moved, outputs = [*r._run.states_in_rows, *r.controls], r.output_names
     room = max(MOST_ROWS // 2, MOST_ROWS - len(outputs))
@@ -97,7 +137,7 @@ def _shown(r: Result) -> tuple[list[str], int]:
     return shown, len(moved) + len(outputs) - len(shown)
 
 
-def _picture(r: Result) -> str:
+def _picture(r: Recorded) -> str:
     names, left_out = _shown(r)
     if len(r.t) < 2 or not names:
         return ""
@@ -156,7 +196,7 @@ def _joined(spans: list[tuple[float, float]]) -> list[tuple[float, float]]:
     return joined
 
 
-def _curve(r: Result, name: str, across: typing.Callable[[typing.Any], typing.Any], top: int) -> str:
+def _curve(r: Recorded, name: str, across: typing.Callable[[typing.Any], typing.Any], top: int) -> str:
     stepwise = is_stepwise(r.t, r[name])
     t, y = corners(r.t, r[name].astype(float)) if stepwise else broken_at_jumps(r, r.t, r[name])
     t, y = thinned(t, y, MOST_POINTS * (1 + stepwise))
@@ -169,8 +209,8 @@ def _curve(r: Result, name: str, across: typing.Callable[[typing.Any], typing.An
     return (
         f"<path class='curve' d='{path}' fill='none' stroke='#1f77b4' stroke-width='1.3' stroke-linecap='round'/>"
         f"{_caption(r, name, top - 5)}"
-        f"<text x='{LEFT - 3}' y='{top + 9}' text-anchor='end'>{high:.3g}</text>"
-        f"<text x='{LEFT - 3}' y='{top + HEIGHT}' text-anchor='end'>{low:.3g}</text>"
+        f"<text x='{LEFT - 3}' y='{top + 9}' text-anchor='end'>{high + 0.0:.3g}</text>"
+        f"<text x='{LEFT - 3}' y='{top + HEIGHT}' text-anchor='end'>{low + 0.0:.3g}</text>"
     )
 
 
@@ -195,7 +235,7 @@ def _path(across: list[str], up: list[str]) -> str:
     return "".join(parts)
 
 
-def _caption(r: Result, name: str, y: int) -> str:
+def _caption(r: Recorded, name: str, y: int) -> str:
     """Above a panel: the name, and the unit and label that the model gives."""
     caption = r._captions.get(name, {})
     unit, label = caption.get("unit", ""), caption.get("label", "")
@@ -212,7 +252,7 @@ def _short(text: str, most: int = 50) -> str:
     return html.escape(text if len(text) <= most else text[: most - 1] + "…")
 
 
-def _events(r: Result) -> str:
+def _events(r: Recorded) -> str:
     if r._lost_events or not r.events:
         return ""
     rows = "".join(

@@ -6,7 +6,7 @@ import functools
 import operator
 import typing
 
-from ._expression import Expression, call, expression, number, refuse
+from ._expression import Expression, call, expression, number, reads, refuse
 from ._functions import if_
 
 
@@ -84,3 +84,6 @@ def _operation(value: typing.Any, name: str | None, operands: list[Expression]) 
 def _number(made: Expression) -> Expression:
     """A condition that is computed with is 1 or 0."""
     return if_(made, 1, 0) if made.is_condition else number(made)
+
+
+reads("casadi", of_casadi)

@@ -7,7 +7,13 @@ import typing
 from . import _core
 from ._model import Model
 from ._result import Result
-from ._settings import Value
+from ._settings import Settings
+from ._signature import with_options
+
+if typing.TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import OrderOptions, SimulateOptions
 
 
 def models() -> list[str]:
@@ -35,23 +41,35 @@ def catalogue(name: str, **sizes: int) -> Model:
     return Model(_core.find_catalogue(name))
 
 
-def compare(model: Model, until: float | None = None, **options: Value) -> Result:
+@with_options("simulate")
+def compare(
+    model: Model, until: float | None = None, *, set: Settings | None = None, **options: Unpack[SimulateOptions]
+) -> Result:
     """:meth:`Model.compare` as a function.
 
     >>> saltus.compare(saltus.catalogue("stick-slip"), until=1).comparison["runs"][0]["method"]
     'event'
     """
-    return _stated(model).compare(until, **options)
+    return _stated(model).compare(until, set=set, **options)
 
 
-def order(model: Model, until: float | None = None, **options: Value) -> Result:
+@with_options("simulate")
+def order(
+    model: Model,
+    until: float | None = None,
+    *,
+    schemes: typing.Iterable[tuple[str, int]] = (),
+    steps: typing.Iterable[int] = (),
+    set: Settings | None = None,
+    **options: Unpack[OrderOptions],
+) -> Result:
     """:meth:`Model.order` as a function.
 
     >>> study = saltus.order(saltus.catalogue("stick-slip"), until=1, schemes=[("radau_iia", 2)], steps=[10, 20])
     >>> study.order["series"][0]["stages"]
     2
     """
-    return _stated(model).order(until, **options)
+    return _stated(model).order(until, schemes=schemes, steps=steps, set=set, **options)
 
 
 def _stated(model: typing.Any) -> Model:

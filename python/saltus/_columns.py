@@ -140,6 +140,9 @@ class Columns:
         found: Array = self.t if index is None else getattr(self._run, block)[:, index]
         return found
 
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self._columns)
+
     @functools.cached_property
     def _columns(self) -> dict[str, tuple[str, int | None]]:
         columns: dict[str, tuple[str, int | None]] = {"t": ("t", None)}

@@ -8,7 +8,7 @@ import typing
 
 from . import _core
 from ._expression import refuse
-from ._result import Result, load
+from ._result import Result, as_result
 
 
 class NumberDifference(typing.NamedTuple):
@@ -73,22 +73,4 @@ def diff(
     for name, value in ("rtol", rtol), ("atol", atol):
         if value is not None and not (math.isfinite(value) and value >= 0):
             raise refuse(f"{name}={value!r}: expected a number that is not negative", f"e.g. {name}=1e-6")
-    return Difference(_core.difference(_result(a).whole._run, _result(b).whole._run, rtol, atol))
-
-
-def laid_over(over: typing.Any) -> tuple[list[str], list[_core.Run]]:
-    """Names and runs of what a page lays over its own: a result or file, several, or a dict of them by their names."""
-    several = [over] if isinstance(over, (Result, str, os.PathLike)) else over
-    if isinstance(several, typing.Mapping):
-        return [str(name) for name in several], [_result(one).whole._run for one in several.values()]
-    runs = [_result(one).whole._run for one in several]
-    names = [f"result {i}" if isinstance(one, Result) else os.path.basename(one) for i, one in enumerate(several, 2)]
-    return names, runs
-
-
-def _result(one: typing.Any) -> Result:
-    if isinstance(one, Result):
-        return one
-    if isinstance(one, (str, os.PathLike)):
-        return load(one)
-    raise refuse(f"{type(one).__name__}: expected a result, or the file of one", 'e.g. r, or "r.json"')
+    return Difference(_core.difference(as_result(a).whole._run, as_result(b).whole._run, rtol, atol))

@@ -1,16 +1,13 @@
-"""Exceptions and warnings."""
+"""Exceptions and warnings, and packages that are wanted for a part of this one only."""
 
 from __future__ import annotations
 
+import importlib
 import sys
 import typing
 import warnings
 
 from ._spelling import at_option, in_python, is_option, keywords
-
-if typing.TYPE_CHECKING:
-    from ._result import Result
-
 
 class ModelError(ValueError):
     """Bad input: a model, a setting or an option that states nothing, with its place and a remedy.
@@ -54,26 +51,6 @@ class ModelError(ValueError):
         return str(self.args[0])
 
 
-class Stopped(RuntimeError):
-    """Raised by :meth:`Result.require` for a run that stopped early, and by sweeps and optimisations whose workers ended
-    or cannot begin; ``result`` has what was computed.
-
-    >>> import saltus
-    >>> try:
-    ...     saltus.catalogue("stick-slip").simulate(until=5, max_steps=9).require()
-    ... except saltus.Stopped as stopped:
-    ...     print(stopped.result.status)
-    iteration_limit
-    """
-
-    def __init__(self, text: str, result: Result | None = None) -> None:
-        super().__init__(text, result)
-        self.result = result
-
-    def __str__(self) -> str:
-        return str(self.args[0])
-
-
 class ModelWarning(UserWarning):
     """What the tool prints as a warning: unused names, options without effect.
 
@@ -93,3 +70,11 @@ def warn(messages: typing.Iterable[str]) -> None:
         depth, frame = depth + 1, frame.f_back
     for message in messages:
         warnings.warn(in_python(message), ModelWarning, stacklevel=depth)
+
+
+def needed(package: str, extra: str) -> typing.Any:
+    """The package, or what to install."""
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        raise ImportError(f"this needs {package}: pip install 'saltus[{extra}]'") from error

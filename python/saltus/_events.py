@@ -7,12 +7,17 @@ import json
 import math
 import typing
 
+import numpy as np
+
 from . import _core
+from ._errors import needed
+from ._outcome import unknown
 
 Event = _core.Event
 Alternative = _core.Alternative
 Intersection = _core.Intersection
 Json = dict[str, typing.Any]
+Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 Event.__doc__ = """A change of mode, a jump, an impact, or an event of the user, at time ``t``.
 
@@ -54,12 +59,57 @@ _OF_INTERSECTION = "surfaces velocities alpha_before alpha_after".split()
 
 
 class Events(list[_core.Event]):
-    """The events of a run, in their order; a list that knows its table.
+    """The events of a run, in their order: a list that knows their times, those of one sort, and their table.
 
     >>> r = saltus.catalogue("stick-slip").simulate(until=10)
-    >>> [event.kind for event in r.events[:2]]
-    ['enter_sliding', 'leave_sliding']
+    >>> r.events.t.round(3), r.events["leave_sliding"]
+    (array([0.245, 4.932, 9.636]), [<leave_sliding of slip at t = 4.93219998>])
     """
+
+    @property
+    def t(self) -> Array:
+        """Times of all events, ascending, (events,).
+
+        >>> saltus.catalogue("bouncing-ball").simulate(until=5).events.t.round(4)
+        array([1.4286, 4.    ])
+        """
+        return np.array([event.t for event in self], dtype=float)
+
+    @property
+    def kind(self) -> list[str]:
+        """The kind of every event.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=5).events.kind
+        ['enter_sliding', 'leave_sliding']
+        """
+        return [event.kind for event in self]
+
+    @property
+    def name(self) -> list[str | None]:
+        """Names of jumps and of events of the user; None of others.
+
+        >>> saltus.catalogue("bouncing-ball").simulate(until=2).events.name
+        ['bounce']
+        """
+        return [event.name for event in self]
+
+    @property
+    def x(self) -> Array:
+        """States before every event, (events, n_x).
+
+        >>> saltus.catalogue("bouncing-ball").simulate(until=2).events.x[:, 1].round(6).tolist()
+        [-14.0]
+        """
+        return _rows([event.x for event in self])
+
+    @property
+    def x_after(self) -> Array:
+        """States after every event, (events, n_x).
+
+        >>> saltus.catalogue("bouncing-ball").simulate(until=2).events.x_after[:, 1].round(6).tolist()
+        [12.6]
+        """
+        return _rows([event.x_after for event in self])
 
     def table(self) -> typing.Any:
         """A table of pandas: a row for every event.
@@ -68,8 +118,6 @@ class Events(list[_core.Event]):
         >>> r.events.table()["kind"].tolist()[:2]
         ['enter_sliding', 'leave_sliding']
         """
-        from ._result import needed
-
         pandas = needed("pandas", "data")
         return pandas.DataFrame(
             {
@@ -83,20 +131,48 @@ class Events(list[_core.Event]):
             }
         )
 
+    @typing.overload
+    def __getitem__(self, which: typing.SupportsIndex) -> _core.Event: ...
+    @typing.overload
+    def __getitem__(self, which: slice | str) -> Events: ...
     def __getitem__(self, which: typing.Any) -> typing.Any:
-        """An event by its number, or several of them as a list of this kind.
+        """An event by its number; several of them by a slice, or by a kind, a name or a surface, as a list of this sort.
 
-        >>> saltus.catalogue("stick-slip").simulate(until=10).events[:1].table()["name"].tolist()
-        [None]
+        >>> events = saltus.catalogue("stick-slip").simulate(until=10).events
+        >>> events[:1].table()["name"].tolist(), events["enter_sliding"].t.round(3)
+        ([None], array([0.245, 9.636]))
         """
-        found = super().__getitem__(which)
-        return Events(found) if isinstance(which, slice) else found
+        if isinstance(which, str):
+            found = Events(event for event in self if which in _words_of(event))
+            if not found and which not in KINDS:
+                raise unknown(which, self._ipython_key_completions_(), "the list of events")
+            return found
+        one = super().__getitem__(which)
+        return Events(one) if isinstance(which, slice) else one
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(dict.fromkeys(word for event in self for word in _words_of(event)))
 
     def __reduce__(self) -> tuple[typing.Any, ...]:
         return _restored_events, (_stored(self),)
 
     def __copy__(self) -> Events:
         return Events(self)
+
+
+#: All kinds of events.
+KINDS = (
+    "start crossing enter_sliding leave_sliding change_sliding jump impact accumulation contact lift_off stick slip user"
+).split()
+
+
+def _words_of(event: _core.Event) -> list[str]:
+    """What an event may be called."""
+    return [word for word in (event.kind, event.name, *event.surfaces) if word]
+
+
+def _rows(states: list[Array]) -> Array:
+    return np.array(states) if states else np.empty((0, 0))
 
 
 def _stored(events: typing.Sequence[_core.Event]) -> list[Json]:

@@ -39,6 +39,8 @@ class Expression:
 
     __slots__ = ("text", "level", "is_condition", "owner", "height", "reach", "depth", "parts", "_part")
     __array_priority__ = 1000
+    #: SymPy leaves its operators to who has a higher one.
+    _op_priority = 1e6
 
     def __init__(self, text: str, level: int = PRIMARY, is_condition: bool = False, owner: Owner = None) -> None:
         self.text = text
@@ -116,9 +118,9 @@ class Expression:
     def __abs__(self) -> typing.Any:
         return call("abs", self)
 
-    if typing.TYPE_CHECKING:  # numpy calls functions of this package by their names; its annotations know this one only
-
-        def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: typing.Any, **how: typing.Any) -> typing.Any: ...
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: typing.Any, **how: typing.Any) -> typing.Any:
+        one = [_one(value).view(_array.Array) if isinstance(value, Expression) else value for value in inputs]
+        return getattr(ufunc, method)(*one, **how)
 
     # Conditions ----------------------------------------------------------------------------------------------------
 
@@ -187,16 +189,34 @@ class Expression:
         raise refuse(f"{self.text} is one number", "arrays of expressions: saltus.array([x, v])")
 
 
+#: What makes expressions of the objects of another package, by its name.
+_READERS: dict[str, typing.Callable[[typing.Any], Expression]] = {}
+
+
+def reads(package: str, reader: typing.Callable[[typing.Any], Expression]) -> None:
+    """Says how objects of a package become expressions."""
+    _READERS[package] = reader
+
+
+def _package_of(value: typing.Any) -> str:
+    module = type(value).__module__ or type(value).__base__.__module__  # functions x(t) of SymPy have none of their own
+    return module.partition(".")[0]
+
+
+def is_foreign(value: typing.Any) -> bool:
+    """Whether a value is an expression, or a matrix of some, of another package."""
+    return _package_of(value) in _READERS
+
+
 def expression(value: Operand) -> Expression:
     """A number as an expression."""
     if isinstance(value, Expression):
         return value
     if isinstance(value, np.ndarray) and value.ndim == 0:
         return expression(value.item())
-    if type(value).__module__.startswith("casadi"):
-        from ._casadi import of_casadi
-
-        return of_casadi(value)
+    reader = _READERS.get(_package_of(value))
+    if reader is not None:
+        return reader(value)
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, numbers.Real):
         raise refuse(f"expected a number or an expression, found {value!r}", _instead_of(value))
     if not isinstance(value, numbers.Integral) and not math.isfinite(value):
@@ -339,7 +359,7 @@ def _comparison(sign: str, left: Operand, right: Operand) -> Expression:
 
 def condition(value: Operand, message: str, remedy: str) -> Expression:
     """A condition, of CasADi too; else what is refused."""
-    made = expression(value) if type(value).__module__.startswith("casadi") else value
+    made = expression(value) if is_foreign(value) else value
     if isinstance(made, Expression) and made.is_condition:
         return made
     raise refuse(f"{message}, found {value!r}", remedy)

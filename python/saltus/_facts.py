@@ -9,6 +9,63 @@ import typing
 import numpy as np
 
 from ._columns import Array, Columns
+from ._expression import refuse
+
+
+class Quantities(dict[str, float]):
+    """What a model or a result states, as a dict that is only read: a change is said where it is run.
+
+    >>> m = saltus.catalogue("bouncing-ball")
+    >>> m.parameters["e"], list(m.parameters)
+    (0.9, ['g', 'e'])
+    """
+
+    def __init__(self, values: typing.Iterable[tuple[str, float]], remedy: str) -> None:
+        """`remedy` says what to do instead of an assignment; ``{}`` in it stands for the name and the value."""
+        super().__init__(values)
+        self._remedy = remedy
+
+    def __setitem__(self, name: str, value: float) -> typing.NoReturn:
+        raise refuse(f"{name!r} cannot be assigned here", self._remedy.format(f'{{"{name}": {value!r}}}'))
+
+    def __delitem__(self, name: str) -> typing.NoReturn:
+        raise refuse(f"{name!r} cannot be removed here", "it is of the model, whose text states it")
+
+    def update(self, *others: typing.Any, **values: typing.Any) -> typing.NoReturn:
+        """Refused, as every change.
+
+        >>> try:
+        ...     saltus.catalogue("bouncing-ball").parameters.update(e=0.8)
+        ... except saltus.ModelError as error:
+        ...     print(error.remedy)
+        change it in the call: m.simulate(set={"e": 0.8})
+        """
+        shown = ", ".join(f'"{name}": {value!r}' for name, value in dict(*others, **values).items())
+        raise refuse("these values cannot be changed here", self._remedy.format(f"{{{shown}}}"))
+
+    def _refused(self, *_: typing.Any) -> typing.NoReturn:
+        raise refuse("these values cannot be changed here", "dict(…) of them is a dict of your own")
+
+    setdefault = pop = popitem = clear = __ior__ = _refused
+
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        return Quantities, (list(self.items()), self._remedy)
+
+    def __copy__(self) -> dict[str, float]:
+        return dict(self)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self)
+
+
+def of_model(values: typing.Iterable[tuple[str, float]]) -> Quantities:
+    """Those of a model."""
+    return Quantities(values, "change it in the call: m.simulate(set={})")
+
+
+def of_result(values: typing.Iterable[tuple[str, float]]) -> Quantities:
+    """Those of a result, which happened."""
+    return Quantities(values, "a result is what was computed; run the model again: m.simulate(set={})")
 
 
 class Facts(Columns):
@@ -27,13 +84,13 @@ class Facts(Columns):
         return found
 
     @property
-    def parameters(self) -> dict[str, float]:
+    def parameters(self) -> Quantities:
         """Parameters and the values they had.
 
         >>> saltus.catalogue("stick-slip").simulate(until=1, set={"belt": 0.3}).parameters
         {'belt': 0.3}
         """
-        return dict(self._run.parameters)
+        return of_result(self._run.parameters)
 
     @property
     def model(self) -> str:

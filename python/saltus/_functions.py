@@ -77,7 +77,8 @@ t = Expression("t")
 pi = Expression("pi")
 _array.instead(
     maximum=max, minimum=min, fmax=max, fmin=min, sign=sign, where=if_, clip=lambda x, low, high: min(max(x, low), high),
-    logical_and=lambda a, b: a & b, logical_or=lambda a, b: a | b, logical_not=lambda a: ~a, matmul=product,
+    heaviside=lambda x, _: step(x), logical_and=lambda a, b: a & b, logical_or=lambda a, b: a | b, logical_not=lambda a: ~a,
+    matmul=product,
 )  # fmt: skip
 
 

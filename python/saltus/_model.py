@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import os
-import pathlib
-import sys
 import typing
 
 from . import _core
 from ._card import model_card, table_card
 from ._errors import warn
 from ._expression import refuse
-from ._progress import progress_line, progress_of_runs
-from ._result import Result, own_results
+from ._facts import Quantities, of_model
+from ._progress import lines_of_problems, progress_line, progress_of_runs
+from ._outcome import Final
+from ._result import Result, Source, continued, own_results
+from ._samples import file_text
 from ._settings import (
     Option,
+    Settings,
     Value,
     axis,
     check_path,
@@ -36,14 +38,20 @@ from ._settings import (
     sweep_name,
 )
 from ._shares import sweep_by
+from ._signature import with_options
 from ._starts import optimize_by
 from ._stored_sweep import sweep_into
 from ._sweep import Sweep, SweepArguments, Warned, warn_of_runs, with_results
 
-Settings = typing.Mapping[str, Value]
+if typing.TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._keywords import OptimizeOptions, OrderOptions, SimulateOptions, SweepCall
+
+Start = typing.Union[Result, str, "os.PathLike[str]"]
 
 
-class Model:
+class Model(Source):
     """A model file: equations, parameters, initial values, and the options it was written with.
 
     >>> m = saltus.Model.from_text('''
@@ -66,12 +74,15 @@ class Model:
         and equations fit is said, likewise, by whatever is asked of the model first."""
         check_path(path, "saltus.Model")
         self._core = _core.Model(os.fspath(path))
-        self._made: tuple[typing.Any, ...] = (Model, (os.path.abspath(self._core.path),))
+        self._made = (Model, (os.path.abspath(self._core.path),))
 
     @classmethod
-    def from_text(cls, text: str, name: str = "model.toml") -> Model:
+    def from_text(
+        cls, text: str, name: str = "model.toml", *, files: typing.Mapping[str, typing.Any] | None = None
+    ) -> Model:
         """A model from the text of a file, as if it were read. `name` is used in messages, and its folder to find files it
-        names.
+        names. `files` are data in memory in place of files that the text names: arrays, lists of columns, DataFrames, or
+        texts, ``{"u.csv": frame}``.
 
         >>> m = saltus.Model.from_text('[model]\\nname = "decay"\\n[states]\\nx = 1\\n[dynamics]\\nx = "-x"')
         >>> round(m.simulate(until=1).final["x"], 6)
@@ -79,8 +90,9 @@ class Model:
         """
         check_text(text)
         model = cls.__new__(cls)
-        model._core = _core.Model(text, name)
-        model._made = (Model.from_text, (text, name))
+        in_memory = [(file, file_text(file, value)) for file, value in (files or {}).items()]
+        model._core = _core.Model(text, name, in_memory)
+        model._made = (_from_texts, (text, name, in_memory)) if in_memory else (Model.from_text, (text, name))
         return model
 
     @property
@@ -110,20 +122,23 @@ class Model:
         """
         return self._core.path
 
+    @with_options("simulate")
     def simulate(
         self,
         until: float | None = None,
         *,
         set: Settings | None = None,
+        start: Start | None = None,
         progress: bool = False,
-        **options: Value,
+        **options: Unpack[SimulateOptions],
     ) -> Result:
         """Simulates the model and returns everything that was computed.
 
         `until` is the end of the simulation; without it that of the file holds. `set` changes parameters, initial
         values and constant inputs (``{"mu": 0.5}``), and by dotted names any key of the file
-        (``{"dynamics.v": "-x"}``). `options` are the keys of [simulate] (docs/options.md): ``rtol=1e-10``,
-        ``integrator="dop853"``, ``points=200``, ``fesd={"stages": 3}``; ``inputs={"u": "sin(t)"}``.
+        (``{"dynamics.v": "-x"}``); the end of a run, ``set=r.final``, its states. With `start` the run goes on from the
+        end of another one: its states, its time, and what it slides on. `inputs` are expressions or data in memory:
+        ``{"u": "sin(t)"}``, ``{"u": (times, values)}``, a DataFrame with a column for every control.
 
         A run that stops early is no exception: see ``status`` and :meth:`Result.require`. Ctrl-C raises
         KeyboardInterrupt, whose ``result`` is what was computed. Other threads run meanwhile.
@@ -132,10 +147,19 @@ class Model:
         3.0
         """
         with progress_line(self.name, progress) as tell:
-            run, settings, chosen = self._run("simulate", until, set, options, tell)
+            stated: Settings | None = set
+            asked: typing.Mapping[str, Value] = options
+            if start is not None:
+                stated, asked = continued(
+                    start, self.states, self.parameters, dict(_mapping(set)), options, self._core.method, self._core.forced_modes
+                )
+            run, settings, chosen = self._run("simulate", until, stated, asked, tell)
         return Result(run, (self, settings, chosen))
 
-    def compare(self, until: float | None = None, *, set: Settings | None = None, **options: Value) -> Result:
+    @with_options("simulate")
+    def compare(
+        self, until: float | None = None, *, set: Settings | None = None, **options: Unpack[SimulateOptions]
+    ) -> Result:
         """Simulates the model by every engine; ``comparison`` of the result has a row for each.
 
         >>> rows = saltus.catalogue("stick-slip").compare(until=2).comparison["runs"]
@@ -144,6 +168,7 @@ class Model:
         """
         return Result(self._run("compare", until, set, options, None)[0])
 
+    @with_options("simulate")
     def order(
         self,
         until: float | None = None,
@@ -151,7 +176,7 @@ class Model:
         schemes: typing.Iterable[tuple[str, int]] = (),
         steps: typing.Iterable[int] = (),
         set: Settings | None = None,
-        **options: Value,
+        **options: Unpack[OrderOptions],
     ) -> Result:
         """Measures how errors fall with the step; ``order`` of the result has a series for every scheme.
 
@@ -168,18 +193,19 @@ class Model:
             ) from None
         return Result(self._run("order", until, set, options, None, more)[0])
 
+    @with_options("optimize")
     def optimize(
         self,
         *,
         set: Settings | None = None,
-        start: str | os.PathLike[str] | Result | None = None,
+        start: Start | None = None,
         progress: bool = False,
         executor: typing.Any = None,
-        **options: Value,
+        **options: Unpack[OptimizeOptions],
     ) -> Result:
         """Finds the controls, times and parameters that [optimize] of the file asks for, and verifies them.
 
-        `options` are the keys of [optimize] (docs/optimal-control.md): ``control_intervals=20``, ``time_limit=60``,
+        Options are the keys of [optimize] (docs/optimal-control.md): ``control_intervals=20``, ``time_limit=60``,
         ``tolerance=1e-8``, ``horizon=2``. `start` is a result to begin at, or its file; or the word of the option of that
         name, ``"neutral"`` or ``"simulated"``. ``optimization`` of the result has costs, parameters, multipliers and
         what was verified.
@@ -207,30 +233,36 @@ class Model:
         2.0
         """
         names_no_keys(options, {**self.states, **self.parameters} if options else {})
-        if start in ("neutral", "simulated"):
-            options, start = {**options, "start": start}, None
-        typed, chosen = optimize_options(options)
+        stated: dict[str, Value] = {**options}
+        if isinstance(start, str) and start in ("neutral", "simulated"):
+            stated, start = {**stated, "start": start}, None
+        guess = stated.get("initial_guess")
+        guess = guess.get("result") if isinstance(guess, typing.Mapping) else guess
+        if isinstance(guess, Result):
+            start = guess
+            del stated["initial_guess"]
+        typed, chosen = optimize_options(stated)
         settings = [*settings_of(set), *typed]
         if executor is None:
-            with own_results():
-                run, warned = self._optimum(settings, chosen, start, _print_line if progress else None)
+            with own_results(), lines_of_problems(self.name, progress) as tell:
+                run, warned = self._optimum(settings, chosen, start, tell)
         else:
-            with progress_of_runs(self.name, progress, "starts") as tell:
-                run, warned = optimize_by(executor, self, settings, chosen, start, tell)
+            with progress_of_runs(self.name, progress, "starts") as tell_starts:
+                run, warned = optimize_by(executor, self, settings, chosen, start, tell_starts)
         warn(warned)
         return Result(run)
 
     def _optimum(
-        self,
-        settings: list[str],
-        chosen: list[Option],
-        start: str | os.PathLike[str] | Result | None,
-        tell: typing.Callable[[str], None] | None,
+        self, settings: list[str], chosen: list[Option], start: Start | None, tell: typing.Callable[[str], None] | None
     ) -> tuple[_core.Run, list[str]]:
         warned: list[str] = []
-        with _started_at(start) as file:
-            return self._core.optimize(settings, chosen, file, tell, warned), warned
+        return self._core.optimize(settings, chosen, _place(start), tell, warned), warned
 
+    @typing.overload
+    def sweep(self, over: Settings | None = None, **keywords: Unpack[SweepCall]) -> Sweep: ...
+    @typing.overload
+    def sweep(self, over: Settings | None = None, **keywords: Value) -> Sweep: ...
+    @with_options("sweep")
     def sweep(
         self,
         over: Settings | None = None,
@@ -325,7 +357,7 @@ class Model:
         method = chosen if isinstance(chosen, str) else self._core.method
         swept: dict[str, Value] = {}
         taken = names_in(set)
-        for key, values in over.items():
+        for key, values in _mapping(over).items():
             swept[once(self._swept_name(getattr(key, "text", key), method), [*swept, *taken])] = values
         for name in [name for name, value in options.items() if is_several(value) and name != "times"]:
             swept[once(self._swept_name(name, method), [*swept, *taken])] = options.pop(name)
@@ -353,22 +385,22 @@ class Model:
         return self._core.equations(latex)
 
     @property
-    def states(self) -> dict[str, float]:
+    def states(self) -> Quantities:
         """The states with their initial values.
 
         >>> saltus.catalogue("bouncing-ball").states
         {'y': 10.0, 'v': 0.0}
         """
-        return dict(self._core.quantities(True))
+        return of_model(self._core.quantities(True))
 
     @property
-    def parameters(self) -> dict[str, float]:
-        """The parameters with their values.
+    def parameters(self) -> Quantities:
+        """The parameters with their values; they are changed where the model is run, by `set`.
 
         >>> saltus.catalogue("bouncing-ball").parameters
         {'g': 9.8, 'e': 0.9}
         """
-        return dict(self._core.quantities(False))
+        return of_model(self._core.quantities(False))
 
     def _repr_html_(self) -> str:
         return model_card(self)
@@ -386,7 +418,7 @@ class Model:
         command: str,
         until: float | None,
         set: Settings | None,
-        options: Settings,
+        options: typing.Mapping[str, Value],
         tell: typing.Callable[..., None] | None,
         more: tuple[str, ...] = (),
     ) -> tuple[_core.Run, list[str], list[Option]]:
@@ -399,15 +431,12 @@ class Model:
         warn(warned)
         return run, settings, chosen
 
-    def _refuse_parameters(self, options: Settings) -> None:
+    def _refuse_parameters(self, options: typing.Mapping[str, Value]) -> None:
         """Of keywords that are no options those that the model knows; the rest is the tool's to say."""
         check_together(options)
         not_two_things(options, self._core.declares, self._core.method)
         if any(not is_option(name, self._core.method) for name in options):
             parameters_among(options, {**self.states, **self.parameters}, self._core.method)
-
-    def __reduce__(self) -> tuple[typing.Any, ...]:
-        return self._made
 
     def __repr__(self) -> str:
         return f"<saltus.Model {self.name!r}>"
@@ -423,32 +452,18 @@ class _Lines(str):
         return table_card("", self)
 
 
-class _started_at:
-    """The file of a result to start at; one in memory is written for as long as it is needed."""
-
-    def __init__(self, start: str | os.PathLike[str] | Result | None) -> None:
-        self._start = start
-        self._written: pathlib.Path | None = None
-
-    def __enter__(self) -> str:
-        if self._start is None:
-            return ""
-        if not isinstance(self._start, Result):
-            if not isinstance(self._start, (str, os.PathLike)):
-                raise refuse(f"start={self._start!r}: expected a result, or the file of one", 'start=r, or start="r.json"')
-            return os.fspath(self._start)
-        import tempfile
-
-        handle, name = tempfile.mkstemp(suffix=".json")
-        os.close(handle)
-        self._written = pathlib.Path(name)
-        self._start.save(name)
-        return name
-
-    def __exit__(self, *_: object) -> None:
-        if self._written is not None:
-            self._written.unlink(missing_ok=True)
+def _place(start: typing.Any) -> typing.Any:
+    """What the library begins at: a result in memory, the name of a file, or nothing."""
+    if start is None or isinstance(start, Result):
+        return None if start is None else start._run
+    if not isinstance(start, (str, os.PathLike)):
+        raise refuse(f"start={start!r}: expected a result, or the file of one", 'start=r, or start="r.json"')
+    return os.fspath(start)
 
 
-def _print_line(line: str) -> None:
-    print(line, file=sys.stderr)
+def _mapping(set: Settings | None) -> typing.Mapping[typing.Any, Value]:
+    return set.states() if isinstance(set, Final) else set or {}
+
+
+def _from_texts(text: str, name: str, files: list[tuple[str, str]]) -> Model:
+    return Model.from_text(text, name, files=dict(files))

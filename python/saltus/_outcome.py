@@ -54,6 +54,7 @@ class Final:
         self.contact_modes: list[str] = values["contact_modes"]
         self._named = dict(zip(run.output_names, self.outputs.tolist()))
         self._named.update(zip(run.states, self.x.tolist()))
+        self._states = dict(zip(run.states, self.x.tolist()))
         self._parameters = [parameter for parameter, _ in run.parameters]
 
     def __getitem__(self, name: str) -> float:
@@ -74,8 +75,23 @@ class Final:
         """
         return list(self._named)
 
+    def states(self) -> dict[str, float]:
+        """The states alone: what ``m.simulate(set=r.final)`` takes of it.
+
+        >>> r = saltus.catalogue("welander").simulate(until=1)
+        >>> list(r.final), list(r.final.states())
+        (['density', 'T', 'S'], ['T', 'S'])
+        """
+        return dict(self._states)
+
     def __iter__(self) -> typing.Iterator[str]:
         return iter(self._named)
+
+    def __len__(self) -> int:
+        return len(self._named)
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self._named)
 
     def __repr__(self) -> str:
         values = ", ".join(f"{name} = {value:.6g}" for name, value in self._named.items())

@@ -6,13 +6,11 @@ import typing
 
 import numpy as np
 
-from ._data import with_rows
+from ._events import Event
 from ._expression import Expression
+from ._errors import needed
+from ._recorded import Recorded
 from ._shape import as_drawn, broken_at_jumps, edges, is_alone, is_stepwise, slides, sliding_spans
-
-if typing.TYPE_CHECKING:
-    from ._events import Event
-    from ._result import Result
 
 SLIDING = "#d95f02"
 #: Of the first result in a picture, and of those that are drawn over it.
@@ -38,21 +36,19 @@ MARKS = {
 
 
 def _matplotlib() -> typing.Any:
-    from ._result import needed
-
     needed("matplotlib", "plot")
     return needed("matplotlib.pyplot", "plot")
 
 
 def plot(
-    r: Result,
+    r: Recorded,
     names: typing.Sequence[str | Expression] | None,
     axes: typing.Any,
     label: str | None = None,
     events: bool | None = None,
 ) -> typing.Any:
     """A row of axes for every name; sliding is shaded, events are marked at their values."""
-    r = as_drawn(with_rows(r, 2))
+    r = as_drawn(r)
     pyplot, is_own = _matplotlib(), axes is None
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
@@ -103,14 +99,14 @@ def _legend(axis: typing.Any) -> None:
         axis.legend(handles=named)
 
 
-def caption_of(r: Result, name: str) -> str:
+def caption_of(r: Recorded, name: str) -> str:
     """The label of a column with its unit: "height [m]"."""
     caption = r._captions.get(name, {})
     unit = caption.get("unit", "")
     return (caption.get("label") or name) + (f" [{unit}]" if unit else "")
 
 
-def _mark_events(axis: typing.Any, r: Result, x: str, y: str, wanted: bool | None) -> None:
+def _mark_events(axis: typing.Any, r: Recorded, x: str, y: str, wanted: bool | None) -> None:
     """By their kinds; of a column over time that is stepwise those that its edges do not show."""
     if not (len(r.events) <= MOST_MARKS if wanted is None else wanted):
         return
@@ -122,7 +118,7 @@ def _mark_events(axis: typing.Any, r: Result, x: str, y: str, wanted: bool | Non
             axis.plot(*places, mark, color=colour, markersize=3.5, linestyle="none", label=kind)
 
 
-def _at(r: Result, name: str, event: Event) -> float:
+def _at(r: Recorded, name: str, event: Event) -> float:
     """A column before an event; NaN where neither the event nor a row has it."""
     if name == "t":
         return event.t
@@ -133,7 +129,7 @@ def _at(r: Result, name: str, event: Event) -> float:
 
 
 def phase(
-    r: Result,
+    r: Recorded,
     x: str | Expression,
     y: str | Expression,
     axis: typing.Any,
@@ -141,7 +137,7 @@ def phase(
     events: bool | None = None,
 ) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
-    r = as_drawn(with_rows(r, 2))
+    r = as_drawn(r)
     pyplot = _matplotlib()
     x, y = str(x), str(y)
     if axis is None:

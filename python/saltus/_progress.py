@@ -1,10 +1,17 @@
-"""How far a run is: a bar of tqdm if it is there, else a line on standard error."""
+"""How far a run is: a bar of tqdm if it is there (a widget in notebooks), else a line on standard error."""
 
 from __future__ import annotations
 
 import contextlib
 import sys
+import threading
+import time
 import typing
+
+Say = typing.Callable[[str], None]
+
+#: Seconds between two words of what is still prepared.
+_EVERY = 0.5
 
 
 class Tell:
@@ -17,16 +24,14 @@ class Tell:
         raise NotImplementedError
 
 
-
 @contextlib.contextmanager
 def progress_line(name: str, wanted: bool) -> typing.Iterator[Tell | None]:
-    """A function of (t, from, until, steps, events), or None if nothing is wanted."""
+    """What a run calls on its way, or None if nothing is wanted."""
     if not wanted:
         yield None
         return
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
+    tqdm = _tqdm()
+    if tqdm is None:
         yield from _plain(name)
         return
     with tqdm(total=100.0, desc=name, bar_format="{desc}: {percentage:3.0f}%|{bar}| {postfix}") as bar:
@@ -40,7 +45,35 @@ def progress_line(name: str, wanted: bool) -> typing.Iterator[Tell | None]:
                 bar.set_postfix_str(_prepared(phase, done, all))
 
         yield Bar()
+        bar.set_postfix_str("done", refresh=False)
         bar.update(max(0.0, 100.0 - bar.n))
+
+
+@contextlib.contextmanager
+def lines_of_problems(name: str, wanted: bool) -> typing.Iterator[Say | None]:
+    """A function of a line for every problem that was solved, or None if nothing is wanted."""
+    if not wanted:
+        yield None
+        return
+    tqdm = _tqdm()
+    if tqdm is None:
+        with _Preparing(lambda text: print(f"{name}: {text}", file=sys.stderr, flush=True), 5.0) as preparing:
+
+            def say(line: str) -> None:
+                preparing.stop()
+                print(line, file=sys.stderr, flush=True)
+
+            yield say
+        return
+    with tqdm(desc=name, unit=" problems", bar_format="{desc}: {n_fmt} problems, {elapsed} {postfix}") as bar:
+        with _Preparing(bar.set_postfix_str) as preparing:
+
+            def note(line: str) -> None:
+                preparing.stop()
+                bar.set_postfix_str(" ".join(line.split()), refresh=False)
+                bar.update(1)
+
+            yield note
 
 
 @contextlib.contextmanager
@@ -49,9 +82,8 @@ def progress_of_runs(name: str, wanted: bool, what: str) -> typing.Iterator[typi
     if not wanted:
         yield None
         return
-    try:
-        from tqdm.auto import tqdm
-    except ImportError:
+    tqdm = _tqdm()
+    if tqdm is None:
         yield from _plain_of_runs(name, what)
         return
     with tqdm(desc=name, unit=f" {what}") as bar:
@@ -63,6 +95,45 @@ def progress_of_runs(name: str, wanted: bool, what: str) -> typing.Iterator[typi
             bar.update(int(done) - bar.n)
 
         yield tell
+
+
+def _tqdm() -> typing.Any:
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        return None
+    return tqdm
+
+
+class _Preparing:
+    """Says every half second that a model is still prepared, as soon as that takes long; in a thread of its own."""
+
+    def __init__(self, say: Say, every: float = _EVERY) -> None:
+        self._say, self._every = say, every
+        self._over = threading.Event()
+        self._lock = threading.Lock()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def __enter__(self) -> _Preparing:
+        self._thread.start()
+        return self
+
+    def _run(self) -> None:
+        begin = time.monotonic()
+        while not self._over.wait(self._every):
+            with self._lock:
+                if not self._over.is_set():
+                    self._say(f"preparing, {time.monotonic() - begin:.0f} s")
+
+    def stop(self) -> None:
+        """Nothing is said after that."""
+        if not self._over.is_set():
+            with self._lock:
+                self._over.set()
+
+    def __exit__(self, *_: object) -> None:
+        self.stop()
+        self._thread.join()
 
 
 def _plain_of_runs(name: str, what: str) -> typing.Iterator[typing.Callable[[float, float], None]]:
@@ -97,6 +168,8 @@ class _Line(Tell):
 
 def _plain(name: str) -> typing.Iterator[Tell]:
     line = _Line(name)
-    yield line
-    if line.width:
-        print("\r" + " " * line.width + "\r", end="", file=sys.stderr, flush=True)
+    try:
+        yield line
+    finally:
+        if line.width:
+            print("\r" + " " * line.width + "\r", end="", file=sys.stderr, flush=True)

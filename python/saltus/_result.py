@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import json
+import numbers
 import os
 import re
 import typing
@@ -12,28 +12,39 @@ import typing
 import numpy as np
 
 from . import _card, _core, _data, _plot
-from ._errors import ModelError, Stopped
-from ._events import Event, Events
+from ._errors import ModelError, warn
 from ._expression import Expression, refuse
-from ._facts import Facts
-from ._outcome import Final, Kept, Sensitivities, Status
+from ._outcome import Kept
+from ._recorded import Recorded
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
-_OF_OPTIMUM = (
-    "objective objective_terms horizon parameters u grid h speed_of_time multipliers homotopy starts certificate "
-    "verification statistics"
-).split()
+class Source:
+    """What a model and the run of a stored result have in common: the model of the library."""
+
+    _core: _core.Model
+    _made: tuple[typing.Any, ...]
+
+    def __reduce__(self) -> tuple[typing.Any, ...]:
+        return self._made
+
+
+def source_of_result(path: str) -> Source:
+    """The model in the file of a result."""
+    source = Source()
+    source._core = _core.Model(path)
+    source._made = (source_of_result, (path,))
+    return source
 
 
 #: The model, settings and options of a simulation, with which it can be run once more.
-Again = tuple[typing.Any, list[str], list[tuple[str, str, str]]]
+Again = tuple[Source, list[str], list[tuple[str, str, str]]]
 #: The same, what makes it, or the file of a result that has it.
 Origin = typing.Union[Again, typing.Callable[[], Again], str, None]
 
 
-class Result(Facts):
+class Result(Recorded):
     """What a run computed: rows, events, the end, and why it ended.
 
     Arrays are read-only views of what the library holds. Every event has two rows of one time, before and behind it.
@@ -48,9 +59,8 @@ class Result(Facts):
     def __init__(
         self, run: _core.Run, origin: Origin = None, kept: Kept | None = None, parent: tuple[Result, int] | None = None
     ) -> None:
-        super().__init__(run)
+        super().__init__(run, kept)
         self._origin = origin
-        self._kept = kept
         self._parent = parent  # of a branch: what it left, and which of its branches it is
         self._asked: tuple[Result, list[float], str] | None = None  # of values: what they are of, when, on which side
 
@@ -61,10 +71,8 @@ class Result(Facts):
             return self._origin()
         if not isinstance(self._origin, str):
             return self._origin
-        from ._model import Model
-
         try:
-            return (Model(self._origin), [], []) if self._run.command == "simulate" else None
+            return (source_of_result(self._origin), [], []) if self._run.command == "simulate" else None
         except ModelError:
             return None
 
@@ -84,44 +92,6 @@ class Result(Facts):
     # What was computed ---------------------------------------------------------------------------------------------
 
     @functools.cached_property
-    def events(self) -> Events:
-        """All events, in their order; ``events.table()`` is a table of pandas.
-
-        >>> r = saltus.catalogue("stick-slip").simulate(until=2)
-        >>> r.events[0]
-        <enter_sliding of slip at t = 0.244688802>
-        """
-        if self._lost_events:
-            raise ValueError(
-                f'events not kept; {self._lost_events} happened: sweep(…, keep="events") keeps them, r.whole.events has '
-                "them of a single run, simulated once more"
-            )
-        return Events(self._run.events)
-
-    @property
-    def _lost_events(self) -> int:
-        """How many events happened that are not here."""
-        return self._kept.events if self._kept is not None and self._kept.what == "final" else 0
-
-    @functools.cached_property
-    def status(self) -> Status:
-        """Why the run ended.
-
-        >>> saltus.catalogue("stick-slip").simulate(until=1).status
-        'completed'
-        """
-        return Status._of(self._run)
-
-    @functools.cached_property
-    def final(self) -> Final:
-        """The end of the run.
-
-        >>> saltus.catalogue("bouncing-ball").simulate(until=1).final
-        <t = 1: y = 5.1, v = -9.8>
-        """
-        return Final(self._run)
-
-    @functools.cached_property
     def branches(self) -> list[Result]:
         """Other motions that were followed (``branches="all"``), each with its own branches.
 
@@ -130,69 +100,6 @@ class Result(Facts):
         True
         """
         return [Result(branch, parent=(self, number)) for number, branch in enumerate(self._run.branches)]
-
-    @functools.cached_property
-    def sensitivities(self) -> Sensitivities | None:
-        """Derivatives of the end state, if they were asked for (``method="fesd", sensitivities=True``).
-
-        >>> r = saltus.catalogue("stick-slip").simulate(until=1, method="fesd", steps=10, sensitivities=True)
-        >>> r.sensitivities.p.shape, r.sensitivities.parameters
-        ((2, 1), ['belt'])
-        """
-        found = self._run.sensitivities
-        if found is None:
-            return None
-        rows = len(self.states)
-        return Sensitivities(
-            np.array(found["x0"]).reshape(rows, -1), np.array(found["p"]).reshape(rows, -1), found["parameters"]
-        )
-
-    @functools.cached_property
-    def _stored(self) -> dict[str, typing.Any]:
-        stored: dict[str, typing.Any] = json.loads(self._run.json(False))
-        return stored
-
-    def to_dict(self) -> dict[str, typing.Any]:
-        """Everything, as :meth:`save` writes it (docs/result-file.md).
-
-        >>> saltus.catalogue("stick-slip").simulate(until=1, rtol=1e-6).to_dict()["options"]["simulate.rtol"]
-        1e-06
-        """
-        stored: dict[str, typing.Any] = json.loads(self._run.json(True))
-        return stored
-
-    @property
-    def optimization(self) -> dict[str, typing.Any] | None:
-        """What an optimisation found beside the trajectory (docs/result-file.md); None of a simulation.
-
-        ``objective``, ``horizon``, ``parameters``, ``u`` (rows are control intervals), ``grid``, ``multipliers``,
-        ``homotopy``, ``certificate``, ``verification``, …
-
-        >>> saltus.catalogue("stick-slip").simulate(until=1).optimization is None
-        True
-        """
-        if self._run.command != "optimize":
-            return None
-        return {key: self._facts[key] for key in _OF_OPTIMUM if key in self._facts}
-
-    @property
-    def comparison(self) -> dict[str, typing.Any] | None:
-        """The runs of :meth:`Model.compare`.
-
-        >>> [run["method"] for run in saltus.catalogue("stick-slip").compare(until=1).comparison["runs"]][:1]
-        ['event']
-        """
-        return self._stored.get("comparison")
-
-    @property
-    def order(self) -> dict[str, typing.Any] | None:
-        """The series of :meth:`Model.order`.
-
-        >>> study = saltus.catalogue("stick-slip").order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]).order
-        >>> study["series"][0]["scheme"]
-        'radau_iia'
-        """
-        return self._stored.get("order")
 
     # Between the rows ----------------------------------------------------------------------------------------------
 
@@ -313,8 +220,6 @@ class Result(Facts):
         """
         if path is not None and not os.fspath(path).lower().endswith((".html", ".htm")):
             raise refuse(f"{os.fspath(path)}: the name of a page must end in .html", "pictures for papers: r.plot()")
-        from ._difference import laid_over
-
         page = self.whole._run.page(*laid_over(over))
         if path is None:
             return Page(page)
@@ -340,7 +245,7 @@ class Result(Facts):
         >>> axes[0].get_ylabel()
         'v'
         """
-        return _plot.plot(self, names, axes, label, events)
+        return _plot.plot(self._with_rows(2), names, axes, label, events)
 
     def phase(
         self,
@@ -358,7 +263,7 @@ class Result(Facts):
         >>> saltus.catalogue("stick-slip").simulate(until=10).phase("q", "v").get_xlabel()
         'q'
         """
-        return _plot.phase(self, x, y, axis, label, events)
+        return _plot.phase(self._with_rows(2), x, y, axis, label, events)
 
     def frame(self, grid: typing.Any = None) -> typing.Any:
         """A table of pandas, a row for every row of the result, with the time as its index.
@@ -368,7 +273,7 @@ class Result(Facts):
         >>> list(saltus.catalogue("stick-slip").simulate(until=10).frame().columns)
         ['q', 'v', 'mode(slip)', 'alpha(slip)']
         """
-        return _data.frame(self, grid)
+        return _data.frame(self._on_grid(grid)._with_rows())
 
     def dataset(self, grid: typing.Any = None) -> typing.Any:
         """A data set of xarray: the columns over ``row``, with ``t`` as a coordinate. With `grid`, as that of
@@ -378,16 +283,22 @@ class Result(Facts):
         >>> r.dataset()["v"].dims, r.dataset(grid=11)["v"].dims
         (('row',), ('t',))
         """
-        return _data.dataset(self, grid)
+        return _data.dataset(self._on_grid(grid)._with_rows(), self.parameters, "row" if grid is None else "t")
 
-    if not typing.TYPE_CHECKING:  # for who checks types there are only the attributes above
+    def _on_grid(self, grid: typing.Any) -> Result:
+        """The result at the times of a grid, or at so many at equal distances; without one as it is."""
+        if grid is None:
+            return self
+        if np.ndim(grid) == 0 and (not isinstance(grid, numbers.Integral) or grid < 2):
+            raise ValueError(f"grid={grid!r}: expected a whole number of rows from 2 on, or a list of times")
+        return self.at(np.linspace(*self.span, int(grid)) if np.ndim(grid) == 0 else grid)
 
-        def __getattr__(self, name):
-            if name in _OF_OPTIMUM and self._run.command == "optimize":
-                raise AttributeError(f'{name} is what an optimisation found: r.optimization["{name}"]')
-            if not name.startswith("_") and name in self.names:
-                raise AttributeError(f'{name} is a column of the result: r["{name}"]')
-            raise AttributeError(f"a result has no attribute {name!r}")
+    def _with_rows(self, least: int = 1) -> Result:
+        """The result; a run of a sweep that kept no rows is simulated once more."""
+        result = self if len(self.t) >= least else self.whole
+        if len(result.t) < least:
+            raise ValueError('this result has no trajectory: of a sweep ask for it with keep="trajectory"')
+        return result
 
     def _repr_html_(self) -> str:
         if self._several:
@@ -400,29 +311,6 @@ class Result(Facts):
         if self._several:
             return f"<saltus.Result {self.model!r}: {self._several}; print(…) shows them>"
         return f"<saltus.Result {self.model!r}: {self.status}{self._reached(6)}, {self._counts}>"
-
-    def _reached(self, digits: int) -> str:
-        """When it ended; an optimum that was not found ended at no time of its trajectory."""
-        unsolved = self._run.command == "optimize" and not self.status.done
-        return "" if unsolved else f" at t = {self.status.time_reached:.{digits}g}"
-
-    @property
-    def _several(self) -> str:
-        """What it is of, if not of one run."""
-        if self._run.command == "compare":
-            return f"comparison of {len((self.comparison or {}).get('runs', []))} runs"
-        return "errors of fixed steps" if self._run.command == "order" else ""
-
-    @property
-    def _counts(self) -> str:
-        """How many events and rows there are."""
-        if self._lost_events:
-            return f"events not kept; {self._lost_events} happened"
-        return f"{len(self.events)} events, " + (f"{len(self.t)} rows" if self._rows_kept else "rows not kept")
-
-    @property
-    def _rows_kept(self) -> bool:
-        return self._kept is None or self._kept.what == "trajectory"
 
     def __str__(self) -> str:
         """The table of the tool; of values what they are."""
@@ -453,6 +341,26 @@ def own_results() -> typing.Iterator[None]:
         raise
 
 
+class Stopped(RuntimeError):
+    """Raised by :meth:`Result.require` for a run that stopped early, and by sweeps and optimisations whose workers ended
+    or cannot begin; ``result`` has what was computed.
+
+    >>> import saltus
+    >>> try:
+    ...     saltus.catalogue("stick-slip").simulate(until=5, max_steps=9).require()
+    ... except saltus.Stopped as stopped:
+    ...     print(stopped.result.status)
+    iteration_limit
+    """
+
+    def __init__(self, text: str, result: Result | None = None) -> None:
+        super().__init__(text, result)
+        self.result = result
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 class Page:
     """The page of a result, shown by a notebook."""
 
@@ -481,14 +389,64 @@ def load(path: str | os.PathLike[str]) -> Result:
     return Result(_core.load(name), os.path.abspath(path))
 
 
+def laid_over(over: typing.Any) -> tuple[list[str], list[_core.Run]]:
+    """Names and runs of what a page lays over its own: a result or file, several, or a dict of them by their names."""
+    several = [over] if isinstance(over, (Result, str, os.PathLike)) else over
+    if isinstance(several, typing.Mapping):
+        return [str(name) for name in several], [as_result(one).whole._run for one in several.values()]
+    runs = [as_result(one).whole._run for one in several]
+    names = [f"result {i}" if isinstance(one, Result) else os.path.basename(one) for i, one in enumerate(several, 2)]
+    return names, runs
+
+
+def as_result(one: typing.Any, what: str = "") -> Result:
+    if isinstance(one, Result):
+        return one
+    if isinstance(one, (str, os.PathLike)):
+        return load(one)
+    raise refuse(f"{what}{type(one).__name__}: expected a result, or the file of one", 'e.g. r, or "r.json"')
+
+
+def continued(
+    start: typing.Any,
+    states: typing.Mapping[str, float],
+    parameters: typing.Mapping[str, float],
+    set: typing.Mapping[str, typing.Any] | None,
+    options: typing.Mapping[str, typing.Any],
+    method: str,
+    forced: typing.Container[str],
+) -> tuple[dict[str, typing.Any], dict[str, typing.Any]]:
+    """Settings and options of a run that begins with the states, the time and the modes at the end of `start`.
+    `forced` are surfaces of which the model states a first mode.
+
+    What is stated beside it stands in their place. Modes go on where nothing but the time is changed: of other
+    parameters they are decided anew."""
+    result = as_result(start, "start: ")
+    if result.optimization is not None:
+        raise refuse("start: an optimum is no run that goes on", "its end is set=r.final, its controls inputs={\"u\": r}")
+    known = result.final.states()
+    missing = [name for name in states if name not in known and "." not in name]  # those of contacts are decided anew
+    if missing:
+        raise refuse(
+            f"start: the result of '{result.model}' has no state '{missing[0]}'",
+            f"expected one of this model, found the states {', '.join(known)}",
+        )
+    settings = {**{name: known[name] for name in states if name in known}, **(set or {})}
+    changed: dict[str, typing.Any] = {"from_": result.final.t, **options}
+    names = result.switching_functions
+    others = {name: value for name, value in result.parameters.items() if parameters.get(name, value) != value}
+    others = {name: value for name, value in others.items() if name not in (set or {})}
+    if others:
+        shown = ", ".join(f"{name} = {value:.6g}" for name, value in others.items())
+        kept = ", ".join(f'"{name}": {value!r}' for name, value in others.items())
+        warn([f"start: the result was computed with {shown}, this run has the model's own; set={{{kept}}} keeps them"])
+    goes_on = not set and not others and "from_" not in options and str(options.get("method", method)) == "event"
+    if goes_on and result.method == "event" and "initial_mode" not in options and names:
+        modes = {name: mode for name, mode in zip(names, result.final.mode) if mode == 0 or name in forced}
+        if modes:
+            changed["initial_mode"] = modes
+    return settings, changed
+
+
 def _restored(text: str, origin: Origin = None, kept: Kept | None = None) -> Result:
     return Result(_core.parse_result(text), origin, kept)
-
-
-def needed(package: str, extra: str) -> typing.Any:
-    import importlib
-
-    try:
-        return importlib.import_module(package)
-    except ImportError as error:
-        raise ImportError(f"this needs {package}: pip install 'saltus[{extra}]'") from error

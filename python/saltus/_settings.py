@@ -11,8 +11,9 @@ import typing
 
 import numpy as np
 
-from . import _core
+from . import _core, _samples
 from ._expression import Expression, refuse
+from ._outcome import Final
 
 #: What other programs call what has another name here.
 _ELSEWHERE = {
@@ -39,8 +40,11 @@ _STATED = {
     "contacts": ": b.contact(name, gap=…)",
 }
 Value = typing.Any  #: a number, a text (an expression, a word), a list of numbers, a dict of these
+#: What `set` changes, by names; the end of a run are its states.
+Settings = typing.Union[typing.Mapping[typing.Any, typing.Any], Final]
 Option = tuple[str, str, str]
 _DISTRIBUTION = re.compile(r"\s*(normal|uniform|lognormal)\s*\(")
+_TABLES = ("output", "event", "smoothed", "fesd", "timestepping")
 _SIMULATE = frozenset(_core.simulate_keys())
 _OPTIMIZE = frozenset(_core.optimize_keys())
 
@@ -76,23 +80,28 @@ def text_of(value: Value, name: str = "") -> str:
     if is_list(value) or isinstance(value, np.ndarray):
         return "[" + ", ".join(text_of(entry, name) for entry in value) + "]"
     if hasattr(value, "save"):
-        raise refuse(f"{name}: a result is no value", 'save it, and give its file: r.save("r.json"), {"result": "r.json"}')
+        raise refuse(
+            f"{name}: a result is no value",
+            'its end is set=r.final, all of it start=r; the values of a control are inputs={"u": r}',
+        )
     raise TypeError(f"a number, a text or a list of numbers is expected, found {type(value).__name__}")
 
 
-def settings_of(values: typing.Mapping[str, Value] | None) -> list[str]:
+def settings_of(values: Settings | None) -> list[str]:
     """NAME=VALUE of `set`; tables inside become dotted names."""
     return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(_set(values))]
 
 
-def names_in(values: typing.Mapping[str, Value] | None) -> list[str]:
+def names_in(values: Settings | None) -> list[str]:
     """The names that `set` changes, dotted."""
     return [name for name, _ in _flat(_set(values))]
 
 
 def _set(values: typing.Any) -> typing.Mapping[str, Value]:
+    if isinstance(values, Final):
+        return values.states()
     if values is not None and not isinstance(values, typing.Mapping):
-        raise TypeError(f'set={values!r}: expected a dict, e.g. set={{"mu": 0.5}}')
+        raise TypeError(f'set={values!r}: expected a dict, e.g. set={{"mu": 0.5}}, or the end of a run, set=r.final')
     return values or {}
 
 
@@ -125,12 +134,10 @@ def simulate_options(
     keywords = {name.rstrip("_"): value for name, value in keywords.items() if value is not None}
     method = str(keywords.get("method", method))
     tables = ["output", "event", "smoothed", "timestepping" if method == "timestepping" else "fesd"]
-    settings: list[str] = []
+    settings = inputs_settings(keywords.pop("inputs", None))
     options: list[Option] = []
     for name, value in _flat(keywords):
-        if name.startswith("inputs."):
-            settings.append(f"simulate.{name}={text_of(value, name)}")
-            continue
+        _in_its_table(name, value)
         keys = [name] + [f"{table}.{name}" for table in tables]
         by_surface = f"event.{name}" if name.startswith("scaling.") else name
         key = next((key for key in keys if key in _SIMULATE), by_surface)
@@ -138,26 +145,55 @@ def simulate_options(
     return settings, options
 
 
+def option_of(name: str, value: Value) -> Option:
+    """A keyword that is the key of an option itself."""
+    return name.rstrip("_"), text_of(value, name), f"{name}={_shown(value)}"
+
+
+def inputs_settings(inputs: typing.Any) -> list[str]:
+    """Settings of what controls are: expressions, files, data in memory, earlier results."""
+    settings: list[str] = []
+    for name, value in _samples.inputs_by_control({} if inputs is None else inputs).items():
+        what, key = f'inputs={{"{name}": …}}', f"simulate.inputs.{name}"
+        source = value.get("result") if isinstance(value, typing.Mapping) else value
+        if hasattr(source, "optimization"):
+            settings.append(f"{key}={sampled(*_samples.of_result(what, name, source))}")
+        elif _samples.is_data(value):
+            settings.append(f"{key}={sampled(*_samples.samples(what, name, value))}")
+        elif isinstance(value, typing.Mapping):
+            settings += [f"{key}.{kind}={text_of(path, name)}" for kind, path in value.items()]
+        else:
+            settings.append(f"{key}={text_of(value, name)}")
+    return settings
+
+
+def sampled(times: list[float], values: list[float]) -> str:
+    """Samples as they stand in a model file."""
+    return f"{{ times = {times}, values = {values} }}"
+
+
+def _in_its_table(name: str, value: Value) -> None:
+    """Refuses an option in the table of another method, and says where it belongs."""
+    table, _, word = name.rpartition(".")
+    if table not in _TABLES or name in _SIMULATE or name.startswith("event.scaling."):
+        return
+    written = f"{word}={value if isinstance(value, bool) else _shown(value)}"
+    if word in _SIMULATE:
+        raise refuse(f"{table} has no option '{word}'", f"it is of every method: {written}")
+    homes = [home for home in _TABLES if f"{home}.{word}" in _SIMULATE]
+    if homes:
+        home = "the table of rows" if homes[0] == "output" else f"the method {homes[0]}"
+        remedy = f'output={{"{word}": …}}' if homes[0] == "output" else f'method="{homes[0]}", {written}'
+        raise refuse(f"{table} has no option '{word}'", f"'{word}' is of {home}: write {remedy}")
+
+
 def check_together(keywords: typing.Mapping[str, Value]) -> None:
-    """What keywords cannot be, or cannot be beside each other."""
-    _check_inputs(keywords.get("inputs") or {})
+    """What keywords cannot be beside each other."""
     output = keywords.get("output")
     given = {**(output if isinstance(output, typing.Mapping) else {}), **keywords}
     grids = [name for name in ("every", "points", "times") if given.get(name) is not None]
     if len(grids) > 1:
         raise refuse(f"{' and '.join(grids)} say twice when there are rows", "leave one of them out")
-
-
-def _check_inputs(inputs: typing.Any) -> None:
-    if not isinstance(inputs, typing.Mapping):
-        raise refuse(f"inputs={inputs!r}: expected a dict", 'e.g. inputs={"u": "sin(t)"}')
-    for name, value in inputs.items():
-        if isinstance(value, (list, tuple)) or isinstance(value, np.ndarray) and value.ndim > 0:
-            raise refuse(
-                f'inputs={{"{name}": …}}: an input is no list of values',
-                'write an expression of t, "sin(t)", or the file of a table with the columns t and '
-                f'{name}: {{"file": "u.csv"}}',
-            )
 
 
 def optimize_options(keywords: typing.Mapping[str, Value]) -> tuple[list[str], list[Option]]:
@@ -188,6 +224,12 @@ def states_the_problem(name: str) -> bool:
     return _optimize_key(name.rstrip("_")) is None and name not in ("set", "start", "progress", *_ELSEWHERE_IN_OPTIMIZE)
 
 
+def is_result(value: Value) -> bool:
+    """Whether a keyword is an earlier result, or a dict that names one."""
+    value = value.get("result") if isinstance(value, typing.Mapping) else value
+    return hasattr(value, "optimization")
+
+
 def is_list(value: Value) -> bool:
     """Whether a keyword has several values."""
     if isinstance(value, (str, bytes, typing.Mapping)) or np.ndim(value) != 1:
@@ -202,7 +244,7 @@ def sweep_name(name: str, method: str) -> str:
 
 def option_named(name: str, method: str) -> str | None:
     """The whole name of the option that a keyword stands for."""
-    options = simulate_options({name: 0}, method)[1]
+    options = simulate_options({name: 0}, method)[1] if name != "inputs" else []
     return next((key for key, _, _ in options if key.removeprefix("simulate.") in _SIMULATE), None)
 
 

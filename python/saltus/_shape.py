@@ -6,19 +6,18 @@ import typing
 
 import numpy as np
 
-if typing.TYPE_CHECKING:
-    from ._result import Result
+from ._recorded import Recorded
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
-def as_drawn(r: Result) -> Result:
+def as_drawn(r: Recorded) -> Recorded:
     """The result with two rows at every event, which it need not have: what pages and figures show."""
     run = r._run.drawn()
-    return r if run is None else type(r)(run)
+    return r if run is None else Recorded(run)
 
 
-def broken_at_jumps(r: Result, *columns: Array) -> list[Array]:
+def broken_at_jumps(r: Recorded, *columns: Array) -> list[Array]:
     """The columns with a NaN between the two rows of every jump of one of them, so that no line joins them."""
     places = sorted({int(row) + 1 for column in columns for row in _jumps(r.t, column)})
     if not places:
@@ -57,7 +56,7 @@ def is_alone(values: Array) -> Array:
     return lone
 
 
-def sliding_spans(r: Result) -> list[tuple[float, float]]:
+def sliding_spans(r: Recorded) -> list[tuple[float, float]]:
     """Intervals of time in which the solution slides on at least one surface, joined where they touch."""
     if r.mode.shape[1] == 0 or len(r.t) < 2:
         return []
@@ -74,7 +73,7 @@ def sliding_spans(r: Result) -> list[tuple[float, float]]:
     return spans
 
 
-def slides(r: Result) -> Array:
+def slides(r: Recorded) -> Array:
     """Of every row, whether the solution slides there."""
     return np.any(r.mode == 0, axis=1) if r.mode.shape[1] else np.zeros(len(r.t), dtype=bool)
 

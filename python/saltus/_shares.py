@@ -10,7 +10,7 @@ import typing
 
 import numpy as np
 
-from ._errors import Stopped
+from ._result import Stopped
 from ._sweep import Found, Results, RunWithoutRow, SweepArguments, Warned, warn_of_runs
 from ._tasks import Task, Tasks, Workers
 

@@ -51,6 +51,8 @@ def _patterns() -> list[tuple[re.Pattern[str], str]]:
     return [(re.compile(found), written) for found, written in _SPELLINGS]
 
 
+#: Options of two tables that are one keyword.
+_TWICE = re.compile(r"'(\w+)'(?: or '\1')+")
 #: Whole names are left where they are what is to be written: set={"simulate.rtol": …}.
 _DOTTED = re.compile(r"(?<![\w.])(?<!\{\")(?:simulate|optimize)\.(?:(?:event|output|fesd|timestepping|smoothed|mpcc)\.)?(?=[a-z])")
 
@@ -72,7 +74,7 @@ def keywords(text: str) -> str:
     >>> keywords("unknown option simulate.fesd.stage, did you mean 'simulate.fesd.stages'?")
     "unknown option stage, did you mean 'stages'?"
     """
-    return _DOTTED.sub("", text)
+    return _TWICE.sub(r"'\1'", _DOTTED.sub("", text))
 
 
 def is_option(file: str) -> bool:

@@ -7,9 +7,9 @@ import os
 import typing
 
 from . import _core
-from ._errors import ModelError, Stopped
+from ._errors import ModelError
 from ._expression import refuse
-from ._result import Result, load
+from ._result import Result, Stopped, load
 from ._settings import Option
 from ._tasks import Task, Tasks, Workers
 

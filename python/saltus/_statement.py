@@ -10,7 +10,8 @@ import typing
 
 import numpy as np
 
-from ._expression import Expression, Operand, expression, number, owner_of, refuse
+from ._array import entries_of, is_sparse
+from ._expression import Expression, Operand, expression, is_foreign, number, owner_of, refuse
 
 #: The name of a part of an expression until it is written down.
 _PART = re.compile(r"§\d+§")
@@ -18,7 +19,7 @@ Rates = typing.Mapping[typing.Any, Operand]
 Entries = dict[str, typing.Any]
 #: Names that the language has already.
 RESERVED = frozenset(
-    "t pi and or not if step sign abs max min floor mod initial sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 "
+    "t pi otherwise and or not if step sign abs max min floor mod initial sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 "
     "sqrt hypot pow".split()
 )
 
@@ -106,11 +107,20 @@ class Statement:
 
     # Names and owners ----------------------------------------------------------------------------------------------
 
-    def _take(self, name: str, taken: typing.Container[str] | None = None) -> None:
+    def _named(self, name: str | None) -> str | None:
+        """A name that may be used, of what others may be called like, too."""
+        if name is not None:
+            self._check_name(name)
+        return name
+
+    def _check_name(self, name: str) -> None:
         if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
             raise refuse(f"{name!r} is no name", "letters, digits and _, with a letter first: \"x1\"")
         if name in RESERVED:
             raise refuse(f"'{name}' is a word of the language", f"choose another name, e.g. {name}_")
+
+    def _take(self, name: str, taken: typing.Container[str] | None = None) -> None:
+        self._check_name(name)
         if name in (self._taken if taken is None else taken):
             raise refuse(f"the name '{name}' is taken", "every name of a model is declared once")
         self._taken.add(name)
@@ -143,6 +153,11 @@ class Statement:
             return {name: self._own_all(entry) for name, entry in value.items()}
         if isinstance(value, (list, tuple)):
             return [self._own_all(entry) for entry in value]
+        entries = entries_of(value) if is_foreign(value) or is_sparse(value) else None
+        if entries is not None and (len(entries) != 1 or isinstance(entries[0], list)):
+            return self._own_all(entries)
+        if is_foreign(value):
+            return self._own(value)
         if hasattr(value, "tolist") and not isinstance(value, Expression):
             return self._own_all(value.tolist())
         return self._own(value) if isinstance(value, Expression) else value

@@ -10,9 +10,8 @@ import typing
 import numpy as np
 
 from . import _core
-from ._errors import Stopped
 from ._outcome import unknown
-from ._result import Result
+from ._result import Result, Stopped
 from ._shares import MOST_RUNS, Cutter, Place, Shares, Tell, run_share, stop_file
 from ._sweep import Array, RunWithoutRow, Sweep, SweepArguments, Warned, as_column, warn_of_runs
 from ._sweep_folder import Folder, Part, Statement

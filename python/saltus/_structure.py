@@ -7,7 +7,8 @@ import typing
 
 import numpy as np
 
-from ._checks import one_of
+from ._array import entries_of
+from ._entries import least_squares, one_of
 from ._expression import Expression, Operand, refuse
 from ._statement import Entries, Rates, Statement, given
 
@@ -54,7 +55,7 @@ class Structure(Statement):
             "at": None if at is None else [self._own(time) for time in (at if np.ndim(at) else [at])],
             "every": self._own_or_none(every),
             "set": self._rates(set),
-            "name": name,
+            "name": self._named(name),
             "at_start": at_start or None,
             "priority": self._own_or_none(priority),
             "delay": self._own_or_none(delay),
@@ -89,14 +90,14 @@ class Structure(Statement):
         positions: typing.Sequence[Expression | str],
         velocities: typing.Sequence[Expression | str],
         *,
-        mass: typing.Sequence[typing.Sequence[Operand]] | None = None,
+        mass: typing.Any = None,
         force: Rates | None = None,
         potential: Operand = None,
         coriolis: str | None = None,
         draw: typing.Sequence[typing.Mapping[str, typing.Any]] | None = None,
     ) -> None:
         """Moves positions and velocities by M(q) v' = force - grad potential; `force` by velocity. Without `mass` M is
-        the identity; ``coriolis="auto"`` adds the terms of a mass matrix that depends on positions. `draw` lists lines
+        the identity; it is a list of rows, or a matrix of NumPy, CasADi, SymPy or scipy.sparse. ``coriolis="auto"`` adds the terms of a mass matrix that depends on positions. `draw` lists lines
         and discs for the page of a report: ``[{"point": [0, y], "radius": 0.1}]``.
 
         >>> m = saltus.Builder("ball")
@@ -112,7 +113,7 @@ class Structure(Statement):
         entry = {
             "positions": [self._state(name) for name in positions],
             "velocities": [self._state(name) for name in velocities],
-            "mass": None if mass is None else [[self._own(value) for value in row] for row in mass],
+            "mass": None if mass is None else self._matrix(mass, len(velocities)),
             "force": self._rates_or_none(force),
             "potential": self._own_or_none(potential),
             "coriolis": coriolis,
@@ -152,8 +153,21 @@ class Structure(Statement):
         self._take(name)
         self._lists["contacts"].append(given(entry))
 
+    def _matrix(self, mass: typing.Any, size: int) -> list[list[Expression]]:
+        found = entries_of(mass)
+        rows = list(mass if found is None else found)
+        if size == 1 and len(rows) == 1 and not isinstance(rows[0], (list, tuple, np.ndarray)):
+            rows = [rows]
+        lengths = {len(row) if isinstance(row, (list, tuple, np.ndarray)) else 0 for row in rows}
+        if len(rows) != size or lengths != {size}:
+            shown = f"{len(rows)} rows of {' and '.join(map(str, sorted(lengths)))} entries"
+            raise refuse(f"mass: expected {size} rows of {size} entries, found {shown}", "a row and a column per velocity")
+        return [[self._own(value) for value in row] for row in rows]
+
     def optimal_control(self, **problem: typing.Any) -> None:
         """What is to be optimised, with the keys of [optimize]: expressions, conditions, lists and dicts of them.
+
+        Measurements are in memory, or in a file: ``least_squares=[{"of": [x], "reference": (times, values)}]``.
 
         >>> m = saltus.Builder("car")
         >>> q, v, u = m.state("q", 0), m.state("v", 0), m.control("u", lower=-1, upper=1)
@@ -170,7 +184,7 @@ class Structure(Statement):
             raise refuse("the problem of optimal control is stated twice", "state all of its keys at once")
         if not problem:
             raise refuse("the problem of optimal control has no keys", "e.g. horizon=1, objective=x**2")
-        self._optimize = self._keys(problem)
+        self._optimize = self._problem(problem)
 
     def time_freezing(self, **keys: typing.Any) -> None:
         """How time stands still at contacts and hysteresis, with the keys of [time_freezing] (docs/model-file.md).
@@ -196,6 +210,10 @@ class Structure(Statement):
         [0.0, 1.0, 2.0, 3.0]
         """
         self._simulate = self._keys(options)
+
+    def _problem(self, keys: Entries) -> Entries:
+        parts = keys.get("least_squares")
+        return self._keys(keys if parts is None else {**keys, "least_squares": least_squares(parts)})
 
     def _keys(self, keys: Entries) -> Entries:
         return {name.rstrip("_"): self._own_all(value) for name, value in given(keys).items()}

@@ -11,10 +11,10 @@ import typing
 import numpy as np
 
 from . import _card, _core, _data, _sweep_plot
-from ._errors import warn
+from ._errors import needed, warn
 from ._expression import Expression, refuse
 from ._outcome import Kept, unknown
-from ._result import Again, Origin, Result, needed
+from ._result import Again, Origin, Result
 from ._settings import text_of
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
@@ -179,6 +179,9 @@ class Sweep:
         if name not in self.table:
             raise unknown(name, list(self.table), "the table")
         return self.table[name]
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self._columns)
 
     @property
     def done(self) -> bool:

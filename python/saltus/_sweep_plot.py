@@ -6,14 +6,24 @@ import typing
 
 import numpy as np
 
-from ._errors import warn
+from ._errors import needed, warn
 from ._outcome import unknown
 from ._plot import LINES, caption_of
-from ._result import needed
+from ._shape import Array
 
-if typing.TYPE_CHECKING:
-    from ._shape import Array
-    from ._sweep import Sweep
+
+class Sweep(typing.Protocol):
+    """What pictures show of a sweep."""
+
+    names: list[str]
+    results: typing.Sequence[typing.Any]
+    _sampled: int
+
+    @property
+    def table(self) -> dict[str, typing.Any]: ...
+    def __getitem__(self, name: str) -> Array: ...
+    def __len__(self) -> int: ...
+
 
 #: How runs end that did what was asked; where others stopped is no end of theirs.
 _DONE = ("completed", "stopped_by_event")

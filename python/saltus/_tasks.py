@@ -13,7 +13,7 @@ import queue
 import typing
 
 from . import _core
-from ._errors import Stopped
+from ._result import Stopped
 
 #: How often a task is begun whose worker ends.
 MOST_TRIES = 3

@@ -109,11 +109,15 @@ nb::object order(Model& model, std::vector<std::string> settings, std::vector<Op
 }
 
 nb::object optimize(Model& model, std::vector<std::string> settings, std::vector<Option> options,
-                    const std::string& start, nb::object on_step, nb::list warnings) {
+                    const nb::object& start, nb::object on_step, nb::list warnings) {
   auto input = model.stated({std::move(settings), std::move(options), frontend::RunMethods::several});
   value_or_raise(io::check_optimize_options(input.file));
-  if (!start.empty()) input.file.optimize->start_result = start;
-  value_or_raise(io::read_start_result(input.file));
+  if (nb::isinstance<Run>(start)) {
+    input.file.optimize->start_from = nb::cast<Run&>(start).result;
+  } else {
+    if (!start.is_none()) input.file.optimize->start_result = nb::cast<std::string>(start);
+    value_or_raise(io::read_start_result(input.file));
+  }
   const auto ocp = model::build_ocp(input.file.description, input.overrides);
   if (!ocp) raise(io::located(ocp.error(), input.file));
   append(warnings, ocp->system.warnings);
@@ -209,20 +213,27 @@ std::vector<std::pair<std::string, double>> quantities(Model& model, bool of_sta
 void add_model(nb::module_& module) {
   nb::class_<Model> type(module, "Model", "A model file.");
   type.def(nb::init<const std::string&>())
-      .def(nb::init<const std::string&, const std::string&>())
+      .def(nb::init<const std::string&, const std::string&, const std::vector<std::pair<std::string, std::string>>&>(),
+           nb::arg("text"), nb::arg("name"), nb::arg("files") = std::vector<std::pair<std::string, std::string>>())
       .def_prop_ro("name", [](const Model& self) { return self.input().file.description.name; })
       .def_prop_ro("description", [](const Model& self) { return self.input().file.description.description; })
       .def_prop_ro("path", [](const Model& self) { return self.input().path; })
       .def_prop_ro("method",
                    [](const Model& self) { return std::string(pipeline::name(self.input().file.simulate.method)); })
+      .def_prop_ro("forced_modes",
+                   [](const Model& self) {
+                     std::vector<std::string> names;
+                     for (const auto& [name, mode] : self.input().file.simulate.initial_mode) names.push_back(name);
+                     return names;
+                   })
       .def_prop_ro("can_optimize", [](const Model& self) { return self.input().file.optimize.has_value(); })
       .def("simulate", simulate, nb::arg("settings"), nb::arg("options"), nb::arg("progress").none(),
            nb::arg("warnings"))
       .def("compare", compare, nb::arg("settings"), nb::arg("options"), nb::arg("progress").none(), nb::arg("warnings"))
       .def("order", order, nb::arg("settings"), nb::arg("options"), nb::arg("progress").none(), nb::arg("warnings"),
            nb::arg("schemes"), nb::arg("steps"))
-      .def("optimize", optimize, nb::arg("settings"), nb::arg("options"), nb::arg("start"), nb::arg("on_step").none(),
-           nb::arg("warnings"))
+      .def("optimize", optimize, nb::arg("settings"), nb::arg("options"), nb::arg("start").none(),
+           nb::arg("on_step").none(), nb::arg("warnings"))
       .def("starts", starts, nb::arg("settings"), nb::arg("options"))
       .def("simulate_between", simulate_between, nb::arg("settings"), nb::arg("options"), nb::arg("branches"))
       .def("equations", equations, nb::arg("latex"))

@@ -1,6 +1,7 @@
 // A model file as Python holds it.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <nanobind/nanobind.h>
 #include <string>
@@ -10,6 +11,7 @@
 
 #include "errors.hpp"
 #include "saltus/frontend/model_input.hpp"
+#include "saltus/io/sha256.hpp"
 #include "saltus/model/build.hpp"
 #include "saltus/pipeline/simulate.hpp"
 
@@ -29,8 +31,9 @@ struct Request {
 class Model {
  public:
   explicit Model(const std::string& model) : input_(value_or_raise(frontend::read_input(model, {}))) {}
-  Model(const std::string& text, const std::string& name)
-      : input_{name, value_or_raise(io::parse_model(text, name)), {}} {}
+  /// @param files  (name, text), in place of those that the text names
+  Model(const std::string& text, const std::string& name, const std::vector<std::pair<std::string, std::string>>& files)
+      : input_{name, value_or_raise(io::parse_model(text, name, named(name, files))), {}} {}
 
   [[nodiscard]] const frontend::ModelInput& input() const { return input_; }
 
@@ -57,6 +60,15 @@ class Model {
   }
 
  private:
+  static std::vector<result::NamedFile> named(const std::string& model,
+                                              const std::vector<std::pair<std::string, std::string>>& files) {
+    std::vector<result::NamedFile> list;
+    for (const auto& [file, text] : files) {
+      list.push_back({(std::filesystem::path(model).parent_path() / file).string(), io::sha256(text), text});
+    }
+    return list;
+  }
+
   frontend::ModelInput input_;
   std::shared_ptr<const model::System> built_;
   std::vector<std::string> settings_;

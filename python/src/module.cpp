@@ -7,4 +7,6 @@ NB_MODULE(_core, module) {
   saltus::python::add_model(module);
   saltus::python::add_starts(module);
   saltus::python::add_tool(module);
+  saltus::python::add_options(module);
+  saltus::python::add_mpcc(module);
 }

@@ -13,5 +13,7 @@ void add_result(nanobind::module_& module);
 void add_model(nanobind::module_& module);
 void add_starts(nanobind::module_& module);
 void add_tool(nanobind::module_& module);
+void add_options(nanobind::module_& module);
+void add_mpcc(nanobind::module_& module);
 
 }  // namespace saltus::python

@@ -1,8 +1,10 @@
 #include "result.hpp"
 
 #include <algorithm>
+#include <array>
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -21,6 +23,7 @@
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/pipeline/vector_field.hpp"
+#include "saltus/report/findings.hpp"
 #include "saltus/report/html.hpp"
 #include "saltus/report/table.hpp"
 #include "saltus/result/difference.hpp"
@@ -294,6 +297,12 @@ void add_result(nb::module_& module) {
       .def_prop_ro("sensitivities", sensitivities)
       .def("drawn", drawn)
       .def("facts", facts)
+      .def("said",
+           [](const Run& self) {
+             std::vector<std::array<std::string, 3>> list;
+             for (auto& one : report::said_of_optimum(*self.result)) list.push_back({one.about, one.tone, one.text});
+             return list;
+           })
       .def("table", [](const Run& self) { return report::to_table(*self.result); })
       .def("json",
            [](Run& self, bool surfaces) {

@@ -14,8 +14,6 @@
 #include "saltus/frontend/catalogue.hpp"
 #include "saltus/frontend/sized_models.hpp"
 #include "saltus/io/atomic_file.hpp"
-#include "saltus/pipeline/options/optimize_fields.hpp"
-#include "saltus/pipeline/options/option_fields.hpp"
 
 namespace nb = nanobind;
 
@@ -66,8 +64,6 @@ void add_tool(nb::module_& module) {
     value_or_raise(io::write_file(path, content));
   });
   module.def("plotly_source", [] { return value_or_raise(frontend::plotly_source()); });
-  module.def("simulate_keys", [] { return pipeline::simulate_keys(); });
-  module.def("optimize_keys", [] { return pipeline::optimize_keys(); });
 }
 
 }  // namespace saltus::python

@@ -54,7 +54,7 @@ def said_by(call, kind=ValueError):
         ({"inputs": 3}, "inputs=3: expected a dict"),
         ({"inputs": {"u": "sin(t)"}}, 'inputs={"u": …}: expected the name of a control'),
         ({"inputs": {"u": [0, 1]}}, 'inputs={"u": …}: an input is no list'),
-        ({"inputs": {"u": ([0, 1], [[2], [3, 4]])}}, '{"file": "u.csv"}'),
+        ({"inputs": {"u": ([0, 1], [[2], [3, 4]])}}, 'the values are no numbers'),
         ({"t_eval": [0, 1]}, "'t_eval' is no option\n  write times=[…]"),
         ({"x0": [0, 1]}, 'set={"name": value}'),
         ({"belt": 0.1}, 'write set={"belt": 0.1}'),
@@ -135,7 +135,8 @@ def test_optimisations(block, slip):
         solved.objective
     with pytest.raises(AttributeError, match="no attribute 'figure'"):
         solved.figure
-    assert '{"result": "r.json"}' in said_by(lambda: block.simulate(until=1, inputs={"u": solved}))
+    assert block.simulate(until=1, inputs={"u": solved})["u"][0] == solved.u[0, 0]
+    assert "set=r.final" in said_by(lambda: block.simulate(until=1, set={"u": solved}))
     assert "u=[… " in said_by(lambda: block.simulate(until=1, set={"u": solved.u}))
     assert "or run m.simulate()" in said_by(lambda: slip.optimize())
     assert "options change what is stated" in said_by(lambda: slip.optimize(control_intervals=5))

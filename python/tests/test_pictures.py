@@ -245,7 +245,7 @@ def test_an_output_that_no_row_has_at_an_event_is_not_joined():
 
 
 def test_a_value_alone_between_events_is_seen():
-    r = relay().simulate(until=5, output={"times": [0, 2, 4.9], "events": False})
+    r = relay().simulate(until=5, output={"times": [0, 2, 4.9, 5], "events": False})
     (line,) = (line for line in r.plot(["u"])[0].lines if line.get_gid() == "saltus")
     dots = line.get_markevery()
     assert line.get_marker() == "." and np.asarray(line.get_xdata())[dots].tolist() == [0, 2]

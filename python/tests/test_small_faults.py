@@ -1,0 +1,148 @@
+"""Small things that a newcomer meets: each says where it belongs, at the place where it was written."""
+
+import sys
+import types
+
+import pytest
+
+import saltus
+
+
+def said_by(call):
+    with pytest.raises(saltus.ModelError) as refused:
+        call()
+    return str(refused.value)
+
+
+@pytest.mark.parametrize("options, said", [
+    ({"event": {"sensitivities": True}}, 'write method="fesd", sensitivities=True'),
+    ({"event": {"native": "off"}}, "it is of every method: native='off'"),
+    ({"fesd": {"rtol": 1e-6}}, "it is of every method: rtol=1e-06"),
+    ({"fesd": {"integrator": "taylor"}}, "write method=\"event\", integrator='taylor'"),
+    ({"event": {"points": 3}}, 'write output={"points": …}'),
+    ({"event": {"integrato": "taylor"}}, "did you mean 'integrator'"),
+])
+def test_an_option_is_told_where_it_belongs(brake, options, said):
+    text = said_by(lambda: brake.simulate(**options))
+    assert said in text
+    assert "'sensitivities' or 'sensitivities'" not in text
+
+
+def test_no_word_is_meant_twice(brake):
+    """Of two options that Python calls by one word."""
+    text = said_by(lambda: brake.simulate(set={"simulate.event.sensitivities": True}))
+    assert text.count("'sensitivities'") <= 1
+
+
+def test_a_model_without_states_is_told_before_its_end():
+    b = saltus.Builder("empty")
+    assert "has no states" in said_by(b.simulate)
+    assert "has no states" in said_by(lambda: saltus.Model.from_text('[model]\nname = "empty"\n').simulate())
+    b.rate(b.state("x", 0), 1)
+    assert "no end time" in said_by(b.simulate)
+
+
+@pytest.mark.parametrize("name", ["floor", "left wall", "1st", "wall-left", "otherwise", "bounce é"])
+def test_names_that_may_not_be_used_are_told_where_they_are_declared(name):
+    b = saltus.Builder("m")
+    x, v = b.state("x", 1), b.state("v", 0)
+    for declare in (lambda: b.jump(x, {v: -v}, direction="down", name=name), lambda: b.event(x, name=name),
+                    lambda: b.contact(name, gap=x), lambda: b.parameter(name, 1), lambda: b.hysteresis(name, x, on=1, off=0)):
+        assert f"'{name}' is" in said_by(declare)
+    b.event(x, name="wall")
+
+
+BLOCK = """
+[model]
+name = "block"
+[states]
+q = 0
+v = 0
+[controls]
+u = { lower = -2, upper = 2 }
+[dynamics]
+q = "v"
+v = "u - 0.5*sign(v)"
+[optimize]
+horizon = 2
+control_intervals = 4
+running_cost = "u^2"
+terminal_constraints = ["q == 0.5", "v == 0"]
+"""
+
+
+def test_the_card_of_an_optimum_tells_objective_certificate_and_verification():
+    r = saltus.Model.from_text(BLOCK).optimize()
+    card = r._repr_html_()
+    assert f"objective <b>{r.optimization['objective']:.10g}</b>, horizon 2" in card
+    assert "Feasible to" in card and "B-stationary" in card
+    assert "Simulated event by event" in card
+    assert card.count("✓") >= 3
+    assert "objective" not in saltus.catalogue("stick-slip").simulate(until=1)._repr_html_()
+
+
+def test_tables_stand_in_monospace(brake):
+    for shown in (brake.compare(until=1), brake.order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]), brake.check()):
+        assert "font-family:monospace" in shown._repr_html_()
+
+
+class Bar:
+    made: list = []
+
+    def __init__(self, **how):
+        self.how, self.n, self.words = how, 0, []
+        Bar.made.append(self)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def update(self, more):
+        self.n += more
+
+    def set_postfix_str(self, text, refresh=True):
+        self.words.append(text)
+
+
+@pytest.fixture
+def bars(monkeypatch):
+    Bar.made = []
+    monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
+    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
+    return Bar.made
+
+
+def test_a_bar_tells_how_far_a_run_is_and_what_is_prepared(bars):
+    from saltus._progress import progress_line
+
+    saltus.catalogue("stick-slip").simulate(until=5, progress=True)
+    (bar,) = bars
+    assert bar.n == pytest.approx(100)
+    with progress_line("slow", True) as tell:
+        tell.prepare("compiling", 2, 5)
+        tell(1.0, 0.0, 2.0, 3, 4)
+    words = bars[1].words
+    assert words[0] == "compiling: 2 of 5"
+    assert words[-2:] == ["t = 1, 3 steps, 4 events", "done"]
+    assert bars[1].n == pytest.approx(100)
+
+
+def test_a_bar_counts_the_problems_of_an_optimisation(bars):
+    r = saltus.Model.from_text(BLOCK).optimize(progress=True)
+    (bar,) = bars
+    assert bar.n == len(r.optimization["homotopy"])
+    assert "scholtes" in " ".join(bar.words) or len(bar.words) >= bar.n
+
+
+def test_a_line_tells_what_is_prepared(capsys, monkeypatch):
+    from saltus._progress import progress_line
+
+    monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with progress_line("slow", True) as tell:
+        tell.prepare("reading", 0, 0)
+        tell(1.0, 0.0, 2.0, 3, 4)
+    written = capsys.readouterr().err.split("\r")
+    assert written[1].startswith("slow: reading")
+    assert written[-3].startswith("slow: t = 1   50 %   3 steps   4 events")
