@@ -30,7 +30,7 @@ def counted(rows, peer):
 
 
 def main():
-    found = {peer: common.run(peer, script, limit=200) for peer, script in
+    found = {peer: common.run(peer, script, limit=580) for peer, script in
              (("Saltus", "gradients_saltus.py"), ("diffrax", "gradients_diffrax.py"), ("jaxonomy", "gradients_jaxonomy.py"))}
     rows = []
     for name, problem in PROBLEMS.items():

@@ -65,6 +65,17 @@ class ClaimsSelfTest(unittest.TestCase):
 
 
 class ScriptsSelfTest(unittest.TestCase):
+    def test_every_benchmark_has_its_script_and_its_page(self):
+        root = Path(__file__).resolve().parents[2]
+        sys.path.insert(0, str(root / "benchmarks"))
+        import all as every
+
+        names = [one.name for one in every.benchmarks("folder")]
+        self.assertEqual(len(set(names)), len(names))
+        for one in every.benchmarks("folder"):
+            self.assertTrue((root / "benchmarks" / one.script).exists(), one.script)
+            self.assertTrue((root / f"benchmarks/results/{one.name}.md").exists(), one.name)
+
     def test_workflows_call_what_is_there(self):
         with tempfile.TemporaryDirectory() as folder:
             root = Path(folder)
