@@ -165,7 +165,7 @@ def unbroken(text):
 
 def mended(text):
     """Links of the source tree as links of the site, or as names."""
-    text = text.replace("](../README.md)", "](how.md)").replace("](../../docs/", "](../../")
+    text = text.replace("](../README.md", "](how.md").replace("](../../docs/", "](../../")
     text = re.sub(r"\]\(results/([a-z_-]+)\.md\)", r"](\1.md)", text)
     return re.sub(r"!\[[^\]]*\]\([a-z_]+\.svg\)\n?", "", text)
 
