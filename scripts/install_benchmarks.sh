@@ -32,13 +32,14 @@ install_debian_package() {
     say "apt-get could not install $package: going on without it"
 }
 
+# A search of pip for versions that fit each other may take hours: it gets a quarter of one.
 install_from_pypi() {
   local package=$1 version=$2 folder=$3 module=${4:-$1}
   "$folder/bin/python3" -c "import $module" 2>/dev/null && return 0
   say "Installing $package $version into $folder …"
   mkdir -p "$(dirname "$folder")"
   { python3 -m venv "$folder" &&
-    "$folder/bin/python3" -m pip install --quiet --disable-pip-version-check "$package==$version"; } >&2 ||
+    timeout 900 "$folder/bin/python3" -m pip install --quiet --disable-pip-version-check "$package==$version"; } >&2 ||
     say "pip could not install $package: going on without it"
 }
 
