@@ -89,7 +89,8 @@ saltus.videoOf = async (pictures, [from, to], speed, show, report) => {
   const frame = async (time) => {
     show(time);
     await paint(time);
-    track.requestFrame();
+    // Older browsers ask the stream.
+    (track.requestFrame === undefined ? stream : track).requestFrame();
   };
   await frame(from);
   recorder.start();
