@@ -48,7 +48,8 @@ class Cutter:
         return self.first(share + 1) - self.first(share)
 
     def name(self, share: int) -> str:
-        return f"runs {self.first(share) + 1} to {self.first(share + 1)}"
+        first, last = self.first(share) + 1, self.first(share + 1)
+        return f"run {first}" if first == last else f"runs {first} to {last}"
 
     def cut(self, share: int) -> tuple[SweepArguments, Place]:
         """What computes a share."""

@@ -19,6 +19,8 @@ from ._result import Stopped
 MOST_TRIES = 3
 #: From this try on it has the workers for itself: then it is known who ends them.
 _ALONE = 2
+#: Pools that may end one after the other without a task that is done: more would end, too.
+_MOST_POOLS = 8
 #: Errors of dask and Ray, which have begun such a task several times themselves.
 _TRIED = ("KilledWorker", "WorkerCrashedError", "OutOfMemoryError")
 #: What each worker has in reserve, so that none waits for the answer to be read.
@@ -141,6 +143,7 @@ class Tasks:
         self._flying: dict[typing.Any, tuple[int, int]] = {}  # number and generation, by future
         self._arrived: queue.SimpleQueue[typing.Any] = queue.SimpleQueue()
         self._lost: dict[int, str] = {}
+        self._pools = 0  # that ended since a task was done
 
     def __iter__(self) -> typing.Iterator[tuple[int, typing.Any]]:
         self._workers.check()
@@ -156,6 +159,7 @@ class Tasks:
                 continue
             if not good:
                 raise value
+            self._pools = 0
             yield number, value
         if self._lost:
             raise Stopped(self._told())
@@ -169,6 +173,8 @@ class Tasks:
                 continue
             try:
                 good, value = future.result()
+            except KeyboardInterrupt:
+                break  # a second one: workers of other machines do not hear the first
             except BaseException:
                 continue
             if good:
@@ -202,11 +208,14 @@ class Tasks:
             self._lost[number] = f"the worker ended {MOST_TRIES} times ({_sentence(error)})"
         is_broken = isinstance(error, concurrent.futures.BrokenExecutor)
         if is_broken and generation == self._workers.generation:
+            self._pools += 1
+            if self._pools > _MOST_POOLS:
+                raise Stopped(f"the workers of {self._workers.kind} end, whatever they have to do ({_sentence(error)})")
             self._workers.renew(error)
 
     def _told(self) -> str:
         number, reason = next(iter(sorted(self._lost.items())))
-        more = f" (and {len(self._lost) - 1} more)" if len(self._lost) > 1 else ""
+        more = f" (and {len(self._lost) - 1} others)" if len(self._lost) > 1 else ""
         return f"{self._tasks[number].name}{more}: {reason}"
 
 

@@ -98,6 +98,18 @@ def test_a_task_is_begun_three_times(tmp_path):
     assert (tmp_path / "tries").read_text() == "xxx"
 
 
+def end_soon():
+    threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGKILL)).start()
+
+
+def test_workers_that_end_whatever_they_do_are_given_up(slip):
+    begin = time.perf_counter()
+    with pool(1, end_soon) as workers:
+        with pytest.raises(saltus.Stopped, match=r"^the workers of ProcessPoolExecutor end, whatever they have to do \(.*; 0 of 400 runs"):
+            slip.sweep(belt=np.linspace(0.05, 0.3, 400), until=20000, executor=workers)
+    assert time.perf_counter() - begin < 60
+
+
 def test_runs_that_cannot_be_done_leave_the_others(slip, monkeypatch):
     """The sentence names the runs, and the error has all others."""
     monkeypatch.setattr(_shares, "run_share", functools.partial(_ends_in, _shares.run_share, 3))

@@ -25,13 +25,14 @@ mpcc::PolynomialProblem two_valleys() {
   return mpcc::PolynomialProblem(statement);
 }
 
-Expected<Solution> solved_from(std::optional<int> starts, int threads = 1) {
+Expected<Solution> solved_from(std::optional<int> starts, int threads = 1, std::optional<int> seed = std::nullopt) {
   auto problem = two_valleys();
   adapters::IpoptSolver ipopt;
   adapters::HighsLpcc highs;
   SolveOptions options;
   options.starts = starts;
   options.threads = threads;
+  options.seed = seed;
   options.make_workplace = []() -> std::optional<Workplace> {
     return Workplace{std::unique_ptr<mpcc::Problem>(new mpcc::PolynomialProblem(two_valleys())),
                      std::make_unique<adapters::IpoptSolver>(), std::make_unique<adapters::HighsLpcc>()};
@@ -48,6 +49,20 @@ TEST(SeveralStarts, GiveTheSameInThreads) {
   for (std::size_t i = 0; i < alone->starts.size(); ++i) {
     EXPECT_EQ(in_threads->starts[i].objective, alone->starts[i].objective);
     EXPECT_EQ(in_threads->starts[i].is_taken, alone->starts[i].is_taken);
+  }
+}
+
+TEST(SeveralStarts, OneAloneIsWhatItIsAmongAll) {
+  const auto all = solved_from(8);
+  ASSERT_TRUE(all.has_value());
+  for (const auto& start : all->starts) {
+    const auto one = solved_from(8, 1, start.seed);
+    ASSERT_TRUE(one.has_value());
+    EXPECT_EQ(one->objective, start.objective);
+    EXPECT_EQ(one->iterations, start.iterations);
+    ASSERT_EQ(one->starts.size(), 1u);
+    EXPECT_EQ(one->starts.front().seed, start.seed);
+    EXPECT_TRUE(one->starts.front().is_taken);
   }
 }
 
