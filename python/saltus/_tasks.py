@@ -10,6 +10,7 @@ import os
 import pickle
 import pkgutil
 import queue
+import time
 import typing
 
 from . import _core
@@ -21,6 +22,8 @@ MOST_TRIES = 3
 _ALONE = 2
 #: Pools that may end one after the other without a task that is done: more would end, too.
 _MOST_POOLS = 8
+#: How long the number of workers of a cluster is believed: to ask takes milliseconds.
+_SECONDS_OF_LOOK = 2.0
 #: Errors of dask and Ray, which have begun such a task several times themselves.
 _TRIED = ("KilledWorker", "WorkerCrashedError", "OutOfMemoryError")
 #: What each worker has in reserve, so that none waits for the answer to be read.
@@ -53,6 +56,7 @@ class Workers:
                 "e.g. ProcessPoolExecutor(), or a function that makes one"
             )
         self.generation = 0
+        self._threads, self._next_look = 1, 0.0
 
     @property
     def kind(self) -> str:
@@ -61,10 +65,12 @@ class Workers:
     @property
     def number(self) -> int:
         """How many there are, as far as the executor says it."""
-        client: typing.Any = getattr(self._now, "_client", None)  # of dask
+        client: typing.Any = getattr(self._now, "_client", None)  # of dask, whose workers come and go
         if callable(getattr(client, "nthreads", None)):
-            threads: int = sum(client.nthreads().values())
-            return max(1, threads)
+            if time.monotonic() >= self._next_look:
+                self._threads = max(1, sum(client.nthreads().values()))
+                self._next_look = time.monotonic() + _SECONDS_OF_LOOK
+            return self._threads
         for name in ("_max_workers", "num_workers"):
             found = getattr(self._now, name, None)
             if isinstance(found, int) and found > 0:
