@@ -163,6 +163,7 @@ class Folder:
         last = first + sum(statuses.values()) - 1
         width = len(str(self.statement.runs))
         name = f"runs-{first:0{width}}-{last:0{width}}.{self.statement.kind}"
+        columns = {column: _whole(column, values) for column, values in columns.items()}
         beside = self.path / f".part-{os.getpid()}-{name}"
         if self.statement.kind == "parquet":
             _write_parquet(beside, columns)
@@ -193,6 +194,12 @@ class Folder:
     def close(self) -> None:
         """Lets others fill the folder."""
         self._lock.close()
+
+
+def _whole(name: str, values: typing.Any) -> Array:
+    """Columns that count have whole numbers in every part; of others (modes) one part may have gaps."""
+    column = np.asarray(values)
+    return column.astype(np.int64) if name in ("run", "unique", "events", "event") else column
 
 
 def _has_parquet() -> bool:

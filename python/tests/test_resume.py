@@ -1,6 +1,7 @@
 """Sweeps that fill a folder: they go on where they were ended, and refuse folders of others."""
 
 import concurrent.futures
+import contextlib
 import functools
 import os
 import re
@@ -64,6 +65,8 @@ def test_a_folder_is_the_table(slip, tmp_path, kind, keep):
     assert s.done and len(s) == 14 and s.names == ["belt"]
     assert {file.suffix for file in (tmp_path / "runs").glob("runs-*")} == {f".{kind}"}
     assert sum(len(part["run"]) for part in s.parts()) == len(alone["run"])
+    with np.load(next((tmp_path / "runs").glob("*.npz"))) if kind == "npz" else contextlib.nullcontext({}) as part:
+        assert all(part[name].dtype == np.int64 for name in ("run", "unique", "events") if kind == "npz")
     assert s.results[7].x.tobytes() == alone.results[7].whole.x.tobytes()
     assert f"of 14 runs over belt, in {tmp_path / 'runs'}: 14 completed" in repr(s)
     s.save(tmp_path / "a.csv")
