@@ -37,10 +37,10 @@ from ._settings import (
     simulate_options,
     sweep_name,
 )
-from ._shares import sweep_by
+from ._machines._shares import sweep_by
 from ._signature import with_options
-from ._starts import optimize_by
-from ._stored_sweep import sweep_into
+from ._machines._starts import optimize_by
+from ._machines._stored_sweep import sweep_into
 from ._sweep import Sweep, SweepArguments, Warned, warn_of_runs, with_results
 
 if typing.TYPE_CHECKING:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import saltus
-from saltus import _shares, _tasks
+from saltus._machines import _shares, _tasks
 
 BELTS = np.linspace(0.05, 0.3, 40)
 

@@ -25,13 +25,13 @@ def imports_of(tree):
         if isinstance(guard, ast.If):  # if typing.TYPE_CHECKING
             top |= {id(node) for node in guard.body}
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.level == 1:
+        if isinstance(node, ast.ImportFrom) and node.level in (1, 2):
             for name in [node.module] if node.module else [alias.name for alias in node.names]:
-                yield name, id(node) in top
+                yield name.split(".")[-1], id(node) in top
 
 
 def package(source):
-    files = sorted((source / "python" / "saltus").glob("*.py"))
+    files = sorted((source / "python" / "saltus").rglob("*.py"))
     assert len(files) > 30
     return {file.stem: list(imports_of(ast.parse(file.read_text()))) for file in files if file.stem[:2] != "__"}
 

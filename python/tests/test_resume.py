@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import saltus
-from saltus import _sweep_folder
+from saltus._machines import _sweep_folder
 
 BELTS = np.linspace(0.05, 0.3, 40)
 

@@ -13,8 +13,8 @@ import queue
 import time
 import typing
 
-from . import _core
-from ._result import Stopped
+from .. import _core
+from .._result import Stopped
 
 #: How often a task is begun whose worker ends.
 MOST_TRIES = 3

@@ -10,8 +10,8 @@ import typing
 
 import numpy as np
 
-from . import _core, _data
-from ._expression import refuse
+from .. import _core, _data
+from .._expression import refuse
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
 Columns = typing.Mapping[str, typing.Any]

@@ -9,11 +9,12 @@ import typing
 
 import numpy as np
 
-from . import _core
-from ._outcome import unknown
-from ._result import Result, Stopped
+from .. import _core
+from .._errors import needed
+from .._outcome import unknown
+from .._result import Result, Stopped
 from ._shares import MOST_RUNS, Cutter, Place, Shares, Tell, run_share, stop_file
-from ._sweep import Array, RunWithoutRow, Sweep, SweepArguments, Warned, as_column, warn_of_runs
+from .._sweep import Array, RunWithoutRow, Sweep, SweepArguments, Warned, as_column, warn_of_runs
 from ._sweep_folder import Folder, Part, Statement
 from ._tasks import Tasks, Workers
 
@@ -120,8 +121,6 @@ class StoredSweep(Sweep):
 
     def frame(self) -> typing.Any:
         """The table as one of pandas."""
-        from ._result import needed
-
         return needed("pandas", "data").DataFrame(dict(self._lazy))
 
     def __repr__(self) -> str:

@@ -6,11 +6,11 @@ import contextlib
 import os
 import typing
 
-from . import _core
-from ._errors import ModelError
-from ._expression import refuse
-from ._result import Result, Stopped, load
-from ._settings import Option
+from .. import _core
+from .._errors import ModelError
+from .._expression import refuse
+from .._result import Result, Stopped, load
+from .._settings import Option
 from ._tasks import Task, Tasks, Workers
 
 Tell = typing.Callable[[float, float], None]

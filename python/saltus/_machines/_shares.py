@@ -10,8 +10,8 @@ import typing
 
 import numpy as np
 
-from ._result import Stopped
-from ._sweep import Found, Results, RunWithoutRow, SweepArguments, Warned, warn_of_runs
+from .._result import Stopped
+from .._sweep import Found, Results, RunWithoutRow, SweepArguments, Warned, warn_of_runs
 from ._tasks import Task, Tasks, Workers
 
 #: What a worker found, its warnings, and whether it came to the end.

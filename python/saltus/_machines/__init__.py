@@ -1,0 +1,1 @@
+"""Runs by other processes and on other machines: shares of a sweep, starts of an optimisation, folders that go on."""
