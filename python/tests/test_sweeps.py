@@ -269,7 +269,7 @@ def test_shares_say_what_the_page_needs(tool, tmp_path):
     run_tool(tool, tmp_path, "--join", *files, "--report", "new.html")
     page = (tmp_path / "new.html").read_text()
     data = page_data(page)
-    assert "<h1>a, &quot;b&quot;</h1>" in page and data["names"] == ["a", "x"] and not data["grid"]
+    assert "<title>a, &quot;b&quot; - Saltus</title>" in page and data["title"] == 'a, "b"' and data["names"] == ["a", "x"] and not data["grid"]
     assert data["command"] == "saltus simulate m.toml --until 1 --set 'b=2 + 1'"
     for file in files:
         share = (tmp_path / file).read_text()
@@ -277,7 +277,7 @@ def test_shares_say_what_the_page_needs(tool, tmp_path):
         (tmp_path / file).write_text(f'"{heading}]"{rest}')
     run_tool(tool, tmp_path, "--join", *files, "--report", "old.html")
     page = (tmp_path / "old.html").read_text()
-    assert "<h1>Sweep</h1>" in page and page_data(page)["command"] == "" and "do not say their model" in page
+    assert "<title>Sweep - Saltus</title>" in page and page_data(page)["command"] == "" and "do not say their model" in page
 
 
 @pytest.mark.parametrize("keep", ["final", "events"])

@@ -52,10 +52,10 @@ class Everywhere(Page):
                 if media == "print":
                     self.value("window.dispatchEvent(new Event('beforeprint'))")
                 self.browser.wait(0.5)  # until it is drawn again
-                self.assertLessEqual(self.value("document.documentElement.scrollWidth"), width)
-                self.assertEqual(self.value(BRIGHTNESS) < 100, theme == "dark")
+                self.becomes(f"document.documentElement.scrollWidth <= {width}", True)
+                self.becomes(f"{BRIGHTNESS} < 100", theme == "dark")
                 if media == "print":
-                    self.assertLess(self.value(ON_PAPER), 721)
+                    self.becomes(f"{ON_PAPER} < 721", True)
                 if AXE.exists():
                     self.assertEqual(self.complaints(), [])
 

@@ -54,7 +54,7 @@ class Page(unittest.TestCase):
 
     def becomes(self, expression, expected):
         """Waits until an expression has a value: drawing takes its time on a busy machine."""
-        end = time.monotonic() + 300
+        end = time.monotonic() + 120
         while (found := self.value(expression)) != expected and time.monotonic() < end:
             time.sleep(0.05)
         self.assertEqual(found, expected, expression)

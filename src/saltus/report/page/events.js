@@ -53,7 +53,7 @@ saltus.eventColumns = (result) => {
     ...(result.optimization ? [] : [{title: "unique", cell: unique}]),
     {title: "surfaces", cell: saltus.eventPlace, class: "fill"},
     ...(result.switching_functions.length > 0 ?
-            [{title: "mode", cell: (event) => saltus.modeChange(event, "changed")}] :
+            [{title: "mode", cell: (event) => saltus.modeChange(event, "changed"), class: "mode-change"}] :
             []),
     ...(result.regions.length > 0 ?
             [
