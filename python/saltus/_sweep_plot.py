@@ -98,10 +98,7 @@ def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str 
         _warn_of_nothing(s["t"][np.isin(sort_of_row, wanted)], event, after, len(ends[0]))
     for rows, style in looks:
         axis.plot(s[x][rows], s[name][rows], linestyle="none", markersize=2.5, **style)
-    rows, heights = ends
-    if len(rows):
-        named = {"markerfacecolor": "none", "color": "#555555", "label": "at the end, without events"}
-        axis.plot(s[x][rows], heights, linestyle="none", marker="D", markersize=3, **named)
+    _draw_ends(s, x, ends, label_of_row, len(values), axis)
     _mark_lost_runs(s, x, axis)
     # One sort of points alone needs no words; some runs that are drawn otherwise do.
     handles = axis.get_legend_handles_labels()[1]
@@ -166,6 +163,19 @@ def _quiet_ends(s: Sweep, name: str, after: float) -> tuple[Array, Array]:
     first = np.unique(s["run"], return_index=True)[1]
     quiet = ~np.isin(s["run"][first], s["run"][moves]) & np.isin(s["status"][first], _DONE) & (s["t(end)"][first] > after)
     return first[quiet], s[column][first[quiet]]
+
+
+def _draw_ends(
+    s: Sweep, x: str, ends: tuple[Array, Array], label_of_row: Array, count: int, axis: typing.Any
+) -> None:
+    """Open diamonds in the colours of the points; one of them has the words."""
+    rows, heights = ends
+    label: dict[str, typing.Any] = {"label": "at the end, without events"}
+    for k in np.unique(label_of_row[rows]).tolist():
+        chosen = label_of_row[rows] == k
+        style = {"color": LINES[k % len(LINES)] if count > 1 else "#555555", "markerfacecolor": "none"}
+        axis.plot(s[x][rows[chosen]], heights[chosen], linestyle="none", marker="D", markersize=3, **style, **label)
+        label = {}
 
 
 def _mark_lost_runs(s: Sweep, x: str, axis: typing.Any) -> None:
