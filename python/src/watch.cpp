@@ -13,6 +13,7 @@ pipeline::Observers Watch::observers() {
 }
 
 bool Watch::look(const pipeline::StepRecord* step) {
+  has_begun_ = has_begun_ || step != nullptr;
   if (came_) return true;
   const auto now = Clock::now();
   if (now < next_) return false;
@@ -27,6 +28,7 @@ bool Watch::look(const pipeline::StepRecord* step) {
 }
 
 bool Watch::goes_on(const Preparation& preparation) {
+  if (has_begun_) return true;
   attempt([&] {
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (!progress_.is_none() && nb::hasattr(progress_, "prepare")) {

@@ -21,7 +21,8 @@ class Watch {
   [[nodiscard]] pipeline::Observers observers();
   /// Whether a handler of signals or `progress` has raised an exception: then the run is to end.
   [[nodiscard]] bool look(const pipeline::StepRecord* step = nullptr);
-  /// Looks for signals, and tells what is prepared to `progress.prepare` where there is one. Returns whether to go on.
+  /// Looks for signals, and tells what is prepared to `progress.prepare` where there is one. Returns whether to go on:
+  /// always, once a step was taken.
   [[nodiscard]] bool goes_on(const Preparation& preparation);
   /// Calls `function` with a line of text; what it raises ends the run.
   void call(const nanobind::object& function, const std::string& line);
@@ -47,6 +48,7 @@ class Watch {
   static constexpr auto interval = std::chrono::milliseconds(50);
 
   nanobind::object progress_;
+  bool has_begun_ = false;
   std::optional<nanobind::python_error> came_;
   Clock::time_point next_ = Clock::now() + interval;
   Clock::time_point next_telling_{};

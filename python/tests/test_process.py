@@ -221,6 +221,19 @@ def test_what_is_prepared_is_told_and_can_be_stopped():
     }  # fmt: skip
 
 
+def test_what_is_compiled_after_the_first_step_does_not_lose_the_run():
+    class Interrupting(Heard):
+        def __call__(self, *step):
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough") as stopped:
+        saltus.Model.from_text(LONG)._core.simulate(
+            [], [("simulate.until", "1e7", "until"), ("simulate.max_events", "1000000000", "e"),
+                 ("simulate.max_steps", "1000000000", "s")], Interrupting(), []
+        )  # fmt: skip
+    assert type(stopped.value.result) is saltus._core.Run
+
+
 ENDLESS_SWEEP = """
     import os, signal, sys, threading, time
     import concurrent.futures as futures

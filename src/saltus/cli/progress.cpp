@@ -28,6 +28,7 @@ std::string progress_text(const pipeline::StepRecord& step) {
 std::unique_ptr<PreparationScope> watched_preparation(ProgressLine& progress) {
   catch_interrupt();
   return std::make_unique<PreparationScope>([&progress](const Preparation& preparation) {
+    if (progress.has_begun()) return true;
     progress.show([&] { return "preparing   " + preparation.text(); });
     return !interrupted();
   });
@@ -47,6 +48,7 @@ ProgressLine::ProgressLine(ShowProgress show)
     : shown_(show == ShowProgress::when_terminal && ::isatty(STDERR_FILENO) == 1), next_(Clock::now() + patience) {}
 
 void ProgressLine::update(const pipeline::StepRecord& step) {
+  has_begun_ = true;
   show([&] { return progress_text(step); });
 }
 

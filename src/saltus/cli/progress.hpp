@@ -23,6 +23,8 @@ class ProgressLine {
   ~ProgressLine() { clear(); }
 
   void update(const pipeline::StepRecord& step);
+  /// Returns whether a run has told of itself: what is prepared behind that does not end it.
+  [[nodiscard]] bool has_begun() const { return has_begun_; }
   /// Shows a text, unless one was shown just before. Made only if it is shown.
   void show(FunctionRef<std::string()> text);
   /// Takes the line away.
@@ -32,11 +34,12 @@ class ProgressLine {
   using Clock = std::chrono::steady_clock;
 
   bool shown_;
+  bool has_begun_ = false;
   std::size_t width_ = 0;
   Clock::time_point next_;
 };
 
-/// Shows what is done before a run, and has it stop at Ctrl-C, which is caught from here on: Stopped is thrown.
+/// Shows what is done before the first step, and has it stop at Ctrl-C, which is caught from here on: Stopped is thrown.
 /// @param progress  must outlive what is returned
 [[nodiscard]] std::unique_ptr<PreparationScope> watched_preparation(ProgressLine& progress);
 

@@ -1,9 +1,11 @@
 #include <cmath>
+#include <string_view>
 #include <type_traits>
+#include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "saltus/base/contains.hpp"
 #include "saltus/expression/grammar_internal.hpp"
 #include "saltus/expression/parser.hpp"
 
@@ -107,23 +109,32 @@ class Writer {
   bool spaced_ = false;
 };
 
-void collect_names(const Node& node, std::vector<std::string>& names) {
-  std::visit(overloaded{
-                 [](const Number&) {},
-                 [&](const Name& name) {
-                   if (!contains(names, name.name)) names.push_back(name.name);
-                 },
-                 [&](const Unary& unary) { collect_names(*unary.operand, names); },
-                 [&](const Binary& binary) {
-                   collect_names(*binary.left, names);
-                   collect_names(*binary.right, names);
-                 },
-                 [&](const Call& call) {
-                   for (const auto& argument : call.arguments) collect_names(*argument, names);
-                 },
-             },
-             node.value);
-}
+/// The names of an expression, each once, in their order.
+class NameCollector {
+ public:
+  void collect(const Node& node) {
+    std::visit(overloaded{
+                   [](const Number&) {},
+                   [&](const Name& name) {
+                     if (known_.insert(name.name).second) names_.push_back(name.name);
+                   },
+                   [&](const Unary& unary) { collect(*unary.operand); },
+                   [&](const Binary& binary) {
+                     collect(*binary.left);
+                     collect(*binary.right);
+                   },
+                   [&](const Call& call) {
+                     for (const auto& argument : call.arguments) collect(*argument);
+                   },
+               },
+               node.value);
+  }
+  [[nodiscard]] std::vector<std::string> take() { return std::move(names_); }
+
+ private:
+  std::vector<std::string> names_;
+  std::unordered_set<std::string_view> known_;  ///< in the nodes
+};
 
 }  // namespace
 
@@ -140,9 +151,9 @@ std::string to_spaced_text(const Node& node) {
 }
 
 std::vector<std::string> names_in(const Node& node) {
-  std::vector<std::string> names;
-  collect_names(node, names);
-  return names;
+  NameCollector collector;
+  collector.collect(node);
+  return collector.take();
 }
 
 NodePtr number(double value, const SourceLocation& location) {
