@@ -189,9 +189,20 @@ class Overview(tool.ToolTest):
         for line in ("  q = 1 m  (position)", "  v = 0 m/s", "  mu = 0.5 -  (friction)", "  q' = v",
                      "  v' = spring - mu*sign(slip)*(1 + on)", "  spring = -q",
                      "  power = mu*sign(slip)*v  [W]  (lost)",
-                     "  slip: listed: v - 0.2 = 0; a column of the result, where v' may jump",
+                     "  slip: v - 0.2 = 0; v' may jump there",
                      "  harder: when q < 0 and on == 0 becomes true; sets on: on becomes 1", "  turns: v"):
             self.assertIn(line, out.splitlines())
+
+    def test_specialists_ask_for_more(self):
+        text = ('[model]\nname = "m"\n[parameters]\ntop = 2\n[states]\nx = 1\n[dynamics]\n'
+                'x = "min(max(x, -top), top) - sign(x)"\n[simulate]\nuntil = 1\n')
+        plain, _ = self.run_tool("check", self.write("m.toml", text), code=0)
+        self.assertIn("  x + top = 0; x' has a corner there: the integrator restarts, nothing slides", plain.splitlines())
+        self.assertIn("  x = 0; x' may jump there", plain.splitlines())
+        for word in ("multi-affine", "inclusion", "--", "kink"):
+            self.assertNotIn(word, plain)
+        in_depth, _ = self.run_tool("check", "m.toml", "--well-posedness", code=0)
+        self.assertIn("multi-affine in the selections", in_depth)
 
     def test_for_programs(self):
         out, _ = self.run_tool("check", self.write("m.toml", FRICTION), "--json", code=0)

@@ -52,6 +52,24 @@ class MalformedModels(tool.ToolTest):
             with self.subTest(f"{topic}: {name}"):
                 self.check(*TOPICS[topic][name])
 
+    def test_files_of_other_programs_are_named_as_what_they_are(self):
+        for name, content, what, anchor in (
+                ("m.xml", '<?xml version="1.0"?>\n<sbml level="3"></sbml>\n', "this is SBML", "#sbml-tools-copasi-tellurium"),
+                ("m.fmu", b"PK\x03\x04\x14\x00\x00", "this is an FMU", "#modelica"),
+                ("A.mo", "model A\n  Real x;\nend A;\n", "this is Modelica", "#modelica"),
+                ("m.slx", b"PK\x03\x04\x14\x00\x00", "this is a model of Simulink", "#matlab-simulink-stateflow"),
+                ("arm.xml", "<mujoco></mujoco>\n", "this is a robot's XML", "#drake-mujoco")):
+            with self.subTest(name):
+                self.write(name, content)
+                for command in (("simulate", name, "--out", "r.json"), ("check", name)):
+                    _, err = self.run_tool(*command, code=2)
+                    self.assertIn(f"{name}: error: {what}", err)
+                    self.assertIn(f"coming-from.md{anchor}", err)
+                self.assertFalse((self.folder / "r.json").exists())
+        page = (tool.SOURCE / "docs/coming-from.md").read_text(encoding="utf-8")
+        for heading in ("## SBML tools: COPASI, Tellurium", "## Modelica", "## MATLAB, Simulink, Stateflow", "## Drake, MuJoCo"):
+            self.assertIn(heading, page)
+
 
 if __name__ == "__main__":
     tool.main()

@@ -14,6 +14,7 @@
 #include "saltus/frontend/check_text.hpp"
 #include "saltus/frontend/model_input.hpp"
 #include "saltus/frontend/optimize_text.hpp"
+#include "saltus/frontend/overview_text.hpp"
 #include "saltus/frontend/reformulation_text.hpp"
 #include "saltus/io/check/json_check.hpp"
 #include "saltus/io/toml/toml_model.hpp"
@@ -49,10 +50,11 @@ ExitCode refuse_model(const CheckArguments& arguments, const Error& first, const
 }
 
 /// What is for specialists, and takes a simulation.
-ExitCode print_well_posedness(const frontend::ModelInput& input, const model::System& system) {
+ExitCode print_well_posedness(const frontend::ModelInput& input, const model::System& system,
+                              const io::ModelOverview& overview) {
   ProgressLine progress(ShowProgress::when_terminal);
-  const auto text =
-      frontend::reformulation_text(system) + frontend::ranks_text(system, input.file.simulate, watched(progress));
+  const auto text = frontend::inclusion_in_depth(overview) + frontend::reformulation_text(system) +
+                    frontend::ranks_text(system, input.file.simulate, watched(progress));
   progress.clear();
   print(text);
   if (!interrupted()) return ExitCode::done;
@@ -83,7 +85,7 @@ ExitCode run_check(const CheckArguments& arguments) {
     return ExitCode::done;
   }
   print(frontend::check_text(*input, *system, overview, *optimization));
-  return arguments.well_posedness ? print_well_posedness(*input, *system) : ExitCode::done;
+  return arguments.well_posedness ? print_well_posedness(*input, *system, overview) : ExitCode::done;
 }
 
 }  // namespace
@@ -104,7 +106,8 @@ Command add_check(CLI::App& app) {
   command->add_flag("--json", arguments->json, "print it for programs, mistakes included");
   command
       ->add_flag("--well-posedness", arguments->well_posedness,
-                 "print the complementarity systems, simulate, and print the ranks of those for the multipliers")
+                 "print the inclusion and the complementarity systems, simulate, and print the ranks of the equations "
+                 "for the multipliers")
       ->excludes("--json");
   command->footer("Example:\n  saltus check stick-slip");
   return {"check", [arguments] { return run_check(*arguments); }};

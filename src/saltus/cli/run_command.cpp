@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/docs_page.hpp"
 #include "saltus/base/text.hpp"
 #include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/outputs.hpp"
@@ -96,6 +97,7 @@ class Stops {
   }
   [[nodiscard]] ExitCode exit_code() const {
     if (stopped_ > said_) print_error(fmt::format("and {} more stopped early", stopped_ - said_));
+    if (stopped_ > 0) print_error(fmt::format("what each status means, and what helps: {}", docs_page("questions")));
     return stopped_ == 0 ? ExitCode::done : ExitCode::stopped_early;
   }
 

@@ -38,6 +38,10 @@ namespace saltus::expression {
 /// Writes the same, with spaces where people put them: around + - and comparisons, behind commas.
 [[nodiscard]] std::string to_spaced_text(const Node& node);
 
+/// Returns the text of a - b, which names a switching function: "a-b", b in parentheses where it is a sum; "a+c" where
+/// b is -c.
+[[nodiscard]] std::string difference_text(const NodePtr& a, const NodePtr& b);
+
 /// Returns names (not functions) that occur in the tree, each once, in order of appearance.
 [[nodiscard]] std::vector<std::string> names_in(const Node& node);
 

@@ -160,6 +160,15 @@ NodePtr number(double value, const SourceLocation& location) {
   return std::make_shared<const Node>(Node{Number{value}, location, false});
 }
 
+std::string difference_text(const NodePtr& a, const NodePtr& b) {
+  const auto* unary = std::get_if<Unary>(&b->value);
+  const bool is_negative = unary != nullptr && unary->op == UnaryOperator::minus;
+  Node difference;
+  difference.value =
+      is_negative ? Binary{BinaryOperator::add, a, unary->operand} : Binary{BinaryOperator::subtract, a, b};
+  return to_text(difference);
+}
+
 NodePtr unreadable(const SourceLocation& location) {
   return std::make_shared<const Node>(Node{Name{}, location, false});
 }

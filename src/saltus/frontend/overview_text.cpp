@@ -104,16 +104,26 @@ std::string modes_text(const ModelOverview& overview) {
   return text;
 }
 
+/// "slip: v - 0.2 = 0", "v - 0.2 = 0" of one without a name, "hot: region".
+std::string surface_head(const io::OverviewSurface& surface) {
+  const bool is_plain = surface.role == "listed" || surface.role == "kink";
+  const bool has_expression = !surface.expression.empty() && surface.role != "region";
+  std::string compact = surface.expression;
+  std::erase(compact, ' ');
+  const bool is_named = !has_expression || compact != surface.name;
+  std::string text = is_named ? surface.name + ":" : "";
+  if (!is_plain) text += fmt::format("{}{}:", text.empty() ? "" : " ", surface.role);
+  return has_expression ? fmt::format("{}{}{} = 0;", text, text.empty() ? "" : " ", surface.expression) : text;
+}
+
 std::string surface_text(const io::OverviewSurface& surface) {
-  const std::string is_zero =
-      surface.expression.empty() || surface.role == "region" ? "" : fmt::format(" {} = 0;", surface.expression);
   if (!surface.alias_of.empty()) {
     return fmt::format("  {}: alias of {}{}\n", surface.name, surface.alias_of,
                        surface.swapped ? ", with the sides swapped" : "");
   }
-  return fmt::format(
-      "  {}: {}:{} {}{}\n", surface.name, surface.role, is_zero, surface.meaning,
-      surface.inner.empty() ? "" : fmt::format("; contains the selection of {}", fmt::join(surface.inner, ", ")));
+  const std::string inner =
+      surface.inner.empty() ? "" : fmt::format("; depends on the sign of {}", fmt::join(surface.inner, ", "));
+  return fmt::format("  {} {}{}\n", surface_head(surface), surface.meaning, inner);
 }
 
 std::string surfaces_text(const ModelOverview& overview) {
@@ -151,7 +161,19 @@ std::string jumps_text(const ModelOverview& overview) {
   return text;
 }
 
+/// Of two ways to state the motion on several surfaces, where it matters which.
 std::string inclusion_text(const ModelOverview& overview) {
+  const bool is_other = overview.inclusion != "filippov";
+  if (overview.inclusion_differences.empty() && !is_other) return "";
+  return fmt::format("\ninclusion: {}\n  filippov and aizerman_pyatnitskii differ in: {}\n", overview.inclusion,
+                     overview.inclusion_differences.empty()
+                         ? "nothing"
+                         : fmt::format("{}", fmt::join(overview.inclusion_differences, ", ")));
+}
+
+}  // namespace
+
+std::string inclusion_in_depth(const ModelOverview& overview) {
   std::string text = fmt::format("\ninclusion: {}\n", overview.inclusion);
   text += fmt::format("  the right-hand side as written is {}multi-affine in the selections\n",
                       overview.multi_affine ? "" : "not ");
@@ -161,8 +183,6 @@ std::string inclusion_text(const ModelOverview& overview) {
   return text + fmt::format("  filippov and aizerman_pyatnitskii differ in: {}\n",
                             fmt::join(overview.inclusion_differences, ", "));
 }
-
-}  // namespace
 
 std::string overview_text(const ModelOverview& overview, const std::string& path) {
   const std::string_view colon = overview.description.empty() ? "" : ": ";

@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <limits>
 #include <random>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -100,6 +101,17 @@ class Generator {
 
   std::mt19937_64 random_{20240601};
 };
+
+TEST(ToText, a_difference_to_what_has_a_minus_sign_is_a_sum) {
+  const auto text_of = [](std::string_view a, std::string_view b) {
+    return difference_text(parse(a, {}).value(), parse(b, {}).value());
+  };
+  EXPECT_EQ(text_of("x", "y"), "x-y");
+  EXPECT_EQ(text_of("x", "y+z"), "x-(y+z)");
+  EXPECT_EQ(text_of("u", "-umax"), "u+umax");
+  EXPECT_EQ(text_of("x", "-1"), "x+1");
+  EXPECT_EQ(text_of("x", "-(y+z)"), "x+(y+z)");
+}
 
 TEST(ToText, parsing_gives_the_tree_back) {
   Generator generator;

@@ -108,10 +108,11 @@ std::string meaning_of(const model::Layout::Surface& function, const std::vector
   const std::string who = rates.empty() ? "nothing" : fmt::format("{}'", fmt::join(rates, "', "));
   switch (function.role) {
     case model::SwitchingRole::listed:
-      return rates.empty() ? "a column of the result" : fmt::format("a column of the result, where {} may jump", who);
+      return rates.empty() ? "a column of the result" : fmt::format("{} may jump there", who);
     case model::SwitchingRole::kink:
       return rates.empty() ? "the integrator restarts there, nothing slides"
-                           : fmt::format("{} has a corner: the integrator restarts there, nothing slides", who);
+                           : fmt::format("{} {} a corner there: the integrator restarts, nothing slides", who,
+                                         rates.size() == 1 ? "has" : "have");
     case model::SwitchingRole::time_event:
       return "the integrator restarts there";
     case model::SwitchingRole::discrete:

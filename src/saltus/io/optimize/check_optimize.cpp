@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/docs_page.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/named_files_internal.hpp"
 #include "saltus/io/toml/toml_model.hpp"
@@ -34,8 +35,9 @@ Expected<void> check_optimize_options(const ModelFile& model) {
   if (!model.optimize || !model.description.optimize) {
     return tl::unexpected(Error{ErrorCode::invalid_model,
                                 "the model has no table [optimize]: nothing says what is to be optimised",
-                                "add [optimize] with horizon, control_intervals and a cost (docs/model-file.md), or "
-                                "run saltus simulate",
+                                fmt::format("add [optimize] with horizon, control_intervals and a cost ({}), or run "
+                                            "saltus simulate",
+                                            docs_page("model-file", "optimize")),
                                 {model.description.file, 1, 1},
                                 {}});
   }

@@ -12,6 +12,7 @@
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/sha256.hpp"
+#include "saltus/io/toml/other_formats.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
 #include "saltus/model/mistakes.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
@@ -281,6 +282,7 @@ Expected<ModelText> read_model_text(const std::filesystem::path& file) {
   }
   auto text = file == "-" ? read_file("/dev/stdin", most_read) : read_file(file);
   if (!text) return tl::unexpected(text.error());
+  if (auto other = other_format(*text, file.string())) return tl::unexpected(std::move(*other));
   // Standard input is in the working folder, as far as files beside it are concerned.
   const std::string name = file == "-" ? "<standard input>" : file.string();
   if (is_stored_result(*text) && file.extension() != ".toml") {

@@ -67,13 +67,10 @@ class PlacesOfNames {
 
   /// Beside a 0 the other side is the name.
   void note_difference(const NodePtr& a, const NodePtr& b, const SourceLocation& place) {
-    const auto difference = [](const NodePtr& from, const NodePtr& taken) {
-      return text_without_parentheses({.value = Binary{BinaryOperator::subtract, from, taken}, .location = {}});
-    };
     if (expression::to_text(*b) == "0") places_.try_emplace(text_without_parentheses(*a), place);
     if (expression::to_text(*a) == "0") places_.try_emplace(text_without_parentheses(*b), place);
-    places_.try_emplace(difference(a, b), place);
-    places_.try_emplace(difference(b, a), place);
+    places_.try_emplace(expression::difference_text(a, b), place);
+    places_.try_emplace(expression::difference_text(b, a), place);
   }
 
   std::map<std::string, SourceLocation>& places_;

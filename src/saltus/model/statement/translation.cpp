@@ -57,13 +57,6 @@ bool is_comparison(BinaryOperator op) {
 
 bool is_logical(BinaryOperator op) { return op == BinaryOperator::logical_and || op == BinaryOperator::logical_or; }
 
-/// "a-b", b in parentheses where it is a sum.
-std::string difference_text(const NodePtr& a, const NodePtr& b) {
-  Node difference;
-  difference.value = expression::Binary{BinaryOperator::subtract, a, b};
-  return expression::to_text(difference);
-}
-
 bool is_zero(const Node& node) {
   const auto* number = std::get_if<expression::Number>(&node.value);
   return number != nullptr && number->value == 0.0;
@@ -196,7 +189,7 @@ Expected<SXElem> Translation::nonsmooth(const expression::Call& call, const Sour
                                    : recognition_.min(*b, *a, bare_text(*other)))
         .map_error(locate);
   }
-  const std::string difference = other != nullptr ? bare_text(*other) : difference_text(first, last);
+  const std::string difference = other != nullptr ? bare_text(*other) : expression::difference_text(first, last);
   return (call.function == "max" ? recognition_.max(*a, *b, difference) : recognition_.min(*a, *b, difference))
       .map_error(locate);
 }
@@ -268,9 +261,11 @@ Expected<Condition> Translation::comparison(const expression::Binary& binary, co
     const Condition positive(Comparison{e, at_zero, bare_text(*other), Sides::any});
     return above ? positive : !positive;
   }
-  return Condition(Comparison{
-      casadi::SX(is_less ? *right - *left : *left - *right), inclusive ? AtEquality::is_true : AtEquality::is_false,
-      is_less ? difference_text(binary.right, binary.left) : difference_text(binary.left, binary.right), Sides::any});
+  return Condition(Comparison{casadi::SX(is_less ? *right - *left : *left - *right),
+                              inclusive ? AtEquality::is_true : AtEquality::is_false,
+                              is_less ? expression::difference_text(binary.right, binary.left)
+                                      : expression::difference_text(binary.left, binary.right),
+                              Sides::any});
 }
 
 Expected<Condition> Translation::equality(const expression::Binary& binary, const SourceLocation& location) {
@@ -301,9 +296,9 @@ Expected<Condition> Translation::equality(const expression::Binary& binary, cons
     }
     return (*a == *b) == asked_equal ? Condition::always() : Condition::never();
   }
-  const Condition same =
-      saltus::model::equal(casadi::SX(*left), casadi::SX(*right), difference_text(binary.left, binary.right),
-                           difference_text(binary.right, binary.left));
+  const Condition same = saltus::model::equal(casadi::SX(*left), casadi::SX(*right),
+                                              expression::difference_text(binary.left, binary.right),
+                                              expression::difference_text(binary.right, binary.left));
   return asked_equal ? same : !same;
 }
 
