@@ -337,3 +337,10 @@ def test_a_kill_of_the_tool_costs_the_share_in_work(tool, tmp_path):
     run_tool(tool, tmp_path, *sweep, "--out", "whole.csv")
     assert (tmp_path / "all.csv").read_bytes() == (tmp_path / "whole.csv").read_bytes()
     assert os.listdir(tmp_path / "runs").count("share-00064.csv") == 1
+
+
+def test_a_part_that_is_removed_while_it_is_read(slip, tmp_path):
+    s = slip.sweep(belt=BELTS[:3], until=1, resume=tmp_path / "runs")
+    next((tmp_path / "runs").glob("runs-*")).unlink()
+    with pytest.raises(saltus.ModelError, match="is not there any more\n"):
+        s["q"]

@@ -183,6 +183,8 @@ class Folder:
     def read(self, part: Part, names: typing.Sequence[str] | None = None) -> dict[str, Array]:
         """The table of a part, or some of its columns."""
         file = self.path / part.file
+        if not file.exists():
+            raise self._refused(f"{part.file} is not there any more", "the same call runs these runs again, without its line in " + _JOURNAL)
         if self.statement.kind == "parquet":
             import pyarrow.parquet
 
