@@ -176,11 +176,13 @@ def processor():
 
 def page(arguments, rows, sent, agreed, load):
     counts = arguments.workers
+    is_busy = max(load[0], os.getloadavg()[0]) > os.cpu_count()
+    busy = " It was busier than it has processors: how rows grow with the workers is not to be seen." if is_busy else ""
     lines = [
         "# Sweeps by several workers", "",
         f"Made by `benchmarks/sweeps/run.py` on {datetime.date.today()}: {processor()}, {os.cpu_count()} processors, "
         f"Python {platform.python_version()}, load {load[0]:.1f} before and {os.getloadavg()[0]:.1f} after it; median of "
-        f"{arguments.rounds} rounds. Other work on the machine makes all of it slower: compare the rows, and no absolute figures.", "",
+        f"{arguments.rounds} rounds. Other work on the machine makes all of it slower: compare the rows, and no absolute figures." + busy, "",
         f"The study: `stick-slip` over {arguments.runs} speeds of the belt to t = {UNTIL:g}, rtol 1e-6, atol 1e-8, the state at "
         "the end. SciPy has its modes, sliding field and restarts hard-coded (`scipy_study.py`), and "
         f"every {EVERY}th of these runs. Workers are started before.", "",
