@@ -39,7 +39,8 @@ class ProgressLine {
   Clock::time_point next_;
 };
 
-/// Shows what is done before the first step, and has it stop at Ctrl-C, which is caught from here on: Stopped is thrown.
+/// Shows what is done before the first step, and has it stop at Ctrl-C, which is caught from here on: Stopped is
+/// thrown.
 /// @param progress  must outlive what is returned
 [[nodiscard]] std::unique_ptr<PreparationScope> watched_preparation(ProgressLine& progress);
 

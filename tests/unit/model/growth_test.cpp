@@ -129,6 +129,8 @@ TEST(Growth, WhatIsPreparedIsToldAndCanBeStopped) {
     });
     EXPECT_TRUE(build(description, {}).has_value());
   }
+  ASSERT_FALSE(phases.empty());
+  EXPECT_EQ(phases.front(), "reading the model");
   const PreparationScope scope([](const Preparation&) { return false; });
   EXPECT_THROW(
       while (true) { static_cast<void>(build(description, {})); }, Stopped);
