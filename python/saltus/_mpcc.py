@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import pathlib
-import tempfile
 import typing
 
 import numpy as np
@@ -34,6 +33,8 @@ CORNER = (
 
 def corner() -> str:
     """A file that has it."""
+    import tempfile
+
     file = pathlib.Path(tempfile.mkdtemp()) / "corner.nl"
     file.write_text(CORNER)
     return str(file)

@@ -60,6 +60,7 @@ void expect_rows(const Simulator& model, pipeline::SimulateOptions options) {
   const auto times = times_of(run, 40);
   options.continuous = false;
   options.output = pipeline::AtTimes{times};
+  options.event_rows = true;
   const auto asked = model.run(options);
   const auto rows_at = [](const result::Result& of, double t) {
     return std::count(of.trajectory.t.begin(), of.trajectory.t.end(), t);

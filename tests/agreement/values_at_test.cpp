@@ -44,7 +44,7 @@ TEST(ValuesAt, AreTheRowsAtTheseTimesInTheirOrder) {
   const auto values = values_at(system, options, {1.5, 0.25, 1.5, 0.0, 2.0});
   ASSERT_TRUE(values) << to_text(values.error());
   EXPECT_EQ(values->t, (std::vector<double>{1.5, 0.25, 1.5, 0.0, 2.0}));
-  options.output = AtTimes{{0.25, 1.5}};
+  options.output = AtTimes{{0.0, 0.25, 1.5, 2.0}};
   const auto run = simulate(system, options);
   for (const auto& [t, place] : {std::pair{1.5, 0U}, {0.25, 1U}, {1.5, 2U}, {0.0, 3U}, {2.0, 4U}}) {
     const auto& rows = run->trajectory;

@@ -216,7 +216,7 @@ TEST(TomlModel, ProblemsBetweenOptionsNameTheirPlace) {
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().location.line, 5);
   EXPECT_NE(checked.error().message.find("output time 2"), std::string::npos);
-  const auto without_end = check_options(parsed_file("[model]\nname='m'\n"));
+  const auto without_end = check_options(parsed_file("[model]\nname='m'\n[states]\nx=0\n[dynamics]\nx=1\n"));
   ASSERT_FALSE(without_end);
   EXPECT_NE(without_end.error().message.find("no end time"), std::string::npos);
 }

@@ -129,6 +129,7 @@ TEST(Branches, TakeAlongWhatWaitsIsHeldOrWasSeen) {
   b.event(y - 3.75, {.name = "seen"});
   auto options = until(5, 64);
   options.output = AtTimes{{1, 4, 4.25, 5}};
+  options.event_rows = true;
   const Result root = run(b, options);
   ASSERT_EQ(root.status.termination, Termination::completed) << root.status.message;
   ASSERT_EQ(root.branches.size(), 4U);
