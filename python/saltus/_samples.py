@@ -46,9 +46,12 @@ def _together(what: str, x: Data, y: Data, xs: str, ys: str) -> tuple[list[float
 def numbers(what: str, part: str, values: Data) -> Array:
     """A list of finite numbers."""
     try:
-        found = np.asarray(values, dtype=float)
+        given = np.asarray(values)
+        found = given.astype(float)
     except (TypeError, ValueError):
         raise refuse(f"{what}: the {part} are no numbers", "a list of numbers, e.g. [0, 0.5, 1]") from None
+    if given.dtype.kind in "Mm":
+        raise refuse(f"{what}: the {part} are dates", "a model counts time in numbers: (t - t[0]).total_seconds()")
     if found.ndim != 1:
         raise refuse(f"{what}: expected a list of {part}, found an array of shape {found.shape}", f"one number for each row")
     finite(what, found, part)

@@ -78,6 +78,9 @@ def text_of(value: Value, name: str = "") -> str:
             f"write {table} into the text, saltus.Model.from_text(text), or use saltus.Builder{_STATED.get(name, '')}",
         )
     if is_list(value) or isinstance(value, np.ndarray):
+        bad = next((i for i, entry in enumerate(value) if isinstance(entry, float) and not math.isfinite(entry)), None)
+        if bad is not None:
+            return text_of(value[bad], f"{name}[{bad}]" if name else "")  # which refuses it
         return "[" + ", ".join(text_of(entry, name) for entry in value) + "]"
     if hasattr(value, "save"):
         raise refuse(

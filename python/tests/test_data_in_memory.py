@@ -98,6 +98,10 @@ def test_a_column_that_is_not_there_is_said(cart):
     with pytest.raises(saltus.ModelError, match="no column 'u'") as refused:
         cart.simulate(until=3, inputs={"u": pandas.DataFrame({"t": TIMES, "v": VALUES})})
     assert refused.value.remedy == "expected t and u, found t, v"
+    with pytest.raises(saltus.ModelError, match="the times are dates"):
+        cart.simulate(until=3, inputs={"u": (pandas.date_range("2026-01-01", periods=3), VALUES)})
+    with pytest.raises(saltus.ModelError, match=r"times\[1\]=nan"):
+        cart.simulate(until=3, times=[1, np.nan, 2])
     with pytest.raises(saltus.ModelError, match="no column 't'"):
         cart.simulate(until=3, inputs={"u": pandas.DataFrame({"when": TIMES, "u": VALUES})})
 
