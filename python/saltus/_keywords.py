@@ -283,6 +283,7 @@ class OptimizeOptions(typing.TypedDict, total=False):
     time_limit: typing.Union[typing.Literal["none"], Real, None]
     solver: typing.Union[typing.Literal["structured", "ipopt"], None]
     starts: typing.Union[typing.Literal["auto"], Whole, None]
+    seed: typing.Union[typing.Literal["none"], Whole, None]
     compared_starts: typing.Union[typing.Literal["auto"], Whole, None]
     method: typing.Union[typing.Literal["scholtes", "fischer_burmeister", "natural_residual", "chen_chen_kanzow", "steffensen_ulbrich_sine", "steffensen_ulbrich_poly", "kanzow_schwartz", "lin_fukushima", "kadrani"], None]
     steering: typing.Union[typing.Literal["direct", "l1", "linf"], None]
@@ -302,6 +303,7 @@ class MpccOptions(typing.TypedDict, total=False):
 
     solver: typing.Union[typing.Literal["structured", "ipopt"], None]
     starts: typing.Union[typing.Literal["auto"], Whole, None]
+    seed: typing.Union[typing.Literal["none"], Whole, None]
     compared_starts: typing.Union[typing.Literal["auto"], Whole, None]
     method: typing.Union[typing.Literal["scholtes", "fischer_burmeister", "natural_residual", "chen_chen_kanzow", "steffensen_ulbrich_sine", "steffensen_ulbrich_poly", "kanzow_schwartz", "lin_fukushima", "kadrani"], None]
     steering: typing.Union[typing.Literal["direct", "l1", "linf"], None]
