@@ -347,7 +347,7 @@ class Branches(tool.ToolTest):
         out, _ = self.run_tool("simulate", "spontaneous-switch", "--branch", "all", "--set", "simulate.event.members=1",
                                "--out", "r.json", code=0)
         self.assertIn("branches    4\n", out)
-        self.assertRegex(out, r"families    2, behind event 1: may leave into - at any time from 0 to 1\n")
+        self.assertRegex(out, r"families    2, after event 1: may leave into - at any time from 0 to 1\n")
         result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
         staying = result["branches"][1]
         self.assertEqual([family["kind"] for family in staying["families"]], ["later_departure"] * 2)

@@ -35,7 +35,7 @@ std::string modes(const result::Event& event) {
   return fmt::format("{} > {}", signs(event.mode_before), signs(event.mode_after));
 }
 
-/// "a > a+b; c": the active modes of every group before and behind, once where they stay.
+/// "a > a+b; c": the active modes of every group before and after, once where they stay.
 std::string regions(const result::Event& event) {
   std::string text;
   const auto joined = [](const std::vector<std::string>& active) { return fmt::format("{}", fmt::join(active, "+")); };
@@ -143,7 +143,7 @@ std::string branch_table(const result::Result& result) {
     const auto event = branch->left_at ? branch->left_at->event + 1 : 0;
     const bool member = branch->left_at && branch->left_at->member;
     const bool begun = !branch->events.empty();
-    rows.push_back({label, fmt::format("{}, {}event {}", tree[parent].label, member ? "behind " : "", event),
+    rows.push_back({label, fmt::format("{}, {}event {}", tree[parent].label, member ? "after " : "", event),
                     begun ? fmt::format("{:.12g}", branch->events.front().t) : "",
                     with_modes && begun ? signs(branch->events.front().mode_after) : "",
                     fmt::format("{}", branch->events.size()),
@@ -168,7 +168,7 @@ std::string family_table(const result::Result& result) {
       for (const auto& active : family.to.regions) into += fmt::format(" {}", fmt::join(active, "+"));
       lines.push_back(family.kind == result::FamilyKind::spiral
                           ? fmt::format("{}, event {}: spirals out with any phase", label, family.event + 1)
-                          : fmt::format("{}, behind event {}: may leave into {} at any time from {:.12g} to {:.12g}",
+                          : fmt::format("{}, after event {}: may leave into {} at any time from {:.12g} to {:.12g}",
                                         label, family.event + 1, into, family.from, family.until));
     }
   }

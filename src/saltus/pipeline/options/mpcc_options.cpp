@@ -86,7 +86,7 @@ const std::array fields_of_mpcc{
         "price on what they cannot do, which changes them."),
     truth_field<crossover_of, SolveOptions>(
         "crossover",
-        "Problems with one side of every pair fixed behind the relaxed ones: exact zeros, and a certificate."),
+        "Problems with one side of every pair fixed, after the relaxed ones: exact zeros, and a certificate."),
     number_field<tolerance_of, SolveOptions>(
         "tolerance", positive_number, "Of feasibility, complementarity min(|G|, |H|) and stationarity of the answer."),
     number_field<iteration_limit_of, SolveOptions>("iteration_limit",

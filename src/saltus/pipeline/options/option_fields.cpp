@@ -267,7 +267,7 @@ constexpr std::array fields{
         name_integrator),
     number_or_none_field<max_step_of, none_word>("event.max_step", positive_number, "Longest step."),
     truth_field<local_steps_of>("event.local_steps",
-                                "Of many states only those that a switch moves are integrated anew behind it."),
+                                "Of many states only those that a switch moves are integrated again after it."),
     choice_field<selection_of, selections>("event.selection",
                                            "Which motion, where that depends on how surfaces are scaled."),
     OptionField{"event.scaling.*",

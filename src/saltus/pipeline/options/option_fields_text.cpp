@@ -23,7 +23,7 @@ the command line as `--set simulate.KEY=VALUE`, tables as they stand in a file, 
 `--set 'simulate.output={ points = 101 }'`. `*` stands for the name of a switching function. `output` is one of
 `"auto"`, `"steps"` (no rows between), `{ every = … }`, `{ points = … }`, `{ times = […] }`; `until` is a row, unless rows are at given times, and
 events and end state do not depend on it. Of more than 250 000 rows `"auto"` leaves out those between events that are less than the span / 250 000
-behind another row (`thinned_from` in the statistics); `"steps"` never does.
+after another row (`thinned_from` in the statistics); `"steps"` never does.
 
 | key | value | default | meaning |
 |---|---|---|---|
