@@ -160,7 +160,7 @@ TEST(Measurements, WhatIsNotCovered) {
   expect_no_fit(fit("0", "u", "2", "scheme = 'lobatto_iiic'\n" + data.table("['x']")),
                 {"a collocation method", "radau_iia"});
   expect_no_fit(fit("0", "u", "2", "[[optimize.least_squares]]\nof = ['x']\nat = 'times'\nreference = ['sin(t)']"),
-                {"fit.toml:15:1: error: at = \"times\" needs measurements in a file", "data.csv"});
+                {"fit.toml:15:1: error: at = \"times\" needs measurements", "data.csv"});
 }
 
 }  // namespace
