@@ -7,9 +7,8 @@ A test of the package compares.
 
 from __future__ import annotations
 
-import keyword
-
 from saltus import _core
+from saltus._signature import named, words_of
 
 HEAD = '''"""Options as keywords, with their types, for signatures, help and whoever checks types.
 
@@ -46,8 +45,10 @@ SWEEP = '''class SweepCall(SweepOptions, total=False):
     progress: bool
     executor: typing.Any
 '''
-#: Tables of [simulate] in the order in which a keyword is looked for in them.
+#: Tables of [simulate].
 TABLES = ("output", "event", "smoothed", "fesd", "timestepping")
+#: Keywords that the table of options does not have.
+OTHERS = {"inputs": "typing.Mapping[typing.Any, typing.Any]", "mpcc": "typing.Mapping[str, typing.Any]", "time_limit": "Real"}
 
 
 def kinds_of(option: dict) -> str:
@@ -64,46 +65,29 @@ def kinds_of(option: dict) -> str:
     return ", ".join(kinds)
 
 
-def spelt(word: str) -> str:
-    """As Python can have it: `from` is `from_`."""
-    return word + "_" if keyword.iskeyword(word) else word
+def annotation(word: str, option: dict) -> str:
+    """The type of a keyword; of those that state a problem of control all that has expressions."""
+    if word == "output":
+        return f"{kinds_of(option)}, OutputTable"
+    if word in TABLES:
+        return f"{word.capitalize()}Table"
+    if option.get("key", "").endswith(".*"):
+        return f"typing.Mapping[typing.Any, typing.Union[{kinds_of(option)}]]"
+    return kinds_of(option) if "words" in option else OTHERS.get(word, "Stated")
 
 
-def words_of_simulate() -> tuple[dict[str, str], dict[str, dict[str, str]]]:
-    """Types by keyword, and those of the keys of every table."""
-    options = {option["key"]: option for option in _core.option_tables()["simulate"]}
-    words: dict[str, str] = {}
-    tables: dict[str, dict[str, str]] = {table: {} for table in TABLES}
-    for key, option in options.items():
-        if not key.startswith("timestepping."):
-            words.setdefault(*_one(key, option))
-        table, _, rest = key.partition(".")
-        if rest and table in tables:
-            tables[table].update([_one(rest, option)])
-    words["inputs"] = "typing.Mapping[typing.Any, typing.Any]"
-    words["output"] = f"{kinds_of(options['output'])}, OutputTable"
-    words.update({table: f"{table.capitalize()}Table" for table in TABLES if table != "output"})
-    return words, tables
+def typed(words: dict[str, dict]) -> dict[str, str]:
+    return {word: annotation(word, option) for word, option in words.items()}
 
 
-def _one(key: str, option: dict) -> tuple[str, str]:
-    kind = kinds_of(option)
-    if key.endswith(".*"):
-        return key[:-2].rpartition(".")[2], f"typing.Mapping[typing.Any, typing.Union[{kind}]]"
-    return spelt(key.rpartition(".")[2]), kind
+def keys_of(table: str) -> dict[str, str]:
+    """Keys of a table of [simulate]."""
+    return typed(named(option for option in _core.option_tables()["simulate"] if option["key"].startswith(f"{table}.")))
 
 
-def words_of_optimize() -> dict[str, str]:
-    words = {option["key"]: "Stated" for option in _core.option_tables()["problem"]}
-    for option in _core.option_tables()["optimize"]:
-        words.setdefault(*_one(option["key"], option))
-    words["mpcc"] = "typing.Mapping[str, typing.Any]"
-    return {spelt(word): kind for word, kind in words.items() if word != "start"}
-
-
-def dictionary(name: str, words: dict[str, str], doc: str, several: bool = False) -> str:
+def dictionary(name: str, words: dict[str, str], doc: str, base: str = "typing.TypedDict", several: bool = False) -> str:
     """A class whose entries are these keywords; with `several` of most a list of values, too."""
-    lines = [f'class {name}(typing.TypedDict, total=False):\n    """{doc}"""\n\n']
+    lines = [f'class {name}({base}, total=False):\n    """{doc}"""\n\n']
     for word, kind in words.items():
         more = ", Several" if several and "Mapping" not in kind and "Table" not in kind else ""
         lines.append(f"    {word}: typing.Union[{kind}{more}, None]\n")
@@ -112,20 +96,21 @@ def dictionary(name: str, words: dict[str, str], doc: str, several: bool = False
 
 def page() -> str:
     """The whole module."""
-    words, tables = words_of_simulate()
     parts = [HEAD]
-    for table, keys in tables.items():
-        parts.append(dictionary(f"{table.capitalize()}Table", keys, f"Keys of [simulate.{table}]."))
+    for table in TABLES:
+        parts.append(dictionary(f"{table.capitalize()}Table", keys_of(table), f"Keys of [simulate.{table}]."))
+    words = typed(words_of("simulate"))
     del words["until"]  # which is named where it stands
-    parts.append(dictionary("SimulateOptions", words, "Keywords of a simulation."))
-    order = {word: kind for word, kind in words.items() if word != "steps"}  # a list there
-    parts.append(dictionary("OrderOptions", order, "Keywords of a study of errors over steps."))
-    parts.append(dictionary("SweepOptions", words, "Keywords of many simulations: of most several values are swept.", True))
+    steps = words.pop("steps")  # a list there
+    parts.append(dictionary("OrderOptions", words, "Keywords of a study of errors over steps."))
+    parts.append(dictionary("SimulateOptions", {"steps": steps}, "Keywords of a simulation.", "OrderOptions"))
+    words["steps"] = steps
+    parts.append(dictionary("SweepOptions", words, "Keywords of many simulations: of most several values are swept.", several=True))
     parts.append(SWEEP)
-    parts.append(dictionary("OptimizeOptions", words_of_optimize(), "Keywords of an optimisation."))
-    mpcc = dict(_one(option["key"], option) for option in _core.option_tables()["mpcc"])
-    mpcc["time_limit"] = "Real"
-    parts.append(dictionary("MpccOptions", mpcc, "Keywords of a foreign problem with complementarities."))
+    problem = typed(words_of("optimize"))
+    del problem["start"]  # which is named where it stands
+    parts.append(dictionary("OptimizeOptions", problem, "Keywords of an optimisation."))
+    parts.append(dictionary("MpccOptions", typed(words_of("mpcc")), "Keywords of a foreign problem with complementarities."))
     return "\n\n".join(parts)
 
 

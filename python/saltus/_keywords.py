@@ -86,55 +86,6 @@ class TimesteppingTable(typing.TypedDict, total=False):
     sensitivities: typing.Union[bool, None]
 
 
-class SimulateOptions(typing.TypedDict, total=False):
-    """Keywords of a simulation."""
-
-    from_: typing.Union[Real, None]
-    method: typing.Union[typing.Literal["event", "smoothed", "fesd", "timestepping"], None]
-    rtol: typing.Union[Real, None]
-    atol: typing.Union[Real, None]
-    output: typing.Union[typing.Literal["auto", "steps"], OutputTable, None]
-    every: typing.Union[Real, None]
-    points: typing.Union[Whole, None]
-    times: typing.Union[Reals, None]
-    events: typing.Union[bool, None]
-    states: typing.Union[Names, None]
-    surfaces: typing.Union[Names, None]
-    error_estimate: typing.Union[bool, None]
-    continuous: typing.Union[bool, None]
-    native: typing.Union[typing.Literal["auto", "on", "off"], None]
-    max_steps: typing.Union[Whole, None]
-    max_events: typing.Union[Whole, None]
-    initial_mode: typing.Union[typing.Mapping[typing.Any, typing.Union[typing.Literal[-1, 0, 1]]], None]
-    integrator: typing.Union[typing.Literal["auto", "dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"], None]
-    max_step: typing.Union[typing.Literal["none"], Real, None]
-    local_steps: typing.Union[bool, None]
-    selection: typing.Union[typing.Literal["active_dominant", "passive_dominant", "scaled", "report"], None]
-    scaling: typing.Union[typing.Mapping[typing.Any, typing.Union[Real]], None]
-    branches: typing.Union[typing.Literal["report", "all"], Whole, None]
-    members: typing.Union[Whole, None]
-    epsilon: typing.Union[Real, None]
-    scheme: typing.Union[typing.Literal["radau_iia", "gauss_legendre", "lobatto_iiia", "lobatto_iiic", "explicit"], None]
-    stages: typing.Union[Whole, None]
-    steps: typing.Union[Whole, None]
-    elements: typing.Union[Whole, None]
-    representation: typing.Union[typing.Literal["integral", "differential"], None]
-    error_limit: typing.Union[typing.Literal["off"], Real, None]
-    step_bounds: typing.Union[Real, None]
-    rho: typing.Union[Real, None]
-    equilibration_scale: typing.Union[Real, None]
-    reformulation: typing.Union[typing.Literal["step", "stewart"], None]
-    cross_complementarity: typing.Union[typing.Literal["stage_stage", "fe_stage", "stage_fe", "fe_fe", "paper"], None]
-    step_equilibration: typing.Union[typing.Literal["direct", "mlcp", "none", "heuristic_mean", "heuristic_diff", "l2_relaxed", "l2_relaxed_scaled", "paper"], None]
-    lifting: typing.Union[typing.Literal["off"], Whole, None]
-    sensitivities: typing.Union[bool, None]
-    inputs: typing.Union[typing.Mapping[typing.Any, typing.Any], None]
-    event: typing.Union[EventTable, None]
-    smoothed: typing.Union[SmoothedTable, None]
-    fesd: typing.Union[FesdTable, None]
-    timestepping: typing.Union[TimesteppingTable, None]
-
-
 class OrderOptions(typing.TypedDict, total=False):
     """Keywords of a study of errors over steps."""
 
@@ -178,9 +129,15 @@ class OrderOptions(typing.TypedDict, total=False):
     sensitivities: typing.Union[bool, None]
     inputs: typing.Union[typing.Mapping[typing.Any, typing.Any], None]
     event: typing.Union[EventTable, None]
-    smoothed: typing.Union[SmoothedTable, None]
     fesd: typing.Union[FesdTable, None]
+    smoothed: typing.Union[SmoothedTable, None]
     timestepping: typing.Union[TimesteppingTable, None]
+
+
+class SimulateOptions(OrderOptions, total=False):
+    """Keywords of a simulation."""
+
+    steps: typing.Union[Whole, None]
 
 
 class SweepOptions(typing.TypedDict, total=False):
@@ -213,7 +170,6 @@ class SweepOptions(typing.TypedDict, total=False):
     epsilon: typing.Union[Real, Several, None]
     scheme: typing.Union[typing.Literal["radau_iia", "gauss_legendre", "lobatto_iiia", "lobatto_iiic", "explicit"], Several, None]
     stages: typing.Union[Whole, Several, None]
-    steps: typing.Union[Whole, Several, None]
     elements: typing.Union[Whole, Several, None]
     representation: typing.Union[typing.Literal["integral", "differential"], Several, None]
     error_limit: typing.Union[typing.Literal["off"], Real, Several, None]
@@ -227,9 +183,10 @@ class SweepOptions(typing.TypedDict, total=False):
     sensitivities: typing.Union[bool, Several, None]
     inputs: typing.Union[typing.Mapping[typing.Any, typing.Any], None]
     event: typing.Union[EventTable, None]
-    smoothed: typing.Union[SmoothedTable, None]
     fesd: typing.Union[FesdTable, None]
+    smoothed: typing.Union[SmoothedTable, None]
     timestepping: typing.Union[TimesteppingTable, None]
+    steps: typing.Union[Whole, Several, None]
 
 
 class SweepCall(SweepOptions, total=False):

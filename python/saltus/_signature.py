@@ -12,25 +12,20 @@ from . import _core
 Function = typing.TypeVar("Function", bound=typing.Callable[..., typing.Any])
 Entry = dict[str, typing.Any]
 
-_INPUTS = "values of controls: {\"u\": \"sin(t)\"}, {\"u\": (times, values)}, a DataFrame, an earlier result"
-_TABLES = {
-    "event": "Options of the method \"event\" in a dict; their names are keywords, too.",
-    "fesd": "Options of the method \"fesd\" in a dict; their names are keywords, too.",
-    "smoothed": "Options of the method \"smoothed\" in a dict; their names are keywords, too.",
-    "timestepping": "Options of the method \"timestepping\" in a dict; their names are keywords, too.",
-}
+_INPUTS = "Values of controls: {\"u\": \"sin(t)\"}, {\"u\": (times, values)}, a DataFrame, an earlier result."
+_TABLES = ("event", "fesd", "smoothed", "timestepping")
 
 
-def with_options(command: str, more: typing.Iterable[str] = ()) -> typing.Callable[[Function], Function]:
+def with_options(command: str) -> typing.Callable[[Function], Function]:
     """Gives a function, whose last argument is ``**options``, the options of a command as keywords: for completion and
-    help. `command` is "simulate", "sweep", "optimize" or "mpcc"; `more` are keywords of [optimize] for its problem."""
+    help. `command` is "simulate", "sweep", "optimize" or "mpcc"."""
 
     def decorate(function: Function) -> Function:
         stated = inspect.signature(function)
         own = [one for one in stated.parameters.values() if one.kind is not inspect.Parameter.VAR_KEYWORD]
         rest = [one for one in stated.parameters.values() if one.kind is inspect.Parameter.VAR_KEYWORD]
-        named = {one.name for one in own}
-        options = {word: entry for word, entry in words_of(command).items() if word not in named}
+        names = {one.name for one in own}
+        options = {word: entry for word, entry in words_of(command).items() if word not in names}
         keywords = [
             inspect.Parameter(word, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=kind_of(entry))
             for word, entry in options.items()
@@ -49,18 +44,24 @@ def words_of(command: str) -> dict[str, Entry]:
     """Keywords of a command with what the table of options says of each."""
     tables = _core.option_tables()
     if command in ("simulate", "sweep"):
-        words = _words(entry for entry in tables["simulate"] if not entry["key"].startswith("timestepping."))
-        words["inputs"] = {"expects": "a dict", "default": "", "doc": _INPUTS[0].upper() + _INPUTS[1:] + ".", "kind": "dict"}
-        for table, doc in _TABLES.items():
-            words[table] = {"expects": "a dict", "default": "", "doc": doc, "kind": "dict"}
+        words = named(entry for entry in tables["simulate"] if not entry["key"].startswith("timestepping."))
+        words["inputs"] = _table(_INPUTS)
+        for table in _TABLES:
+            words[table] = _table(f"Options of the method \"{table}\" in a dict; their names are keywords, too.")
         return words
     if command == "optimize":
-        return {**_words(tables["problem"]), **_words(tables["optimize"])}
+        problem = {**named(tables["problem"]), **named(tables["optimize"])}
+        return {**problem, "mpcc": _table("Options of [optimize.mpcc] in a dict; their names are keywords, too.")}
     limit = {"expects": "a finite number > 0", "default": "", "doc": "Seconds, of all problems together.", "kind": "float"}
-    return {**_words(tables["mpcc"]), "time_limit": limit}
+    return {**named(tables["mpcc"]), "time_limit": limit}
 
 
-def _words(entries: typing.Iterable[Entry]) -> dict[str, Entry]:
+def _table(doc: str) -> Entry:
+    return {"expects": "a dict", "default": "", "doc": doc, "kind": "dict"}
+
+
+def named(entries: typing.Iterable[Entry]) -> dict[str, Entry]:
+    """Options by the last word of their key, as Python can have it: `from` is `from_`. The first of a name has it."""
     words: dict[str, Entry] = {}
     for entry in entries:
         word = entry["key"].removesuffix(".*").rpartition(".")[2]

@@ -20,10 +20,34 @@ v = "-0.4*x - mu*sign(v)"
 until = 6
 """
 
+BLOCK = """
+[model]
+name = "block"
+[states]
+q = 0
+v = 0
+[controls]
+u = { lower = -2, upper = 2 }
+[dynamics]
+q = "v"
+v = "u - 0.5*sign(v)"
+[optimize]
+horizon = 2
+control_intervals = 4
+running_cost = "u^2"
+terminal_constraints = ["q == 0.5", "v == 0"]
+"""
+
 
 @pytest.fixture
 def brake():
     return saltus.Model.from_text(BRAKE, "brake.toml")
+
+
+@pytest.fixture
+def block():
+    """A block with dry friction, and what is best for it."""
+    return saltus.Model.from_text(BLOCK, "block.toml")
 
 
 @pytest.fixture(scope="session")

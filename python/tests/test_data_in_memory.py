@@ -166,27 +166,7 @@ def test_measurements_are_in_memory(tmp_path):
             decay(reference)
 
 
-BLOCK = """
-[model]
-name = "block"
-[states]
-q = 0
-v = 0
-[controls]
-u = { lower = -2, upper = 2 }
-[dynamics]
-q = "v"
-v = "u - 0.5*sign(v)"
-[optimize]
-horizon = 2
-control_intervals = 4
-running_cost = "u^2"
-terminal_constraints = ["q == 0.5", "v == 0"]
-"""
-
-
-def test_an_optimum_in_memory_is_a_start_as_its_file_is(tmp_path):
-    block = saltus.Model.from_text(BLOCK)
+def test_an_optimum_in_memory_is_a_start_as_its_file_is(tmp_path, block):
     first = block.optimize()
     first.save(tmp_path / "first.json")
     by_file = block.optimize(start=tmp_path / "first.json", control_intervals=8)

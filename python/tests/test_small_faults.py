@@ -52,27 +52,8 @@ def test_names_that_may_not_be_used_are_told_where_they_are_declared(name):
     b.event(x, name="wall")
 
 
-BLOCK = """
-[model]
-name = "block"
-[states]
-q = 0
-v = 0
-[controls]
-u = { lower = -2, upper = 2 }
-[dynamics]
-q = "v"
-v = "u - 0.5*sign(v)"
-[optimize]
-horizon = 2
-control_intervals = 4
-running_cost = "u^2"
-terminal_constraints = ["q == 0.5", "v == 0"]
-"""
-
-
-def test_the_card_of_an_optimum_tells_objective_certificate_and_verification():
-    r = saltus.Model.from_text(BLOCK).optimize()
+def test_the_card_of_an_optimum_tells_objective_certificate_and_verification(block):
+    r = block.optimize()
     card = r._repr_html_()
     assert f"objective <b>{r.optimization['objective']:.10g}</b>, horizon 2" in card
     assert "Feasible to" in card and "B-stationary" in card
@@ -129,8 +110,8 @@ def test_a_bar_tells_how_far_a_run_is_and_what_is_prepared(bars):
     assert bars[1].n == pytest.approx(100)
 
 
-def test_a_bar_counts_the_problems_of_an_optimisation(bars):
-    r = saltus.Model.from_text(BLOCK).optimize(progress=True)
+def test_a_bar_counts_the_problems_of_an_optimisation(bars, block):
+    r = block.optimize(progress=True)
     (bar,) = bars
     assert bar.n == len(r.optimization["homotopy"])
     assert "scholtes" in " ".join(bar.words) or len(bar.words) >= bar.n
