@@ -25,9 +25,8 @@ std::string progress_text(const pipeline::StepRecord& step) {
 
 }  // namespace
 
-std::unique_ptr<PreparationScope> watched_preparation(ProgressLine& progress) {
-  catch_interrupt();
-  return std::make_unique<PreparationScope>([&progress](const Preparation& preparation) {
+PreparationScope preparation_shown(ProgressLine& progress) {
+  return PreparationScope([&progress](const Preparation& preparation) {
     if (progress.has_begun()) return true;
     progress.show([&] { return "preparing   " + preparation.text(); });
     return !interrupted();

@@ -39,13 +39,12 @@ class ProgressLine {
   Clock::time_point next_;
 };
 
-/// Shows what is done before the first step, and has it stop at Ctrl-C, which is caught from here on: Stopped is
-/// thrown.
-/// @param progress  must outlive what is returned
-[[nodiscard]] std::unique_ptr<PreparationScope> watched_preparation(ProgressLine& progress);
-
 /// Shows the progress of a run and has it stop at Ctrl-C, which is caught from here on.
 /// @param progress  must outlive what is returned
 [[nodiscard]] pipeline::Observers watched(ProgressLine& progress);
+
+/// Shows what is done before the first step, and has it stop at a Ctrl-C that `watched` catches: Stopped is thrown.
+/// @param progress  must outlive what is returned
+[[nodiscard]] PreparationScope preparation_shown(ProgressLine& progress);
 
 }  // namespace saltus::cli

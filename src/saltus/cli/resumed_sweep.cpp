@@ -79,14 +79,9 @@ ExitCode resume_sweep(const StatedSweep& sweep) {
     print(fmt::format("{} runs: {}{}\n{}\n", tally.runs, counted(tally.statuses), doubts(tally.others, tally.undecided),
                       file));
   }
-  if (tally.first_stopped == 0) return ExitCode::done;
-  std::size_t stopped = 0;
-  for (const auto& [status, count] : tally.statuses) {
-    const auto why = result::termination_named(status);
-    if (!why || !is_done(*why)) stopped += count;
-  }
-  print_error(
-      fmt::format("{} of {} runs stopped early, the first of them run {}", stopped, tally.runs, tally.first_stopped));
+  if (tally.stopped == 0) return ExitCode::done;
+  print_error(fmt::format("{} of {} runs stopped early, the first of them run {}", tally.stopped, tally.runs,
+                          tally.first_stopped));
   return ExitCode::stopped_early;
 }
 

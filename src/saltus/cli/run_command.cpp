@@ -38,13 +38,13 @@ Expected<void> check_shown(const RunArguments& arguments, const model::System& s
 Expected<result::Result> compute_all(const RunArguments& arguments, const frontend::ModelInput& input,
                                      const Outputs& outputs, GrowingOutputs* growing, Compute compute) {
   ProgressLine progress(progress_of(arguments));
-  const auto preparing = watched_preparation(progress);
+  auto observers = watched(progress);  // a signal counts from here on, whatever it meets
+  const auto preparing = preparation_shown(progress);
   const auto system = model::build(input.file.description, input.overrides);
   progress.clear();
   if (!system) return tl::unexpected(system.error());
   if (auto known = check_shown(arguments, *system); !known) return tl::unexpected(known.error());
   print_warnings(system->warnings);
-  auto observers = watched(progress);
   bool can_write = true;
   if (growing != nullptr) {
     observers.on_part = [&](const result::Result& part) {

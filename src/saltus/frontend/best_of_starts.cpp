@@ -33,11 +33,9 @@ result::Result best_of_starts(const std::vector<std::shared_ptr<result::Result>>
   }
   SALTUS_ASSERT(!all.empty());
   std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.first.seed < b.first.seed; });
-  // Of equal ones the first.
-  auto taken = all.begin();
-  for (auto one = all.begin(); one != all.end(); ++one) {
-    if (is_better(one->first, taken->first)) taken = one;
-  }
+  const auto taken = std::min_element(all.begin(), all.end(), [](const auto& a, const auto& b) {
+    return is_better(a.first, b.first);  // the first of equals
+  });
   taken->first.is_taken = true;
   result::Result best = *optima[taken->second];
   auto& of = *best.optimization;

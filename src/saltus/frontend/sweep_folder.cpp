@@ -163,14 +163,6 @@ std::vector<Share> SweepFolder::missing() const {
   return missing;
 }
 
-bool SweepFolder::complete() const {
-  std::error_code unknown;
-  for (std::size_t i = 0; i < shares_; ++i) {
-    if (!there_[i] && !fs::exists(file_of(i + 1), unknown)) return false;
-  }
-  return true;
-}
-
 Expected<void> SweepFolder::add(const Share& share, const std::vector<TableColumn>& table) {
   if (auto written = io::write_file(file_of(share.number), to_csv(table)); !written) return written;
   const auto tally = tally_of_share(file_of(share.number), share, mark_);

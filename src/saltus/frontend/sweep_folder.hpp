@@ -33,8 +33,6 @@ class SweepFolder {
   [[nodiscard]] const SweepTally& tally() const { return tally_; }
   /// Writes a share, with its heading, and counts its runs.
   [[nodiscard]] Expected<void> add(const Share& share, const std::vector<TableColumn>& table);
-  /// Returns whether all shares of the sweep are there, those of other tasks among them.
-  [[nodiscard]] bool complete() const;
   /// Returns the files of all shares, in their order.
   [[nodiscard]] std::vector<std::string> files() const;
   /// Writes the table of all shares, with one of them in memory at a time.

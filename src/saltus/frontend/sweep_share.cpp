@@ -227,6 +227,7 @@ SweepTally& SweepTally::operator+=(const SweepTally& other) {
   runs += other.runs;
   others += other.others;
   undecided += other.undecided;
+  stopped += other.stopped;
   for (const auto& [status, count] : other.statuses) statuses[status] += count;
   if (first_stopped == 0 || (other.first_stopped > 0 && other.first_stopped < first_stopped))
     first_stopped = other.first_stopped;
@@ -253,8 +254,9 @@ Expected<SweepTally> tally_of_share(const std::string& file, const Share& share,
     if (line.at(unique) == "0") ++tally.others;
     if (line.at(unique) == "-1") ++tally.undecided;
     const auto why = result::termination_named(line[status]);
-    const bool stopped = !why || !result::is_done(*why);
-    if (stopped && tally.first_stopped == 0) tally.first_stopped = whole_text_as<std::size_t>(line[0]).value_or(0);
+    if (why && result::is_done(*why)) continue;
+    ++tally.stopped;
+    if (tally.first_stopped == 0) tally.first_stopped = whole_text_as<std::size_t>(line[0]).value_or(0);
   }
   return tally;
 }

@@ -36,7 +36,7 @@ struct Share {
 struct SweepTally {
   std::size_t runs = 0, others = 0, undecided = 0;  ///< of all; not unique; whose uniqueness is not decided
   std::map<std::string, std::size_t> statuses;
-  std::size_t first_stopped = 0;  ///< the first run that stopped early, from 1; 0: none
+  std::size_t stopped = 0, first_stopped = 0;  ///< that stopped early; the first of them, from 1 (0: none)
   SweepTally& operator+=(const SweepTally& other);
 };
 

@@ -57,31 +57,32 @@ Expected<Solution> best_of(std::vector<Tried> all) {
   if (!*all.front().found) return std::move(*all.front().found);
   std::vector<result::StartOutcome> outcomes;
   int iterations = 0;
-  std::size_t taken = 0;
   for (std::size_t seed = 0; seed < all.size(); ++seed) {
     const auto& [found, seconds] = all[seed];
     if (!found || !*found) continue;  // a function is not finite there, or there was no time
     outcomes.push_back(outcome_of(**found, static_cast<int>(seed), seconds));
     iterations += outcomes.back().iterations;
-    if (is_better(outcomes.back(), outcomes[taken])) taken = outcomes.size() - 1;
   }
-  outcomes[taken].is_taken = true;
-  Solution best = std::move(**all[at(outcomes[taken].seed)].found);
+  const auto taken = std::min_element(outcomes.begin(), outcomes.end(), result::is_better);  // the first of equals
+  taken->is_taken = true;
+  Solution best = std::move(**all[at(taken->seed)].found);
   if (outcomes.size() > 1) best.starts = std::move(outcomes);
   best.iterations = iterations;
   return best;
 }
 
-/// Seed 0 is the given start.
-std::optional<Start> moved_start(const mpcc::Problem& problem, const std::optional<Start>& start, int seed) {
+/// Seed 0 is the given start; others begin beside w.
+std::optional<Start> moved_start(const mpcc::Problem& problem, const std::optional<Start>& start,
+                                 const linalg::Vector& w, int seed) {
   if (seed == 0) return start;
-  return Start{.w = start_of_seed(problem, start ? start->w : problem.start(), seed), .multipliers = {}};
+  return Start{.w = start_of_seed(problem, w, seed), .multipliers = {}};
 }
 
 Expected<Solution> solve_one(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
                              const std::optional<Start>& start) {
   const Stopwatch stopwatch;
-  auto solution = solve_from(problem, nlp, lpcc, options, moved_start(problem, start, *options.seed));
+  auto solution = solve_from(problem, nlp, lpcc, options,
+                             moved_start(problem, start, start ? start->w : problem.start(), *options.seed));
   if (!solution) return solution;
   solution->starts.push_back(outcome_of(*solution, *options.seed, stopwatch.seconds()));
   solution->starts.back().is_taken = true;
@@ -134,9 +135,8 @@ Expected<Solution> solve(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpc
     // Other threads do not report.
     if (&place.problem != &problem) one.on_step = [](const result::HomotopyStep&) {};
     const Stopwatch own;
-    const Start moved{.w = start_of_seed(problem, w, seed), .multipliers = {}};
     auto& tried = all[at(seed)];
-    tried.found = solve_from(place.problem, place.nlp, place.lpcc, one, seed == 0 ? start : std::optional(moved));
+    tried.found = solve_from(place.problem, place.nlp, place.lpcc, one, moved_start(problem, start, w, seed));
     tried.seconds = own.seconds();
     const bool has_failed = seed == 0 && !*tried.found;
     if (has_failed || (*tried.found && ends_all(**tried.found, options))) is_over = true;

@@ -282,9 +282,9 @@ Expected<ModelText> read_model_text(const std::filesystem::path& file) {
   }
   auto text = file == "-" ? read_file("/dev/stdin", most_read) : read_file(file);
   if (!text) return tl::unexpected(text.error());
-  if (auto other = other_format(*text, file.string())) return tl::unexpected(std::move(*other));
   // Standard input is in the working folder, as far as files beside it are concerned.
   const std::string name = file == "-" ? "<standard input>" : file.string();
+  if (auto other = other_format(*text, name)) return tl::unexpected(std::move(*other));
   if (is_stored_result(*text) && file.extension() != ".toml") {
     auto stored = model_in_result(*text, name);
     if (stored) stored->path = file.string();

@@ -62,8 +62,9 @@ void SurfaceProfile::hold_others(Point& point) {
   for (const int node : cone_) {
     if (tape_[node].psi < 0 || node == surface_.alpha) continue;
     const auto variable = saltus::at(tape_[node].variable);
-    point[variable] = others_ == OtherSelections::between ? 0.5 + margin_of_between * seeded_draw(13000, seed_of(tape_, variable))
-                                                          : (entry(values_.value, node) > 0.5 ? 1.0 : 0.0);
+    point[variable] = others_ == OtherSelections::between
+                          ? 0.5 + margin_of_between * seeded_draw(13000, seed_of(tape_, variable))
+                          : (entry(values_.value, node) > 0.5 ? 1.0 : 0.0);
   }
 }
 
