@@ -27,7 +27,7 @@ import types
 import numpy as np
 
 import saltus
-from saltus import _shares
+from saltus._machines import _shares
 
 HERE = pathlib.Path(__file__).resolve().parent
 UNTIL, TOLERANCES = 40.0, {"rtol": 1e-6, "atol": 1e-8}

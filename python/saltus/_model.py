@@ -11,7 +11,6 @@ from ._errors import warn
 from ._expression import refuse
 from ._facts import Quantities, of_model
 from ._progress import lines_of_problems, progress_line, progress_of_runs
-from ._outcome import Final
 from ._result import Result, Source, continued, own_results
 from ._samples import file_text
 from ._settings import (
@@ -25,6 +24,7 @@ from ._settings import (
     check_together,
     count_of,
     is_several,
+    mapping_of,
     names_in,
     names_no_keys,
     near_option,
@@ -151,7 +151,7 @@ class Model(Source):
             asked: typing.Mapping[str, Value] = options
             if start is not None:
                 stated, asked = continued(
-                    start, self.states, self.parameters, dict(_mapping(set)), options, self._core.method, self._core.forced_modes
+                    start, self.states, self.parameters, dict(mapping_of(set)), options, self._core.method, self._core.forced_modes
                 )
             run, settings, chosen = self._run("simulate", until, stated, asked, tell)
         return Result(run, (self, settings, chosen))
@@ -357,7 +357,7 @@ class Model(Source):
         method = chosen if isinstance(chosen, str) else self._core.method
         swept: dict[str, Value] = {}
         taken = names_in(set)
-        for key, values in _mapping(over).items():
+        for key, values in mapping_of(over).items():
             swept[once(self._swept_name(getattr(key, "text", key), method), [*swept, *taken])] = values
         for name in [name for name, value in options.items() if is_several(value) and name != "times"]:
             swept[once(self._swept_name(name, method), [*swept, *taken])] = options.pop(name)
@@ -459,10 +459,6 @@ def _place(start: typing.Any) -> typing.Any:
     if not isinstance(start, (str, os.PathLike)):
         raise refuse(f"start={start!r}: expected a result, or the file of one", 'start=r, or start="r.json"')
     return os.fspath(start)
-
-
-def _mapping(set: Settings | None) -> typing.Mapping[typing.Any, Value]:
-    return set.states() if isinstance(set, Final) else set or {}
 
 
 def _from_texts(text: str, name: str, files: list[tuple[str, str]]) -> Model:

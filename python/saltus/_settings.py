@@ -92,15 +92,16 @@ def text_of(value: Value, name: str = "") -> str:
 
 def settings_of(values: Settings | None) -> list[str]:
     """NAME=VALUE of `set`; tables inside become dotted names."""
-    return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(_set(values))]
+    return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(mapping_of(values))]
 
 
 def names_in(values: Settings | None) -> list[str]:
     """The names that `set` changes, dotted."""
-    return [name for name, _ in _flat(_set(values))]
+    return [name for name, _ in _flat(mapping_of(values))]
 
 
-def _set(values: typing.Any) -> typing.Mapping[str, Value]:
+def mapping_of(values: typing.Any) -> typing.Mapping[str, Value]:
+    """What `set=` says, by names: of a dict, of the end of a run, of nothing."""
     if isinstance(values, Final):
         return values.states()
     if values is not None and not isinstance(values, typing.Mapping):

@@ -212,7 +212,7 @@ class Sweep:
         0    1   0.1       1
         1    2   0.2       2
         """
-        return needed("pandas", "data").DataFrame(self.table)
+        return needed("pandas", "data").DataFrame(dict(self.table))
 
     def dataset(self) -> typing.Any:
         """A data set of xarray: of a grid with its axes as dimensions, else over ``run``. Needs ``keep="final"``.

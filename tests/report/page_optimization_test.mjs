@@ -99,6 +99,8 @@ test("tries of other branches are named so, and the path does not run through th
   assert.equal(saltus.solutionPlace(homotopy, 3), 2);
   assert.deepEqual(saltus.problemRoles(homotopy, 3), ["path", "path", "taken", "other", "other"]);
   assert.deepEqual(saltus.problemRoles([step("relaxed", 4), end("", "iteration_limit", 7)], 9), ["path", "failed"]);
+  const priced = {...step("relaxed", 4), message: "modes with a price of 10"};
+  assert.deepEqual(saltus.problemRoles([priced, end("", "completed", 3)], 3), ["path", "taken"]);
   const traces = saltus.homotopyTraces(homotopy, palette, 3);
   assert.ok(!traces.some(({name}) => name === "not solved"));
   assert.ok(traces.some(({name}) => name === "another branch, tried"));

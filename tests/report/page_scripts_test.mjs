@@ -8,7 +8,7 @@ const page = new URL("../../src/saltus/report/page/", import.meta.url);
 const source =
     [
       "format.js", "numbers.js", "series.js", "panels.js", "kinds.js", "columns.js", "chooser.js", "marks.js", "figure.js", "events.js", "surfaces.js", "phase.js",
-      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js", "bodies/bodies.js", "bodies/player.js", "bodies/gif.js", "bodies/animation.js"
+      "branches.js", "intersection.js", "multipliers.js", "sensitivities.js", "cards.js", "optimization.js", "overlays.js", "source.js", "ticks.js", "bodies/bodies.js", "bodies/player.js", "bodies/gif.js", "bodies/animation.js"
     ].map((file) => fs.readFileSync(new URL(file, page), "utf8"))
         .join("\n");
 const saltus = vm.runInThisContext(`(() => {${source}\nreturn saltus; })()`);
@@ -742,6 +742,8 @@ test("frames of a strobe and ticks are round and within their ranges", () => {
   assert.deepEqual(saltus.strobeTimes({t: [1]}), [1]);
   assert.deepEqual(saltus.roundTicks([-0.1, 1.05], 5), [0, 0.5, 1]);
   assert.deepEqual(saltus.roundTicks([0.13, 0.31], 4), [0.15, 0.2, 0.25, 0.3]);
+  assert.ok(saltus.roundTicks([0.24999999999999997, 0.25], 5).length < 10);  // ends
+  assert.ok(saltus.isDrawable([0.2, 0.25]) && !saltus.isDrawable([0.24999999999999997, 0.25]));
 });
 
 test("small columns beside large ones move; what is below the tolerance is rounding", () => {

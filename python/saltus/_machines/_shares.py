@@ -134,9 +134,9 @@ def sweep_by(executor: typing.Any, model: typing.Any, arguments: SweepArguments,
             open(stop, "w").close()
             shares.update(tasks.stop())
             if isinstance(failure, (KeyboardInterrupt, Stopped)):
-                failure.result = _joined(shares)  # type: ignore[union-attr]
+                failure.result = kept = _joined(shares)  # type: ignore[union-attr]
             if isinstance(failure, Stopped):
-                raise Stopped(f"{failure}; {_kept(len(_joined(shares)[1]), runs)}", failure.result) from None
+                raise Stopped(f"{failure}; {_kept(len(kept[1]), runs)}", failure.result) from None
             raise
     warn_of_runs([warning for _, warned, _ in shares.values() for warning in warned])
     found = _joined(shares)

@@ -10,8 +10,6 @@ import typing
 import numpy as np
 
 from .. import _core
-from .._errors import needed
-from .._outcome import unknown
 from .._result import Result, Stopped
 from ._shares import MOST_RUNS, Cutter, Place, Shares, Tell, run_share, stop_file
 from .._sweep import Array, RunWithoutRow, Sweep, SweepArguments, Warned, as_column, warn_of_runs
@@ -77,6 +75,9 @@ class StoredColumns(typing.Mapping[str, Array]):
             return np.zeros(0)
         return as_column(name, np.concatenate([self._folder.read(part, [name])[name] for part in self._parts]))
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._names  # without reading it
+
     def __iter__(self) -> typing.Iterator[str]:
         return iter(self._names)
 
@@ -94,34 +95,23 @@ class StoredSweep(Sweep):
     def __init__(self, folder: Folder, axes: Axes, of: tuple[typing.Any, SweepArguments]) -> None:
         self._folder, self._parts = folder, folder.ordered
         runs = StoredRuns(self._parts, folder.statement.runs, *of)
-        self._lazy = StoredColumns(folder)
-        super().__init__((typing.cast("dict[str, typing.Any]", self._lazy), runs, list(folder.statement.names)), *axes, of)
+        columns = typing.cast("dict[str, typing.Any]", StoredColumns(folder))
+        super().__init__((columns, runs, list(folder.statement.names)), *axes, of)
 
     @property
     def table(self) -> typing.Any:
         """All columns by their names, each read when it is asked for."""
-        return self._lazy
+        return self._columns
 
     def parts(self) -> typing.Iterator[dict[str, Array]]:
         """The table part by part, a thousand runs at most each: for more rows than the memory holds."""
         for part in self._parts:
             yield {name: as_column(name, values) for name, values in self._folder.read(part).items()}
 
-    def __getitem__(self, name: str) -> Array:
-        """A column of the table."""
-        name = getattr(name, "text", name)
-        if name not in self._lazy:
-            raise unknown(name, list(self._lazy), "the table")
-        return self._lazy[name]
-
     @property
     def done(self) -> bool:
         """Whether all runs of the sweep are there and did what was asked."""
         return len(self) == self._folder.statement.runs and all(part.done for part in self._parts)
-
-    def frame(self) -> typing.Any:
-        """The table as one of pandas."""
-        return needed("pandas", "data").DataFrame(dict(self._lazy))
 
     def __repr__(self) -> str:
         counts: collections.Counter[str] = collections.Counter()

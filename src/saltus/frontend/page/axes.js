@@ -12,15 +12,7 @@ saltus.finiteRange = (values) => {
   return low <= high ? [low, high] : null;
 };
 
-saltus.axisTicks = (low, high) => {
-  const raw = (high - low) / 5;
-  const power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= raw);
-  const ticks = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k += 1)
-    ticks.push([k * step, saltus.sweepNumber(k * step)]);
-  return ticks;
-};
+saltus.axisTicks = (low, high) => saltus.roundTicks([low, high], 5).map((tick) => [tick, saltus.sweepNumber(tick)]);
 
 /** An axis of some values: `at(value)` is the place of one, `ticks` those between `low` and `high`. */
 saltus.valueAxis = (values) => {

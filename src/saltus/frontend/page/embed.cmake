@@ -1,5 +1,5 @@
 # Script and style of the page of a sweep; elements, colours, address and paper are those of the other pages.
-set(saltus_sweep_scripts format.js address.js palette.js source.js paper.js)
+set(saltus_sweep_scripts format.js ticks.js address.js palette.js source.js paper.js)
 list(TRANSFORM saltus_sweep_scripts PREPEND src/saltus/report/page/)
 set(saltus_sweep_own table.js axes.js picture.js colours.js points.js map.js run_card.js pictures.js sweep.js)
 list(TRANSFORM saltus_sweep_own PREPEND src/saltus/frontend/page/)

@@ -65,7 +65,8 @@ saltus.alarmMark = (x, y) => saltus.svgElement("path", {
 });
 
 /** Zooms by dragging, moves with Shift, shows all again by a double click; keys as in the drawings over time. */
-saltus.zooms = ({svg, area, axes}, changed, choose) => {
+saltus.zooms = ({svg, area, axes}, show, choose) => {
+  const changed = (parts) => (parts === null || parts.every(saltus.isDrawable)) && show(parts);
   const point = (event) => {
     const box = svg.getBoundingClientRect();
     const scale = svg.viewBox.baseVal.width / box.width;

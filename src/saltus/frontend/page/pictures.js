@@ -70,7 +70,8 @@ saltus.chosenRows = (page, rows) => rows.filter((row) => saltus.otherParameters(
 saltus.runColours = (page) => {
   const {table, state} = page;
   const by = saltus.otherParameters(page).find((name) => state.only[name] === null);
-  if (by === undefined) return {colourOf: () => saltus.palette().curves[0], legend: []};
+  const [usual] = saltus.palette().curves;
+  if (by === undefined) return {colourOf: () => usual, legend: []};
   const {of, legend} = saltus.coloursOfValues(by, table.runRows.map((row) => table.at(by, row)));
   return {colourOf: (row) => of(table.at(by, row)), legend};
 };

@@ -34,9 +34,10 @@ saltus.pointsPicture = (table, title, width, plot, zoom, yName) => {
     frame.inside.append(saltus.runMark(
         table, row, "circle", {cx: place(row), cy: frame.y(yOf(row)), r: joined ? 3 : 2.2, fill: colourOf(row), class: "run"}, label));
   }
+  const {panel} = saltus.palette();
   for (const [row, value] of ends) {
     const [px, py] = [place(row), frame.y(value)];
-    const look = {d: `M${px} ${py - 4}l4 4l-4 4l-4 -4z`, fill: saltus.palette().panel, stroke: colourOf(row), "stroke-width": 1.4};
+    const look = {d: `M${px} ${py - 4}l4 4l-4 4l-4 -4z`, fill: panel, stroke: colourOf(row), "stroke-width": 1.4};
     const label = `${saltus.sweepNumber(table.at(x, row))}: ${saltus.sweepNumber(value)} at the end, without events before it`;
     frame.inside.append(saltus.runMark(table, row, "path", {...look, class: "run end"}, label));
   }

@@ -26,7 +26,7 @@ saltus.problemRoles = (homotopy, objective = null) => {
   return homotopy.map(({phase, termination, message}, k) => {
     if (k === taken) return "taken";
     // With a solution in hand, other mode sequences are tried; most of them have none, or none that is better.
-    const other = /^(another mode sequence|modes with)/.test(message) || (taken >= 0 && k > taken && phase !== "relaxed");
+    const other = message.startsWith("another mode sequence") || (taken >= 0 && k > taken && phase !== "relaxed");
     if (other) return "other";
     return termination === "completed" ? "path" : "failed";
   });

@@ -107,16 +107,6 @@ saltus.strobeTimes = ({t}, count = saltus.strobeFrames) => {
   return to > from ? Array.from({length: count}, (_, i) => from + ((to - from) * i) / (count - 1)) : [from];
 };
 
-/** Round numbers within a range, at most `most` of them. */
-saltus.roundTicks = ([from, to], most) => {
-  const rough = (to - from) / Math.max(1, most);
-  const power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * ([1, 2, 5, 10].find((factor) => factor * power >= rough) ?? 10);
-  const ticks = [];
-  for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; k += 1) ticks.push(k * step);
-  return ticks.map((tick) => Number(tick.toPrecision(12)));
-};
-
 /** Largest width and height of the picture in pixels; the scale is that of both axes. */
 saltus.bodiesPicture = (box, widest, tallest) => {
   const [width, height] = box.map(([from, to]) => to - from);
