@@ -79,6 +79,7 @@ class Run : private ResolverClient {
   void leave_undefined();
   [[nodiscard]] std::string undefined_beyond();
   [[nodiscard]] std::string undefined_function_beyond();
+  void count_step(double h);
   void accept(double t_new);
   void come_to_end_of_step(double h);
 

@@ -137,11 +137,16 @@ void Run::leave_undefined() {
                   run_.where()));
 }
 
+void Run::count_step(double h) {
+  ++statistics_.steps;
+  steps_.choice().count(steps_.stepper().method(), h);
+}
+
 void Run::accept(double t_new) {
   Position& here = run_.here;
-  ++statistics_.steps;
   rows_until(t_new);
   const double h = t_new - here.t;
+  count_step(h);
   nested_.accepted(h);
   here.move_to(t_new, steps_.stepper().x_new());
   note_time_scale(h);
@@ -242,7 +247,7 @@ std::optional<Run::Step> Run::first_event(double t_new) {
   note_time_scale(h);
   const Located* located = locator_.locate({here.t, here.x.data(), here.slope.data()}, steps_.dense(), hit);
   if (!located || zeros_.is_repelled(*located)) return shorten_to(0.5);
-  ++statistics_.steps;
+  count_step(located->t - here.t);
   if (run_.rows.asks_for_lines()) run_.rows.write_lines(located->t, steps_.dense());
   // A requested time that is a break but for its rounding belongs to the cell behind it.
   const bool ends_cell = reaches_cell_end(run_.search, *located);

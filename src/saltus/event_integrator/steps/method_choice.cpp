@@ -62,13 +62,15 @@ void MethodChoice::change_to(Method method) {
   }
 }
 
+void MethodChoice::count(Method method, double h) {
+  if (!chooses_) return;
+  auto& use = uses_[static_cast<std::size_t>(method)];
+  ++use.steps;
+  use.time += h;
+}
+
 void MethodChoice::accepted(ode::Stepper& stepper, const ode::Tolerances& tolerances, bool watched) {
   failures_ = 0;
-  if (chooses_) {
-    auto& use = uses_[static_cast<std::size_t>(stepper.method())];
-    ++use.steps;
-    use.time += stepper.length();
-  }
   if (stepper.follows()) return;
   if (!ode::is_implicit(stepper.method())) {
     if (watched) look_at_explicit(stepper, tolerances);

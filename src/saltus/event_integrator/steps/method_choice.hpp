@@ -34,6 +34,8 @@ class MethodChoice {
 
   /// Goes on in the mode here, whose right-hand side is another one.
   void begin_mode();
+  /// Counts a step of length h, accepted or up to an event.
+  void count(ode::Method method, double h);
   /// Notes an accepted step that ends here.
   /// @param watched  whether its length says something: it is not as long as it may be
   void accepted(ode::Stepper& stepper, const ode::Tolerances& tolerances, bool watched);
