@@ -10,14 +10,15 @@ using casadi::SX;
 
 JumpFunctions::JumpFunctions(const model::System& system, const std::vector<SX>& arguments, const SX& input,
                              int first_function) {
-  const auto with_inputs = [&](const SX& expression) {
-    return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, input);
+  const auto with = [&](const SX& inputs, const SX& expression) {
+    return system.u.numel() == 0 ? expression : SX::substitute(expression, system.u, inputs);
   };
+  const SX input_at_instant = SX::densify(system.input_at_instant);
   int next = first_function;
   // Named by the jump: they become native code together.
   const auto numbered = [&](const char* name) { return fmt::format("saltus_jump{}_{}", entries_.size(), name); };
   const auto quantity = [&](const char* name, const SX& expression) {
-    const SX value = SX::densify(with_inputs(expression));
+    const SX value = SX::densify(with(input_at_instant, expression));
     return value.is_constant() ? Quantity{static_cast<double>(value), {}}
                                : Quantity{std::nullopt, ModelFunction(numbered(name), arguments, {value})};
   };
@@ -29,9 +30,9 @@ JumpFunctions::JumpFunctions(const model::System& system, const std::vector<SX>&
     if (jump.trigger == model::JumpTrigger::condition) {
       std::vector<SX> with_guards = arguments;
       with_guards.push_back(jump.guard_alpha);
-      entry.condition = ModelFunction(numbered("condition"), with_guards, {with_inputs(jump.value)});
+      entry.condition = ModelFunction(numbered("condition"), with_guards, {with(input, jump.value)});
     }
-    entry.values = ModelFunction(numbered("values"), arguments, {with_inputs(jump.values)});
+    entry.values = ModelFunction(numbered("values"), arguments, {with(input_at_instant, jump.values)});
     entry.priority = quantity("priority", jump.priority);
     entry.delay = quantity("delay", jump.delay);
     entries_.push_back(std::move(entry));

@@ -40,6 +40,7 @@ class Assembly {
     keep_used_functions();
     classify_functions();
     if (auto error = take_right_hand_side()) return tl::unexpected(*error);
+    if (auto error = interpolate_quantities()) return tl::unexpected(*error);
     take_switching();
     if (auto error = add_regions(graph_, statement_, sliding_, system_)) return tl::unexpected(*error);
     take_cells();
@@ -126,7 +127,7 @@ class Assembly {
       inputs_.push_back(node.front());
     }
     system_.u = column(u);
-    system_.input = column(input);
+    system_.input = system_.input_at_instant = column(input);
     return std::nullopt;
   }
 
@@ -188,6 +189,7 @@ class Assembly {
   }
 
   std::optional<Error> take_jumps() {
+    if (auto error = put_at_instant(system_.input_at_instant)) return error;
     for (const auto& stated : statement_.jumps) {
       auto jump = jump_of(recognition_, stated, static_cast<int>(system_.jumps.size()) + 1, event_warnings_);
       if (!jump) return with_context(with_location(jump.error(), stated.location), "in [[jumps]]");
@@ -295,7 +297,7 @@ class Assembly {
         reduced.push_back(*state.dynamics);
         continue;
       }
-      auto component = interpolate(graph_, f_[i], sliding_, state.name);
+      auto component = interpolate(graph_, f_[i], sliding_, "the dynamics of " + state.name);
       if (!component) return with_location(component.error(), state.dynamics_location);
       reduced.push_back(*component);
     }
@@ -305,6 +307,43 @@ class Assembly {
     }
     system_.f_as_written = column(as_written);
     system_.f = column(reduced);
+    return std::nullopt;
+  }
+
+  /// What is shown, awaited or assigned while a surface slides is the mixture that moves the states: the mean of
+  /// infinitely fast switching, not the expression at the mean of the selections.
+  std::optional<Error> interpolate_quantities() {
+    if (statement_.inclusion == Inclusion::aizerman_pyatnitskii) return std::nullopt;
+    for (casadi_int i = 0; i < system_.outputs.numel(); ++i) {
+      auto& output = system_.outputs.nonzeros()[at(i)];
+      if (auto error = mix(output, "the output " + system_.output_names[at(i)])) return error;
+    }
+    for (auto& event : system_.events) {
+      // The value of a condition is over the truths of its comparisons.
+      auto& functions = event.guards.numel() > 0 ? event.guards : event.value;
+      if (auto error = mix_all(functions, "the event " + event.name)) return error;
+    }
+    for (auto& jump : system_.jumps) {
+      for (auto* expressions : {&jump.guards, &jump.values, &jump.priority, &jump.delay}) {
+        if (auto error = mix_all(*expressions, "the jump " + jump.name)) return error;
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> mix_all(casadi::SX& expressions, const std::string& what) {
+    for (SXElem& e : expressions.nonzeros()) {
+      if (auto error = mix(e, what)) return error;
+    }
+    return std::nullopt;
+  }
+
+  std::optional<Error> mix(SXElem& expression, const std::string& what) {
+    const auto node = graph_.add(expression);
+    if (!node) return std::nullopt;  // of a jump, with comparisons: they have one truth at an instant
+    const auto mixture = interpolate(graph_, *node, sliding_, what);
+    if (!mixture) return mixture.error();
+    expression = *mixture;
     return std::nullopt;
   }
 
@@ -351,7 +390,8 @@ class Assembly {
 
   /// Of conditions: right-hand sides of jumps have their truth instead.
   void drop_marks() {
-    std::vector<casadi::SX*> all{&system_.f, &system_.f_as_written, &system_.outputs, &system_.input};
+    std::vector<casadi::SX*> all{&system_.f, &system_.f_as_written, &system_.outputs, &system_.input,
+                                 &system_.input_at_instant};
     for (auto& function : system_.switching) all.push_back(&function.psi);
     for (auto& event : system_.events) all.insert(all.end(), {&event.value, &event.guards});
     for (auto& jump : system_.jumps) all.push_back(&jump.guards);

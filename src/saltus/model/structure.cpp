@@ -144,6 +144,7 @@ std::vector<std::uint64_t> structure(const System& system) {
   writer.expression(system.f);
   writer.expression(system.outputs);
   writer.expression(system.input);
+  writer.expression(system.input_at_instant);
   write_events(writer, system);
   return std::move(writer).words();
 }

@@ -124,6 +124,7 @@ struct System {
   casadi::SX f_as_written;       ///< n_x, alpha as the user wrote it
   casadi::SX outputs;            ///< n_y
   casadi::SX input;              ///< n_u over t, p, alpha: u during a simulation
+  casadi::SX input_at_instant;   ///< the same, as a jump reads it: comparisons are what their operators say of equality
   std::vector<SwitchingFunction> switching;
   std::vector<SwitchingColumn> columns;  ///< of the result: order of appearance, named ones first in file order
   std::vector<UserEvent> events;

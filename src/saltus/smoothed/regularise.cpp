@@ -265,6 +265,7 @@ void Regulariser::finish() {
   system.f = interpolated_field();
   system.f_as_written = system.f;
   continuous(system.input);
+  continuous(system.input_at_instant);
   std::vector<SX> outputs{on_sides(original_.outputs, {})};
   for (const auto& column : original_.columns) outputs.push_back(total(column.function));
   for (int j = 0; j < static_cast<int>(original_.switching.size()); ++j) {

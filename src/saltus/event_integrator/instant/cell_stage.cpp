@@ -3,21 +3,39 @@
 #include <algorithm>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 #include "saltus/event_integrator/decide/start.hpp"
 #include "saltus/event_integrator/instant/rest_stage.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
-/// Switching functions that hold constants of a cell that moved last, or selections of such functions.
-std::vector<bool> functions_in_moved_cells(const RunState& run) {
+bool is_of_time(const RunState& run, int surface) {
+  return run.switching.layout.surfaces[at(surface)].role == model::SwitchingRole::time_event;
+}
+
+/// Switching functions whose values time moves here: they hold constants of a cell that moved last, selections of a
+/// function of time that is passed here, or selections of such functions.
+std::vector<bool> functions_moved_by_time(const InstantContext& c) {
+  const RunState& run = c.run;
+  const auto& touched = c.out.switching_point.touched;
+  const bool cells_move = c.out.cell_change != CellChange::none;
   std::vector<bool> moved(at(run.kernel.switching_functions()));
   for (int j = 0; j < run.kernel.switching_functions(); ++j) {
     const auto& inner = run.kernel.inner(j);  // of smaller indices
-    moved[at(j)] =
-        run.cells.moved_in(j) || std::any_of(inner.begin(), inner.end(), [&](int i) { return moved[at(i)]; });
+    const auto moves = [&](int i) { return moved[at(i)] || (is_of_time(run, i) && contains(touched, i)); };
+    moved[at(j)] = (cells_move && run.cells.moved_in(j)) || std::any_of(inner.begin(), inner.end(), moves);
   }
   return moved;
+}
+
+std::string moved_names(const InstantContext& c) {
+  const auto& layout = c.run.switching.layout;
+  std::string names = c.run.cells.moved_names(layout);
+  for (const int j : c.out.switching_point.touched) {
+    if (is_of_time(c.run, j)) names += (names.empty() ? "" : ", ") + layout.surfaces[at(j)].name;
+  }
+  return names;
 }
 
 }  // namespace
@@ -50,12 +68,22 @@ Located breaks_here(RunState& run) {
   return here;
 }
 
-bool decide_in_cells(const InstantContext& c) {
+bool time_moves_surfaces(const InstantContext& c) {
+  const auto moved = functions_moved_by_time(c);
+  const auto& at_zero = c.out.switching_point.at_zero;
+  return std::any_of(at_zero.begin(), at_zero.end(), [&](int j) { return moved[at(j)]; });
+}
+
+bool decide_behind_times(const InstantContext& c) {
   auto& [run, cascade, out] = c;
   std::vector<int> held, slid;
-  const auto moved = functions_in_moved_cells(run);
+  const auto moved = functions_moved_by_time(c);
   for (const int j : out.before.sliding) (moved[at(j)] ? slid : held).push_back(j);
-  held.insert(held.end(), out.freed.begin(), out.freed.end());
+  for (const auto* others : {&out.freed, &out.switching_point.touched}) {
+    for (const int j : *others) {
+      if (!moved[at(j)] && !contains(held, j)) held.push_back(j);
+    }
+  }
   RestingSurfaces resting;
   if (!find_resting(c, resting)) return false;
   Transition& transition = out.transition;
@@ -63,9 +91,8 @@ bool decide_in_cells(const InstantContext& c) {
   transition =
       decide_behind_jump(run.switching, out.before, here.t, here.x.data(), here.time_scale, held, resting, slid);
   if (transition.termination == result::Termination::completed && transition.state.mode != out.before.mode) {
-    transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs behind the " +
-                        (out.cell_change == CellChange::jump ? "jump of " : "kink of ") +
-                        run.cells.moved_names(run.switching.layout);
+    transition.reason = (transition.reason.empty() ? "" : transition.reason + "; ") + "signs after the " +
+                        (out.cell_change == CellChange::kink ? "kink of " : "jump of ") + moved_names(c);
   }
   run.ledger.forget_users();
   return true;

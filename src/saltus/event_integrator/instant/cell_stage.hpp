@@ -13,9 +13,12 @@ namespace saltus::event_integrator {
 CellChange leave_cells(const InstantContext& c, const Located& located);
 /// Returns breaks at which values jump, at this time to rounding.
 [[nodiscard]] Located breaks_here(RunState& run);
-/// Decides the mode behind values that jump, as at a start, into the transition of the outcome. What slides and is
-/// still at zero goes on sliding if it can. Returns false where the run ends.
-bool decide_in_cells(const InstantContext& c);
+/// Returns whether time moves the values of surfaces that are at zero here: those that hold constants of a cell that is
+/// left, or selections of a function of time that is passed.
+[[nodiscard]] bool time_moves_surfaces(const InstantContext& c);
+/// Decides the mode behind values that time moves, as at a start, into the transition of the outcome. What slides and
+/// is still at zero goes on sliding if it can. Returns false where the run ends.
+bool decide_behind_times(const InstantContext& c);
 /// Looks up arguments that are defined on this side of a surface only. They are so behind it, a few roundings ahead if
 /// the surface itself is beside their domain. Returns whether a cell has moved.
 bool find_undefined_cells(RunState& run);

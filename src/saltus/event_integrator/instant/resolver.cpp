@@ -96,14 +96,15 @@ Resolver::Stage Resolver::leave_cells() {
   out_.cell_change = event_integrator::leave_cells(context(), located);
   if (leaves_resting_with_cells(context())) return jump_from_here(true);
   if (out_.cell_change != CellChange::jump && !change_resting_with_cells(context())) return Stage::switching;
-  return run_.running && decide_in_cells(context()) ? Stage::conclusion : Stage::done;
+  return run_.running && decide_behind_times(context()) ? Stage::conclusion : Stage::done;
 }
 
 /// The mode behind the surfaces that are at zero; or the same, where only cells and guards have changed.
 Resolver::Stage Resolver::decide() {
   if (!collect_surfaces(context(), *instant_->located, client_.longest_step())) return Stage::done;
-  const ModeState& from = touch_others(context());
+  const ModeState& from = mode_before(context());
   const Position& here = run_.here;
+  if (time_moves_surfaces(context())) return decide_behind_times(context()) ? Stage::conclusion : Stage::done;
   if (!out_.switching_point.touched.empty()) {
     decide_touched(context(), from, single_, pair_);
     return Stage::conclusion;
@@ -249,7 +250,11 @@ bool Resolver::resolve(const Instant& instant) {
   if (instant.cause == Cause::due) {
     cascade_.begin();
     if (update_jumps(context()) && !run_.jumps.due(run_.here.t)) return false;
-    if (run_.running) run(jump_from_here(true));
+    if (run_.running) {
+      // Jumps read the values of tables and inputs from here on.
+      out_.cell_change = event_integrator::leave_cells(context(), breaks_here(run_));
+      run(jump_from_here(true));
+    }
   } else if (instant.cause == Cause::departure) {
     out_.transition = instant.transition;
     run(Stage::conclusion);

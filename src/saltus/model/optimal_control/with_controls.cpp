@@ -61,7 +61,7 @@ System with_controls(System system, const std::vector<double>& times, const std:
     inputs.push_back(cell.symbols);
     system.cells.push_back(std::move(cell));
   }
-  system.input = inputs.empty() ? SX(0, 1) : SX::vertcat(inputs);
+  system.input = system.input_at_instant = inputs.empty() ? SX(0, 1) : SX::vertcat(inputs);
   return system;
 }
 

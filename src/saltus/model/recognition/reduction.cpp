@@ -140,9 +140,9 @@ std::vector<int> nonaffine_alphas(const Tape& tape, int node) {
   return NonaffineTable().of(tape, node);
 }
 
-Expected<SXElem> interpolate(SxGraph& graph, int node, const std::set<int>& alphas, const std::string& name) {
+Expected<SXElem> interpolate(SxGraph& graph, int node, const std::set<int>& alphas, const std::string& what) {
   auto result = Interpolation(graph, alphas).of_sum(node);
-  if (!result) return tl::unexpected(chain_too_long("the dynamics of " + name));
+  if (!result) return tl::unexpected(chain_too_long(what));
   return *result;
 }
 

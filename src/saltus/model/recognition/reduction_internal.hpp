@@ -1,4 +1,4 @@
-// The multi-affine interpolation of a right-hand side in its alphas (Filippov's inclusion for f as a person writes it).
+// The multi-affine interpolation of an expression in its alphas (Filippov's inclusion for f as a person writes it).
 #pragma once
 
 #include <set>
@@ -16,9 +16,9 @@ namespace saltus::model {
 /// Replaces every additive term of the expression by its interpolation between alpha = 0 and 1 in those of the given
 /// alphas in which it is not affine: f -> alpha f|1 + (1 - alpha) f|0.
 /// @param alphas  nodes of the alphas that can take values between 0 and 1 where it matters
-/// @param name    of the state, for the error
+/// @param what    the expression is, for the error
 /// @return the expression itself where nothing is to do; an error if a term needs more than 64 corners
 [[nodiscard]] Expected<SXElem> interpolate(SxGraph& graph, int node, const std::set<int>& alphas,
-                                           const std::string& name);
+                                           const std::string& what);
 
 }  // namespace saltus::model

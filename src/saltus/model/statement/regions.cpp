@@ -84,7 +84,7 @@ std::optional<Error> add_regions(SxGraph& graph, const Statement& statement, con
         SXElem reduced = rate;
         if (statement.inclusion != Inclusion::aizerman_pyatnitskii) {
           const auto& name = statement.states[at(state)].name;
-          auto component = interpolate(graph, graph.node(rate), sliding, name);
+          auto component = interpolate(graph, graph.node(rate), sliding, "the dynamics of " + name);
           if (!component) return with_location(component.error(), location);
           reduced = *component;
         }

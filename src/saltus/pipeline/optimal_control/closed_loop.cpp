@@ -34,7 +34,7 @@ model::System with_parameters_as_controls(model::System system, const OptimizedP
   system = model::with_controls(std::move(system), {path.times.front()}, {path.controls.front()});
   system.cells.resize(system.cells.size() - system.control_names.size());
   const casadi::SX controls = casadi::SX::sym("control", n);
-  system.input = controls;
+  system.input = system.input_at_instant = controls;
   system.p = casadi::SX::vertcat({system.p, controls});
   for (const auto& name : system.control_names) system.parameter_names.push_back("control." + name);
   system.parameter_values.resize(system.parameter_names.size(), 0.0);
