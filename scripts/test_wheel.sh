@@ -34,7 +34,7 @@ for python in "${pythons[@]}"; do
   pins=()
   ! is_of_the_tree "$version" || pins=(--constraint "$source_folder/scripts/requirements-python.txt")
   "$python" -m venv "$folder/$version"
-  "$folder/$version/bin/pip" install --quiet --disable-pip-version-check "${pins[@]}" "$wheel$extras" pytest ${extras:+mypy}
+  "$folder/$version/bin/pip" install --quiet --disable-pip-version-check --no-compile "${pins[@]}" "$wheel$extras" pytest ${extras:+mypy}
   echo "Python $version"
   (cd "$folder/tests" && SALTUS_TEST_WHEEL=1 SALTUS_TEST_TOOL="$folder/$version/bin/saltus" SALTUS_TEST_SOURCE="$source_folder" \
     MPLBACKEND=Agg "$folder/$version/bin/python" -m pytest -q -p no:cacheprovider "${tests[@]}")

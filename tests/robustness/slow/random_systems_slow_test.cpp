@@ -15,7 +15,8 @@ namespace {
 class TenThousandSystems : public testing::TestWithParam<Family> {};
 
 TEST_P(TenThousandSystems, AreSolvedOrRefusedWithAStatus) {
-  const Tally tally = run_campaign(GetParam(), 0, of_campaign<std::uint64_t>(2500));
+  const auto first = systems_of_short_campaign;
+  const Tally tally = run_campaign(GetParam(), first, of_campaign<std::uint64_t>(2500) - first);
   for (const auto& failure : tally.failures) ADD_FAILURE() << failure;
   fmt::print("{}: {} systems, {} completed, {} outside the class; of the completed {} not unique, {} sensitive\n",
              name(GetParam()), tally.systems, tally.completed, tally.outside_class, tally.not_unique, tally.sensitive);
