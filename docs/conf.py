@@ -46,5 +46,6 @@ html_static_path = ["_static"]
 html_css_files = ["saltus.css"]
 html_copy_source = False
 html_show_sourcelink = False
-html_extra_path = []
+# What scripts/wasm.sh has built: the page in which models run.
+html_extra_path = [str(page) for page in [root / "build/wasm/try.html"] if page.exists()]
 html_theme_options = {"source_edit_link": "", "top_of_page_buttons": []}

@@ -51,6 +51,13 @@ def copy_pages():
         (SOURCE / page).write_text(re.sub(r"\[([^\]]*)\]\((?:tests|examples|cmake|benchmarks|scripts|src|models|packaging)/[^)]*\)", r"\1", text))
 
 
+def link_to_try():
+    """The page in which models run, where scripts/wasm.sh has built it (docs/conf.py puts it into the site)."""
+    if (BUILD / "wasm/try.html").exists():
+        with open(SOURCE / "in-the-browser.md", "a", encoding="utf-8") as page:
+            page.write('\n<p><a href="try.html"><strong>Open the page</strong></a></p>\n')
+
+
 def doxygen():
     """The XML of the C++ reference; nothing where Doxygen is not installed."""
     if shutil.which("doxygen") is None:
@@ -72,6 +79,7 @@ def main(quick):
     begin = time.monotonic()
     env = environment()
     copy_pages()
+    link_to_try()
     os.environ.update(env)
     tables.write(SOURCE, BUILD / "release/bin/saltus", ROOT)
     measured.write(SOURCE, ROOT)

@@ -493,7 +493,7 @@ std::vector<Error> find_mistakes(const Description& description) {
 Expected<System> build_with(const Description& description, const std::vector<Override>& overrides,
                             const Quantities* quantities) {
   std::optional<FreezingPlan> plan;
-  if (quantities != nullptr && quantities->time == TimeForm::frozen) plan = {.purpose = FrozenFor::optimisation};
+  if (quantities != nullptr && quantities->time == TimeForm::frozen) plan.emplace().purpose = FrozenFor::optimisation;
   return build_guarded(description, [&] { return Build(description, overrides, quantities, plan).run(); });
 }
 

@@ -21,12 +21,12 @@ class Writer {
   void write(std::uint64_t value) { words_.push_back(value); }
   void write(double value) { write(std::bit_cast<std::uint64_t>(value)); }
   void write(const std::vector<double>& values) {
-    write(values.size());
+    write(std::uint64_t{values.size()});
     for (const double value : values) write(value);
   }
   template <class Flags>
   void write_all(const Flags& flags) {
-    write(flags.size());
+    write(std::uint64_t{flags.size()});
     for (const auto flag : flags) write(static_cast<std::uint64_t>(flag));
   }
   void symbols(const SX& column) {

@@ -64,7 +64,8 @@ CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording
 }
 
 bool Run::observes(const StepObserver& observer) const {
-  return observer({run_.here.t, statistics_.steps, run_.recorder.events(), shown_state()}) == Continue::yes;
+  return observer({run_.here.t, static_cast<long>(statistics_.steps), run_.recorder.events(), shown_state()}) ==
+         Continue::yes;
 }
 
 /// One step at a time, and the instants that it meets.
