@@ -44,6 +44,17 @@ class TryPage(browser_page.Page):
         selected = "(() => { const m = document.getElementById('model'); return m.value.slice(m.selectionStart, m.selectionEnd); })()"
         self.assertIn("dynamixs", self.value(selected))
 
+    def test_a_run_that_is_stopped_leaves_the_page_ready(self):
+        self.edit("until = 40", "until = 1e6")
+        self.value(RUN)
+        self.becomes(STATUS, "running…")
+        self.value("document.getElementById('stop').click()")
+        self.becomes(STATUS, "ready")
+        self.edit("until = 1e6", "until = 1")
+        self.value(RUN)
+        self.becomes(KIND, "good")
+        self.assertIn("t = 1\n", self.table())
+
     def test_every_example_runs(self):
         count = self.value("document.getElementById('examples').options.length")
         self.assertGreater(count, 5)

@@ -8,6 +8,7 @@ const models = JSON.parse(part("models").textContent);
 let worker = null;
 let shown = null;  // the address of the page of the last result
 let result = null;  // its text
+let begun = false;  // the first example runs by itself, what was stopped does not
 
 const tell = (words, kind = "") => {
   part("status").textContent = words;
@@ -47,6 +48,8 @@ const take = ({ready, told, seconds}) => {
   set_running(false);
   if (ready) {
     tell("ready");
+    if (begun) return;
+    begun = true;
     return run();
   }
   if (told.broken !== undefined) {
@@ -63,7 +66,7 @@ const take = ({ready, told, seconds}) => {
   show(told.page);
 };
 
-/** A worker with the engine; it runs the model as soon as it is there. */
+/** A worker with the engine. */
 const start = () => {
   worker = new Worker(URL.createObjectURL(new Blob([text("engine"), "\n", text("worker")], {type: "text/javascript"})));
   worker.onmessage = ({data}) => take(data);
