@@ -17,6 +17,8 @@ using model::OcpGuess;
 
 /// The simulation of a guess has tolerances of 1e-6, and fields here are polynomials.
 constexpr double near = 1e-6;
+/// Half of the last digit that a guess between 8 and 16 says: it has 14 binary ones.
+constexpr double half_digit = 0x1p-11;
 
 OcpStart started(const Ocp& ocp, int intervals, const std::vector<double>& fractions) {
   auto start = guess_start(ocp, intervals, fractions);
@@ -76,10 +78,35 @@ TEST(OcpGuessTest, SimulationOfTheGuessedControls) {
   EXPECT_NEAR(start.states[1][1], 6.0, near);
   EXPECT_EQ(start.states[1], start.states[2]);
   EXPECT_NEAR(start.states[1][0], 3.0, near);
-  EXPECT_NEAR(start.states[3][1], 10.0 + 2.0 * (2.0 - edge), near);
-  EXPECT_NEAR(start.states[4][1], 10.0 + 2.0 * (4.0 - edge), near);
+  EXPECT_NEAR(start.states[3][1], 10.0 + 2.0 * (2.0 - edge), half_digit);
+  EXPECT_NEAR(start.states[4][1], 10.0 + 2.0 * (4.0 - edge), half_digit);
   EXPECT_EQ(start.alpha, (std::vector<std::vector<double>>{{1}, {1}, {1}, {0}, {0}}));
   EXPECT_TRUE(start.warnings.empty());
+}
+
+TEST(OcpGuessTest, DigitsThatComeFromStepsAreNoPartOfIt) {
+  // A state that stands still changes the first step, and with it the last digits of the others.
+  const auto guessed = [](bool has_idle) {
+    Builder model("pendulum");
+    const SX angle = model.state("angle", {1.0}), rate = model.state("rate", {0.0});
+    model.dynamics("angle", rate);
+    model.dynamics("rate", -sin(angle));
+    if (has_idle) {
+      model.state("idle", {3.7});
+      model.dynamics("idle", 0);
+    }
+    auto states = started(problem_of(model, 5.0), 5, {0.0, 0.1, 0.35, 0.7, 1.0}).states;
+    for (auto& x : states) {
+      if (has_idle) EXPECT_EQ(x.back(), 3.7);
+      x.resize(2);
+    }
+    return states;
+  };
+  const auto states = guessed(false);
+  ASSERT_EQ(states.size(), 5U);
+  EXPECT_EQ(states, guessed(true));
+  EXPECT_EQ(states.front(), (std::vector<double>{1.0, 0.0}));
+  for (const auto& x : states) EXPECT_NEAR(x[1] * x[1] / 2 - std::cos(x[0]), -std::cos(1.0), 4 * half_digit);
 }
 
 TEST(OcpGuessTest, SimulatedStatesArePutOntoTheirBounds) {

@@ -22,6 +22,10 @@ constexpr long most_guess_events = 2'000;
 /// Times the largest of what is given about a state: a problem solver has no use for more.
 constexpr double largest_growth = 1e6;
 
+/// Two digits less than the tolerances. What is behind them comes from the lengths of the steps, and would lead
+/// problems with many solutions to one or another.
+constexpr int known_bits = 13;
+
 constexpr double not_known_yet = std::numeric_limits<double>::quiet_NaN();
 
 IntegrationOptions guess_options(double from, double until, const std::vector<double>& times) {
@@ -49,18 +53,52 @@ bool is_of_use(const model::System& system, const std::vector<double>& x) {
   return true;
 }
 
+/// States and selections with the digits that are known.
+class KnownDigits {
+ public:
+  KnownDigits(const model::System& system, const result::Trajectory& rows)
+      : initial_(system.initial_state), largest_(initial_.size(), 0.0) {
+    for (std::size_t row = 0; row < rows.t.size() && is_of_use(system, rows.x[row]); ++row) {
+      for (std::size_t i = 0; i < rows.x[row].size(); ++i) {
+        largest_[i] = std::max(largest_[i], std::abs(rows.x[row][i]));
+      }
+    }
+  }
+
+  /// A state that has not moved keeps its initial value.
+  [[nodiscard]] std::vector<double> of(std::vector<double> x) const {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double known = rounded(x[i], largest_[i]);
+      x[i] = known == rounded(initial_[i], largest_[i]) ? initial_[i] : known;
+    }
+    return x;
+  }
+
+  [[nodiscard]] static double rounded(double value, double largest) {
+    constexpr double small = 0x1p-7;  // of the largest value: less is known of what is smaller
+    const double size = std::max(std::abs(value), small * largest);
+    if (!(size > 0.0 && std::isfinite(size))) return value;
+    const double unit = std::ldexp(1.0, std::ilogb(size) - known_bits);
+    return unit * std::nearbyint(value / unit);
+  }
+
+ private:
+  const std::vector<double>& initial_;
+  std::vector<double> largest_;
+};
+
 /// What a row says of the selections; NaN where it says nothing.
 std::vector<double> known_selections(const model::System& system, const result::Trajectory& rows, std::size_t row) {
   std::vector<double> known(system.switching.size(), not_known_yet);
   for (std::size_t c = 0; c < system.columns.size(); ++c) {
     const auto& column = system.columns[c];
     const double alpha = rows.alpha[row][c];
-    known[at(column.function)] = column.orientation > 0 ? alpha : 1.0 - alpha;
+    known[at(column.function)] = KnownDigits::rounded(column.orientation > 0 ? alpha : 1.0 - alpha, 1.0);
   }
   std::size_t next = 0;
   for (const auto& group : system.mode_groups) {
     for (int i = 0; group.first >= 0 && i < group.regions && !rows.theta.empty(); ++i) {
-      known[at(group.first + i)] = rows.theta[row][next++];
+      known[at(group.first + i)] = KnownDigits::rounded(rows.theta[row][next++], 1.0);
     }
   }
   return known;
@@ -90,10 +128,11 @@ Expected<GuessedSimulation> simulate_guess(const model::System& system, PointVal
   simulation.time_reached = starts.front();
   simulation.last = restated(system.initial_state, starts.front());
   const auto& rows = run.trajectory;
+  const KnownDigits digits(system, rows);
   std::size_t next = 0;
   for (std::size_t row = 0; row < rows.t.size() && is_of_use(system, rows.x[row]); ++row) {
     simulation.time_reached = rows.t[row];
-    simulation.last = restated(rows.x[row], rows.t[row]);
+    simulation.last = restated(digits.of(rows.x[row]), rows.t[row]);
     // Of two rows at an event the second one, except at the end, where it is behind the horizon.
     const bool is_first = row + 1 < rows.t.size() && rows.t[row + 1] == rows.t[row] && rows.t[row] < until;
     if (is_first) continue;
