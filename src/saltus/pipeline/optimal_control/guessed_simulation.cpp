@@ -53,7 +53,14 @@ bool is_of_use(const model::System& system, const std::vector<double>& x) {
   return true;
 }
 
-/// States and selections with the digits that are known.
+/// With the digits that are known of a number whose errors are those of a larger one.
+double rounded(double value, double largest) {
+  if (!(largest > 0.0)) return value;
+  const double unit = std::ldexp(1.0, std::ilogb(largest) - known_bits);
+  return unit * std::nearbyint(value / unit);
+}
+
+/// States with the digits that are known: errors of a simulation are those of its largest values.
 class KnownDigits {
  public:
   KnownDigits(const model::System& system, const result::Trajectory& rows)
@@ -74,14 +81,6 @@ class KnownDigits {
     return x;
   }
 
-  [[nodiscard]] static double rounded(double value, double largest) {
-    constexpr double small = 0x1p-7;  // of the largest value: less is known of what is smaller
-    const double size = std::max(std::abs(value), small * largest);
-    if (!(size > 0.0 && std::isfinite(size))) return value;
-    const double unit = std::ldexp(1.0, std::ilogb(size) - known_bits);
-    return unit * std::nearbyint(value / unit);
-  }
-
  private:
   const std::vector<double>& initial_;
   std::vector<double> largest_;
@@ -93,12 +92,12 @@ std::vector<double> known_selections(const model::System& system, const result::
   for (std::size_t c = 0; c < system.columns.size(); ++c) {
     const auto& column = system.columns[c];
     const double alpha = rows.alpha[row][c];
-    known[at(column.function)] = KnownDigits::rounded(column.orientation > 0 ? alpha : 1.0 - alpha, 1.0);
+    known[at(column.function)] = rounded(column.orientation > 0 ? alpha : 1.0 - alpha, 1.0);
   }
   std::size_t next = 0;
   for (const auto& group : system.mode_groups) {
     for (int i = 0; group.first >= 0 && i < group.regions && !rows.theta.empty(); ++i) {
-      known[at(group.first + i)] = KnownDigits::rounded(rows.theta[row][next++], 1.0);
+      known[at(group.first + i)] = rounded(rows.theta[row][next++], 1.0);
     }
   }
   return known;
