@@ -50,6 +50,40 @@ def write_arrays(path: str, columns: typing.Mapping[str, typing.Any]) -> None:
                 np.lib.format.write_array(file, np.asarray(values), allow_pickle=False)
 
 
+def put_together(
+    parts: typing.Sequence[typing.Mapping[str, typing.Any]], changed: int
+) -> dict[str, np.ndarray[typing.Any, typing.Any]]:
+    """Parts of a table one behind the other. A column that a part lacks has NaN in its rows, of words an empty one.
+
+    The first column and the `changed` ones behind it are known by their place: a part in which no run began does not know
+    which of them are states.
+
+    >>> put_together([{"run": [1], "x": [2.0]}, {"run": [2]}], 0)["x"].tolist()
+    [2.0, nan]
+    """
+    widest = max(parts, key=len)
+    first = list(widest)[: 1 + changed]
+    others = dict.fromkeys(name for part in parts for name in list(part)[1 + changed :])
+    own = [list(part)[: 1 + changed] for part in parts]
+    table = {}
+    for name in (*first, *others):
+        pieces = []
+        for part, names in zip(parts, own):
+            there = names[first.index(name)] if name in first else name
+            pieces.append(np.asarray(part[there]) if there in part else None)
+        table[name] = stacked(pieces, [len(part["run"]) for part in parts])
+    return table
+
+
+def stacked(
+    pieces: typing.Sequence[typing.Any], rows: typing.Sequence[int]
+) -> np.ndarray[typing.Any, typing.Any]:
+    """Pieces of one column; None stands for one that is missing."""
+    words = any(piece is not None and piece.dtype.kind in "UO" for piece in pieces)
+    gap: typing.Any = "" if words else np.nan
+    return np.concatenate([np.full(count, gap) if piece is None else piece for piece, count in zip(pieces, rows)])
+
+
 def _listed(values: typing.Any) -> list[typing.Any]:
     return np.asarray(values).tolist()  # type: ignore[no-any-return]
 

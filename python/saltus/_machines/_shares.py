@@ -10,6 +10,7 @@ import typing
 
 import numpy as np
 
+from .. import _data
 from .._result import Stopped
 from .._sweep import Found, Results, RunWithoutRow, SweepArguments, Warned, warn_of_runs
 from ._tasks import Task, Tasks, Workers
@@ -175,6 +176,5 @@ def _joined(shares: dict[int, Share]) -> Found:
     parts = [found for _, (found, _, _) in sorted(shares.items()) if found[1]]
     if not parts:
         return {"run": [], "unique": []}, [], []
-    columns = max((part[0] for part in parts), key=len)
-    joined = {name: np.concatenate([np.asarray(part[0][name]) for part in parts]) for name in columns}
+    joined = _data.put_together([part[0] for part in parts], len(parts[0][2]))
     return joined, [result for part in parts for result in part[1]], parts[0][2]

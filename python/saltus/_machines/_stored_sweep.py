@@ -9,7 +9,7 @@ import typing
 
 import numpy as np
 
-from .. import _core
+from .. import _core, _data
 from .._result import Result, Stopped
 from ._shares import MOST_RUNS, Cutter, Place, Shares, Tell, run_share, stop_file
 from .._sweep import Array, RunWithoutRow, Sweep, SweepArguments, Warned, as_column, warn_of_runs
@@ -66,14 +66,29 @@ class StoredColumns(typing.Mapping[str, Array]):
 
     def __init__(self, folder: Folder) -> None:
         self._folder, self._parts = folder, folder.ordered
-        self._names = list(folder.read(self._parts[0])) if self._parts else ["run", "unique"]
+        # Parts may have different columns: of a run that has no switching function of a name there is no mode.
+        sets: dict[tuple[str, ...], tuple[str, ...]] = {}
+        headings = [tuple(folder.columns(part)) for part in self._parts]
+        self._of_parts = [sets.setdefault(names, names) for names in headings]
+        self._names = dict.fromkeys(name for names in sets for name in names) if self._parts else {"run": None, "unique": None}
 
     def __getitem__(self, name: str) -> Array:
         if name not in self._names:
             raise KeyError(name)
         if not self._parts:
             return np.zeros(0)
-        return as_column(name, np.concatenate([self._folder.read(part, [name])[name] for part in self._parts]))
+        pieces = [
+            self._folder.read(part, [name])[name] if name in names else None
+            for part, names in zip(self._parts, self._of_parts)
+        ]
+        return as_column(name, _data.stacked(pieces, [part.rows for part in self._parts]))
+
+    def parts(self) -> typing.Iterator[dict[str, Array]]:
+        """All columns of every part, of which some may be gaps."""
+        for part in self._parts:
+            found = self._folder.read(part)
+            gaps = {name: np.full(part.rows, np.nan) for name in self._names if name not in found}
+            yield {name: as_column(name, found.get(name, gaps.get(name))) for name in self._names}
 
     def __contains__(self, name: object) -> bool:
         return name in self._names  # without reading it
@@ -105,8 +120,7 @@ class StoredSweep(Sweep):
 
     def parts(self) -> typing.Iterator[dict[str, Array]]:
         """The table part by part, a thousand runs at most each: for more rows than the memory holds."""
-        for part in self._parts:
-            yield {name: as_column(name, values) for name, values in self._folder.read(part).items()}
+        return typing.cast(StoredColumns, self._columns).parts()
 
     @property
     def done(self) -> bool:

@@ -193,6 +193,18 @@ class Folder:
         with np.load(file) as archive:
             return {name: archive[name] for name in (archive.files if names is None else names)}
 
+    def columns(self, part: Part) -> list[str]:
+        """The names of the columns of a part."""
+        file = self.path / part.file
+        if not file.exists():
+            return []
+        if self.statement.kind == "parquet":
+            import pyarrow.parquet
+
+            return list(pyarrow.parquet.read_schema(file).names)
+        with np.load(file) as archive:
+            return list(archive.files)
+
     def close(self) -> None:
         """Lets others fill the folder."""
         self._lock.close()

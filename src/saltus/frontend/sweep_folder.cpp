@@ -12,6 +12,7 @@
 
 #include "saltus/base/text.hpp"
 #include "saltus/base/version.hpp"
+#include "saltus/frontend/share_text.hpp"
 #include "saltus/io/atomic_file.hpp"
 
 namespace saltus::frontend {
@@ -43,26 +44,6 @@ std::string value_of(const std::string& text, std::string_view key) {
       return std::string(line.substr(key.size() + 1));
   }
   return "";
-}
-
-/// Where the first line of a table ends; headings may have line ends in quotes.
-std::size_t end_of_headings(std::string_view text) {
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '"') quoted = !quoted;
-    if (text[i] == '\n' && !quoted) return i + 1;
-  }
-  return text.size();
-}
-
-/// The headings without the first one, which names the share.
-std::string_view other_headings(std::string_view line) {
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (line[i] == '"') quoted = !quoted;
-    if (line[i] == ',' && !quoted) return line.substr(i);
-  }
-  return "\n";
 }
 
 }  // namespace
@@ -180,26 +161,24 @@ std::vector<std::string> SweepFolder::files() const {
 
 Expected<void> SweepFolder::write_csv(const std::string& file) const {
   std::optional<Error> failure;
-  std::string headings;
-  const auto write = [&](io::Sink sink) {
+  const auto for_each_share = [&](const auto& visit) {
     for (const auto& share : files()) {
       const auto text = io::read_file(share);
-      if (!text) {
-        failure = text.error();
-        return false;
-      }
-      const auto end = end_of_headings(*text);
-      const auto others = other_headings(std::string_view(*text).substr(0, end));
-      if (headings.empty()) {
-        headings = others;
-        if (!sink("run" + headings)) return false;
-      } else if (headings != others) {
-        failure = refused_folder(share, "other columns than the first share", "a share in which no run began has none");
-        return false;
-      }
-      if (!sink(std::string_view(*text).substr(end))) return false;
+      if (!text) failure = text.error();
+      if (!text || !visit(*text)) return false;
     }
     return true;
+  };
+  const auto write = [&](io::Sink sink) {
+    JoinedHeadings whole;
+    const auto note = [&](const std::string& text) {
+      whole.add(headings_of(text));
+      return true;
+    };
+    if (!for_each_share(note)) return false;
+    std::vector<TableColumn> empty;
+    for (const auto& name : whole.all()) empty.push_back({name, {}});
+    return sink(to_csv(empty)) && for_each_share([&](const std::string& text) { return sink(rows_of(text, whole)); });
   };
   auto written = io::stream_file(file, write);
   if (failure) return tl::unexpected(std::move(*failure));

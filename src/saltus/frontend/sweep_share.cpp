@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -10,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/text.hpp"
+#include "saltus/frontend/share_text.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/sha256.hpp"
 #include "saltus/result/status.hpp"
@@ -17,46 +19,15 @@
 namespace saltus::frontend {
 namespace {
 
-using Lines = std::vector<std::vector<std::string>>;
-
 Error no_share(const std::string& file, const std::string& why, const std::string& remedy) {
   return {ErrorCode::parse_failure, fmt::format("{}: {}", file, why), remedy, {}, {}};
-}
-
-/// RFC 4180, as to_csv writes it.
-Lines fields_of(const std::string& text) {
-  Lines lines(1);
-  std::string field;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted) {
-      if (c == '"' && i + 1 < text.size() && text[i + 1] == '"') {
-        field += text[++i];
-      } else if (c == '"') {
-        quoted = false;
-      } else {
-        field += c;
-      }
-    } else if (c == '"') {
-      quoted = true;
-    } else if (c == ',' || c == '\n') {
-      lines.back().push_back(std::move(field));
-      field.clear();
-      if (c == '\n') lines.emplace_back();
-    } else if (c != '\r') {
-      field += c;
-    }
-  }
-  if (lines.back().empty() && field.empty()) lines.pop_back();
-  return lines;
 }
 
 struct ShareTable {
   Share share;
   std::string mark, file;
-  Lines lines;     ///< headings first
-  SweepPage page;  ///< as its heading says
+  TextLines lines;  ///< headings first
+  SweepPage page;   ///< as its heading says
 };
 
 constexpr std::string_view grid_word = "grid", pairs_word = "pairs";
@@ -164,16 +135,22 @@ Expected<void> check_together(const std::vector<ShareTable>& shares) {
                               {}});
 }
 
-/// Numbers where all are; columns that hold words hold words in every row.
-TableColumn column_of(std::string name, const std::vector<ShareTable>& shares, std::size_t k) {
+/// Numbers where all are; columns that hold words hold words in every row. A share without the column has gaps: of
+/// words that is an empty one.
+TableColumn column_of(std::string name, const std::vector<ShareTable>& shares, std::size_t column,
+                      const std::vector<std::vector<std::size_t>>& places) {
   std::vector<std::string> words;
   std::vector<double> numbers;
   bool is_number = true;
-  for (const auto& share : shares) {
-    for (std::size_t i = 1; i < share.lines.size(); ++i) {
-      words.push_back(share.lines[i][k]);
-      const auto number = is_number ? whole_text_as<double>(words.back()) : std::nullopt;
-      is_number = is_number && number;
+  for (std::size_t k = 0; k < shares.size(); ++k) {
+    const std::size_t place = places[k][column];
+    for (std::size_t i = 1; i < shares[k].lines.size(); ++i) {
+      const bool is_gap = place == JoinedNames::missing;
+      words.push_back(is_gap ? "" : shares[k].lines[i][place]);
+      if (!is_number) continue;
+      const auto number =
+          is_gap ? std::optional(std::numeric_limits<double>::quiet_NaN()) : whole_text_as<double>(words.back());
+      is_number = number.has_value();
       if (number) numbers.push_back(*number);
     }
   }
@@ -270,16 +247,13 @@ Expected<JoinedShares> join_shares(const std::vector<std::string>& files) {
   }
   if (auto together = check_together(shares); !together) return tl::unexpected(together.error());
   std::sort(shares.begin(), shares.end(), [](const auto& a, const auto& b) { return a.share.number < b.share.number; });
-  const auto& headings = shares.front().lines[0];
-  for (const auto& share : shares) {
-    if (std::equal(headings.begin() + 1, headings.end(), share.lines[0].begin() + 1, share.lines[0].end())) continue;
-    return tl::unexpected(no_share(share.file, fmt::format("other columns than {}", shares.front().file),
-                                   "a share in which no run began has no states; run it again"));
-  }
+  JoinedHeadings headings;
+  for (const auto& share : shares) headings.add(share.lines[0]);
+  std::vector<std::vector<std::size_t>> places;
+  for (const auto& share : shares) places.push_back(headings.places_in(share.lines[0]));
   JoinedShares whole{{}, shares.front().page};
-  for (std::size_t k = 0; k < headings.size(); ++k) {
-    whole.table.push_back(column_of(k == 0 ? "run" : headings[k], shares, k));
-  }
+  const auto names = headings.all();
+  for (std::size_t k = 0; k < names.size(); ++k) whole.table.push_back(column_of(names[k], shares, k, places));
   whole.page.names = changed_names(whole.table);
   return whole;
 }

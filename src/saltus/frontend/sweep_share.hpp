@@ -49,7 +49,7 @@ struct JoinedShares {
 };
 
 /// Returns the table and page of the whole sweep from the files (.csv) of all its shares, in any order: what one run of
-/// it would have written. Fails for these:
+/// it would have written; where a share lacks a column its rows have gaps there. Fails for these:
 /// - a file that is no share, or whose runs are not those of its heading;
 /// - shares of different sweeps, a missing one, and one that is there twice.
 [[nodiscard]] Expected<JoinedShares> join_shares(const std::vector<std::string>& files);

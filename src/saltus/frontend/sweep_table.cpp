@@ -10,6 +10,7 @@
 
 #include "saltus/base/contains.hpp"
 #include "saltus/base/text.hpp"
+#include "saltus/frontend/joined_names.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/result/kept_columns.hpp"
 
@@ -21,8 +22,6 @@ using pipeline::SweepRun;
 using result::Result;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-double entry(const std::vector<double>& values, std::size_t i) { return i < values.size() ? values[i] : nothing; }
 
 /// Columns that are filled row by row.
 class Table {
@@ -42,8 +41,10 @@ class Table {
     std::get<Words>(columns_[next_].values).push_back(std::move(value));
     return advance();
   }
-  Table& add(const std::vector<double>& values, std::size_t width) {
-    for (std::size_t i = 0; i < width; ++i) *this << entry(values, i);
+  /// @param places  of each column where its value stands in the row; it is a gap where it stands nowhere
+  template <class Row>
+  Table& add(const Row& row, const std::vector<std::size_t>& places) {
+    for (const std::size_t place : places) *this << (place < row.size() ? static_cast<double>(row[place]) : nothing);
     return *this;
   }
   [[nodiscard]] std::vector<TableColumn> columns() && { return std::move(columns_); }
@@ -57,10 +58,46 @@ class Table {
   std::size_t next_ = 0;
 };
 
+/// The names of all runs of one sort. Runs may have different ones: a switching function is gone where its factor is 0,
+/// and a run that did not begin has none of any sort.
+class Block {
+ public:
+  using NamesOf = std::vector<std::string> (*)(const Result&);
+
+  Block(const std::vector<SweepRun>& runs, NamesOf names_of) : names_of_(names_of) {
+    for (const auto& run : runs) names_.add(names_of(run.result));
+  }
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_.all(); }
+  /// Returns where a run has them; it is valid until the next call.
+  [[nodiscard]] const std::vector<std::size_t>& of(const Result& result) {
+    auto own = names_of_(result);
+    if (own != own_ || places_.empty()) {
+      own_ = std::move(own);
+      places_ = names_.places_in(own_);
+    }
+    return places_;
+  }
+
+ private:
+  NamesOf names_of_;
+  JoinedNames names_;
+  std::vector<std::string> own_;  ///< of the run that was asked for last
+  std::vector<std::size_t> places_;
+};
+
+std::vector<std::string> states_of(const Result& result) { return result.states; }
+std::vector<std::string> controls_of(const Result& result) { return result.controls; }
+std::vector<std::string> outputs_of(const Result& result) { return result.outputs; }
+std::vector<std::string> modes_of(const Result& result) {
+  auto names = functions_in_rows(result);
+  for (auto& name : names) name = "mode(" + name + ")";
+  return names;
+}
+
 /// What all tables begin with: the number of the run, its values, its status, whether its solution is unique.
 class Beginning {
  public:
-  Beginning(const SweepPlan& plan, const Result& first, std::size_t begin, std::size_t runs)
+  Beginning(const SweepPlan& plan, const std::vector<SweepRun>& runs, std::size_t begin)
       : begin_(begin), is_number_(plan.names().size(), true) {
     const auto note_number = [&](std::size_t k, const std::string& text) {
       const auto value = whole_text_as<double>(text);
@@ -71,14 +108,16 @@ class Beginning {
     for (std::size_t k = 0; k < is_number_.size(); ++k) {
       for (const auto& text : plan.listed(k)) note_number(k, text);
     }
-    for (std::size_t i = 0; i < runs; ++i) {
+    for (std::size_t i = 0; i < runs.size(); ++i) {
       values_.push_back(plan.values(begin + i));
       for (std::size_t k = 0; k < is_number_.size(); ++k) numbers_.push_back(note_number(k, values_[i][k]));
     }
     columns_.push_back(Table::numbers("run"));
     for (std::size_t k = 0; k < is_number_.size(); ++k) {
       const auto& name = plan.names()[k];
-      const bool taken = contains(first.states, name) || contains(first.controls, name);
+      const bool taken = std::any_of(runs.begin(), runs.end(), [&](const SweepRun& run) {
+        return contains(run.result.states, name) || contains(run.result.controls, name);
+      });
       const auto heading = taken ? name + "(0)" : name;
       columns_.push_back(is_number_[k] ? Table::numbers(heading) : Table::words(heading));
     }
@@ -111,71 +150,73 @@ void append(std::vector<TableColumn>& columns, const std::vector<std::string>& n
   for (const auto& name : names) columns.push_back(Table::numbers(name + behind));
 }
 
-Table final_table(const Beginning& beginning, const Result& first, const std::vector<SweepRun>& runs) {
+Table final_table(const Beginning& beginning, const std::vector<SweepRun>& runs) {
+  Block states(runs, states_of), outputs(runs, outputs_of);
   auto columns = beginning.columns();
   append(columns, {"t"});
-  append(columns, first.states);
-  append(columns, first.outputs);
+  append(columns, states.names());
+  append(columns, outputs.names());
   append(columns, {"events"});
   Table table(std::move(columns));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const auto& end = runs[i].result.final;
     beginning.write(table, i, runs[i]);
     table << (end.x.empty() ? nothing : end.t);
-    table.add(end.x, first.states.size()).add(end.outputs, first.outputs.size());
+    table.add(end.x, states.of(runs[i].result)).add(end.outputs, outputs.of(runs[i].result));
     table << static_cast<double>(runs[i].events);
   }
   return table;
 }
 
-Table event_table(const Beginning& beginning, const Result& first, const std::vector<SweepRun>& runs) {
+Table event_table(const Beginning& beginning, const std::vector<SweepRun>& runs) {
+  Block states(runs, states_of);
   auto columns = beginning.columns();
   append(columns, {"events", "event", "t"});
   for (const char* name : {"kind", "name", "surfaces"}) columns.push_back(Table::words(name));
-  append(columns, first.states);
-  append(columns, first.states, "(after)");
+  append(columns, states.names());
+  append(columns, states.names(), "(after)");
   append(columns, {"t(end)"});
-  append(columns, first.states, "(end)");
+  append(columns, states.names(), "(end)");
   Table table(std::move(columns));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     double number = 0.0;
     const auto& end = runs[i].result.final;
+    const auto& places = states.of(runs[i].result);
     const double end_time = end.x.empty() ? nothing : end.t;
     for (const auto& event : runs[i].result.events) {
       beginning.write(table, i, runs[i]);
       table << static_cast<double>(runs[i].events) << ++number << event.t << std::string(result::name(event.kind))
             << event.name.value_or("") << fmt::format("{}", fmt::join(event.surfaces, " "));
-      table.add(event.x, first.states.size()).add(event.x_after, first.states.size());
-      table << end_time;
-      table.add(end.x, first.states.size());
+      table.add(event.x, places).add(event.x_after, places) << end_time;
+      table.add(end.x, places);
     }
     if (number > 0.0) continue;
     // A run without an event is no run that is missing: it has a row, too.
+    const std::vector<double> none;
     beginning.write(table, i, runs[i]);
     table << 0.0 << 0.0 << nothing << std::string() << std::string() << std::string();
-    table.add({}, 2 * first.states.size()) << end_time;
-    table.add(end.x, first.states.size());
+    table.add(none, places).add(none, places) << end_time;
+    table.add(end.x, places);
   }
   return table;
 }
 
-Table trajectory_table(const Beginning& beginning, const Result& first, const std::vector<SweepRun>& runs) {
+Table trajectory_table(const Beginning& beginning, const std::vector<SweepRun>& runs) {
+  Block states(runs, result::states_in_rows), controls(runs, controls_of), outputs(runs, outputs_of),
+      modes(runs, modes_of);
   auto columns = beginning.columns();
-  const auto states = states_in_rows(first);
   append(columns, {"events", "t"});
-  append(columns, states);
-  append(columns, first.controls);
-  append(columns, first.outputs);
-  for (const auto& name : functions_in_rows(first)) append(columns, {"mode(" + name + ")"});
+  for (const auto* block : {&states, &controls, &outputs, &modes}) append(columns, block->names());
   Table table(std::move(columns));
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const auto& rows = runs[i].result.trajectory;
+    const auto& result = runs[i].result;
+    const auto& rows = result.trajectory;
+    const auto &of_x = states.of(result), &of_u = controls.of(result), &of_outputs = outputs.of(result),
+               &of_modes = modes.of(result);
     for (std::size_t k = 0; k < rows.t.size(); ++k) {
       beginning.write(table, i, runs[i]);
       table << static_cast<double>(runs[i].events) << rows.t[k];
-      table.add(rows.x[k], states.size()).add(rows.u[k], first.controls.size());
-      table.add(rows.outputs[k], first.outputs.size());
-      for (const int sign : rows.mode[k]) table << static_cast<double>(sign);
+      table.add(rows.x[k], of_x).add(rows.u[k], of_u).add(rows.outputs[k], of_outputs).add(rows.mode[k], of_modes);
     }
   }
   return table;
@@ -195,17 +236,14 @@ std::vector<TableColumn> with_distinct_names(std::vector<TableColumn> columns) {
 
 std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<SweepRun>& runs, Keep keep,
                                      std::size_t begin) {
-  const auto begun = std::find_if(runs.begin(), runs.end(), [](const auto& run) { return !run.result.states.empty(); });
-  const Result none;
-  const Result& first = begun == runs.end() ? none : begun->result;
-  const Beginning beginning(plan, first, begin, runs.size());
+  const Beginning beginning(plan, runs, begin);
   switch (keep) {
     case Keep::final:
-      return with_distinct_names(final_table(beginning, first, runs).columns());
+      return with_distinct_names(final_table(beginning, runs).columns());
     case Keep::events:
-      return with_distinct_names(event_table(beginning, first, runs).columns());
+      return with_distinct_names(event_table(beginning, runs).columns());
     case Keep::trajectory:
-      return with_distinct_names(trajectory_table(beginning, first, runs).columns());
+      return with_distinct_names(trajectory_table(beginning, runs).columns());
   }
   __builtin_unreachable();
 }

@@ -27,6 +27,8 @@ struct TableColumn {
 ///                at the end of the run ("t(end)", "v(end)"), the same in all of its rows; a run without an event has a
 ///                row whose `event` is 0, without time and kind;
 ///   trajectory:  `events`, t, states, controls, outputs, modes.
+/// Where runs have different states, outputs or switching functions there is a column for each that one of them has; it
+/// is NaN in the rows of the others.
 /// @param begin  which run of the plan is the first of `runs`, from 0
 [[nodiscard]] std::vector<TableColumn> sweep_table(const SweepPlan& plan, const std::vector<pipeline::SweepRun>& runs,
                                                    pipeline::Keep keep, std::size_t begin = 0);
