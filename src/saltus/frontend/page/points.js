@@ -1,7 +1,7 @@
 // Points and lines of a sweep over one parameter.
 "use strict";
 
-/** Lines through the runs of every group, with gaps where a run has no value. */
+/** Faint lines through the runs of every group, with gaps where a run has no value: what lies between runs is not known. */
 saltus.sweepLines = (table, frame, {x, rows, yOf, groupOf, colourOf}) => {
   const groups = Map.groupBy === undefined ? new Map() : Map.groupBy(rows, groupOf);
   if (Map.groupBy === undefined) rows.forEach((row) => groups.set(groupOf(row), [...(groups.get(groupOf(row)) ?? []), row]));
@@ -10,7 +10,7 @@ saltus.sweepLines = (table, frame, {x, rows, yOf, groupOf, colourOf}) => {
     const path = along.map((row, k) => yOf(row) === null ?
             "" :
             `${k > 0 && yOf(along[k - 1]) !== null ? "L" : "M"}${frame.x(table.at(x, row))} ${frame.y(yOf(row))}`).join("");
-    return saltus.svgElement("path", {d: path, fill: "none", stroke: colourOf(members[0]), "stroke-width": 1.4});
+    return saltus.svgElement("path", {d: path, fill: "none", stroke: colourOf(members[0]), "stroke-width": 1, "stroke-opacity": 0.4});
   });
 };
 
