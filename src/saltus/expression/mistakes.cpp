@@ -152,7 +152,19 @@ constexpr std::string_view contact_output =
     "results have gap(NAME), force(NAME), friction(NAME) and impulse(NAME) of contacts by themselves; in an expression "
     "write what the gap is";
 
+constexpr std::string_view no_delay =
+    "delays are not there: states in a row come close, z1' = n*(u - z1)/T, z2' = n*(z1 - z2)/T, … up to zn";
+constexpr std::string_view no_chance =
+    "nothing in a run is random: samples of parameters are for a sweep (--sample), noise is data by times, "
+    "inputs = { w = { file = \"w.csv\" } }";
+
 constexpr std::array function_mistakes{
+    FunctionMistake{"delay", no_delay},
+    FunctionMistake{"rand", no_chance},
+    FunctionMistake{"randn", no_chance},
+    FunctionMistake{"random", no_chance},
+    FunctionMistake{"normal", no_chance},
+    FunctionMistake{"uniform", no_chance},
     FunctionMistake{"sgn", "did you mean 'sign'?"},
     FunctionMistake{"signum", "did you mean 'sign'?"},
     FunctionMistake{"heaviside", "did you mean 'step'?"},
@@ -190,6 +202,7 @@ constexpr std::array function_mistakes{
     FunctionMistake{"power", "did you mean 'pow'?"},
     FunctionMistake{"ceil", "write -floor(-x)"},
     FunctionMistake{"round", "write floor(x + 0.5)"},
+    FunctionMistake{"quantize", "in `set` of a jump write q*floor(x/q)"},
     FunctionMistake{"int", "did you mean 'floor'?"},
     FunctionMistake{"trunc", "did you mean 'floor'?"},
     FunctionMistake{"fmod", "did you mean 'mod'?"},

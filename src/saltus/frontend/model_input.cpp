@@ -167,6 +167,13 @@ std::vector<std::string> options_without_effect(const io::ModelFile& file) {
         "rtol = {:g} asks for more digits than numbers have: {}", rtol,
         atol < least ? std::string("errors are those of rounding") : fmt::format("atol = {:g} holds alone", atol)));
   }
+  for (const auto& input : file.description.sampled_inputs) {
+    if (input.times.front() <= file.simulate.from) continue;
+    warnings.push_back(
+        fmt::format("the data of the input '{}' begin at t = {}, the run at t = {}: until then it is {}, "
+                    "their first value",
+                    input.name, input.times.front(), file.simulate.from, input.values.front()));
+  }
   return warnings;
 }
 

@@ -45,7 +45,8 @@ struct ModelInput {
 enum class RunMethods { chosen, several };
 
 /// Returns which given options say nothing to the method that runs, as warnings. A file may hold the tables of several
-/// methods; what is typed, and what stands in the table of this one, is meant.
+/// methods; what is typed, and what stands in the table of this one, is meant. Data of inputs that begin behind the
+/// start of the run are told, too.
 [[nodiscard]] std::vector<std::string> options_without_effect(const io::ModelFile& file);
 
 /// Adds what a simulation cannot know: what it takes to run it again (text of the model, files, settings, the call),

@@ -81,6 +81,15 @@ void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) 
   for (const auto& table : later_tables) {
     if (table.name == entry.key) reader.not_available(entry.location, table.written);
   }
+  if (entry.key == "inputs") {
+    reader.fail({ErrorCode::unknown_name,
+                 "unknown table [inputs]",
+                 "controls are declared under [controls]; what they are during a simulation stands under [simulate]: "
+                 "inputs = { u = \"sin(t)\" }",
+                 entry.location,
+                 {}});
+    return;
+  }
   const bool is_table =
       std::holds_alternative<TomlTable>(entry.value.value) || std::holds_alternative<TomlArray>(entry.value.value);
   reader.fail({ErrorCode::unknown_name,

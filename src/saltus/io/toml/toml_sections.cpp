@@ -33,6 +33,18 @@ void unknown_quantity_key(TomlReader& reader, const TomlEntry& entry, const std:
 Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
   Quantity quantity;
   const auto* table = std::get_if<TomlTable>(&entry.value.value);
+  if (std::holds_alternative<TomlArray>(entry.value.value)) {
+    reader.fail(
+        {ErrorCode::parse_failure,
+         fmt::format("expected one number for '{}', found a list", entry.key),
+         fmt::format("a file has no arrays: name the entries {0}1, {0}2, …; saltus.Builder of the Python package "
+                     "has them, b.states(\"{0}\", [1, 0, 0])",
+                     entry.key),
+         entry.value.location,
+         {}});
+    quantity.initial = expression::unreadable(entry.value.location);
+    return quantity;
+  }
   if (table == nullptr) {
     quantity.initial = reader.expression(entry.value);
     return quantity;
@@ -142,6 +154,12 @@ void read_event(TomlReader& reader, const TomlValue& value, ModelFile& model) {
       event.direction = read_enum(reader, entry.value, directions, model::Direction::both);
     } else if (entry.key == "stop") {
       event.action = reader.boolean(entry.value) ? model::AtEvent::stop : model::AtEvent::record;
+    } else if (entry.key == "set") {
+      reader.fail({ErrorCode::unknown_name,
+                   "unknown key 'set': an event records, it changes nothing",
+                   "write it under [[jumps]], which takes `when`, `direction`, `name` and `set`",
+                   entry.location,
+                   {}});
     } else {
       reader.unknown_key(entry, {"name", "when", "direction", "stop"});
     }

@@ -18,14 +18,15 @@ SXElem value_in_cell(const std::vector<SXElem>& c, const SXElem& argument) {
 }
 
 Error not_of_time(const std::string& function, const std::string& argument) {
-  return {
-      ErrorCode::invalid_model,
-      fmt::format("{} of '{}', which depends on a state or a control: floor and mod are for the time", function,
-                  argument),
-      "keep the whole part in a discrete state: dynamics 0, and a jump in [[jumps]] with set = { k = \"k + 1\" } when "
-      "the next whole number is passed",
-      {},
-      {}};
+  return {ErrorCode::invalid_model,
+          fmt::format("{} of '{}', which depends on a state or a control: floor and mod are for the time, for `set` of "
+                      "jumps and for [outputs]",
+                      function, argument),
+          "keep the whole part in a discrete state, with dynamics 0: [[jumps]] with every = 0.1 and set = { k = "
+          "\"floor(x)\" } samples it, as a converter does; with set = { k = \"k + 1\" } when the next whole number is "
+          "passed it follows at once",
+          {},
+          {}};
 }
 
 }  // namespace

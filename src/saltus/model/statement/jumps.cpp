@@ -107,7 +107,10 @@ class JumpTranslation {
   }
 
   std::optional<Error> value(const NamedExpression& entry) {
+    scope_.recognition().take_whole_parts_of_all(
+        true);  // the value at an instant: it does not jump while a solution goes on
     auto taken = scope_.expression(*entry.expression);
+    scope_.recognition().take_whole_parts_of_all(false);
     if (!taken) return with_context(taken.error(), fmt::format("in set {}", entry.name));
     if (!broken_) stated_.set.push_back({scope_.names().find(entry.name)->index, *taken, entry.location});
     return std::nullopt;

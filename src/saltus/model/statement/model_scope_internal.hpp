@@ -73,6 +73,7 @@ class ModelScope {
   [[nodiscard]] bool is_table_used(std::size_t index) const { return index < tables_.size() && tables_[index]; }
   [[nodiscard]] const NameTable& names() const { return names_; }
   Translation& translation() { return translation_; }
+  Recognition& recognition() { return recognition_; }
 
  private:
   [[nodiscard]] bool is_shared(const std::string& name, const Meaning& meaning) const;
