@@ -13,8 +13,9 @@ from ._entries import input_entry, one_of, points
 from ._errors import ModelError
 from ._expression import Expression, Operand, called, number, refuse
 from ._model import Model, Start
+from ._names import entries
 from ._result import Result
-from ._settings import Settings, is_result, states_the_problem
+from ._settings import Settings, is_result, last_of_times, states_the_problem
 from ._signature import with_options
 from ._statement import Rates, given
 from ._structure import Structure
@@ -117,7 +118,8 @@ class Builder(Structure):
     def states(self, name: str, initial: typing.Any, **beside: typing.Any) -> _array.Array:
         """Several states as an array of the shape of the initial values: NAME1, NAME2, …; of two axes NAME1_1, NAME1_2, ….
 
-        What is given beside them, as to :meth:`state`, is one value for all of them, or an array.
+        What is given beside them, as to :meth:`state`, is one value for all of them, or an array. Results know the array,
+        too: ``r["x"]``, ``r.final["x"]``, ``r.plot(["x"])``, ``set={"x": [1, 0, 0]}``.
 
         >>> saltus.Builder("m").states("x", [1, 0, 0])
         Array([x1, x2, x3], dtype=object)
@@ -165,11 +167,11 @@ class Builder(Structure):
         except ValueError:
             wrong = next(key for key, value in beside.items() if np.shape(value) not in ((), shape))
             raise refuse(f"{wrong} has the shape {np.shape(beside[wrong])}", f"expected one value, or the shape {shape}") from None
-        made = np.empty(shape, dtype=object)
+        made, names = np.empty(shape, dtype=object), entries(name, shape)
         with self._all_or_nothing():
             for place in np.ndindex(*shape):
                 of_one = {key: value[place] for key, value in more.items()}
-                made[place] = declare(name + "_".join(str(i + 1) for i in place), given[place], **of_one)
+                made[place] = declare(names[place], given[place], **of_one)
         return made.view(_array.Array)
 
     def control(
@@ -262,7 +264,9 @@ class Builder(Structure):
         if isinstance(state, (np.ndarray, list, tuple)):
             states, values = _array.array(state), _array.array(value)
             if values.shape not in ((), states.shape):
-                raise refuse(f"rates of shape {values.shape} for states of shape {states.shape}", "one for every state")
+                column = values.ndim == 2 and states.ndim == 1 and states.size in values.shape
+                remedy = "one for every state" + "; of a column B, an array of two axes, write B[:, 0]*u" * column
+                raise refuse(f"rates of shape {values.shape} for states of shape {states.shape}", remedy)
             with self._all_or_nothing():
                 for one, its in zip(states.flat, np.broadcast_to(values, states.shape).flat):
                     self.rate(one, its)
@@ -443,7 +447,7 @@ class Builder(Structure):
         return self.model().check()
 
     def _need_end(self, until: object, options: typing.Mapping[str, typing.Any]) -> None:
-        if until is None and "until" not in self._simulate and "simulate.until" not in (options.get("set") or {}):
+        if until is None and last_of_times(options) is None and "until" not in self._simulate and "simulate.until" not in (options.get("set") or {}):
             raise refuse("no end time", "say how long: m.simulate(until=10), or m.simulation(until=10) for all runs")
 
     def _repr_html_(self) -> str:

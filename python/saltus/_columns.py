@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _core
 from ._expression import Expression
+from ._names import several
 from ._outcome import unknown
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
@@ -121,9 +122,10 @@ class Columns:
         """
         return list(self._columns)
 
-    def __getitem__(self, name: str | Expression) -> Array:
+    def __getitem__(self, name: str | Expression | Array) -> Array:
         """A column by its name: ``"t"``, a state, a control, an output, ``"alpha(slip)"`` or ``"mode(slip)"``; also by what
-        a Builder gave for it.
+        a Builder gave for it. Of an array x1, x2, … ``"x"`` has the columns of all, of the shape (rows, …); so do
+        patterns, ``"x*"``.
 
         >>> r = saltus.catalogue("stick-slip").simulate(until=4)
         >>> r["v"][0].item(), r["mode(slip)"][-1].item()
@@ -132,6 +134,9 @@ class Columns:
         columns = self._columns
         if isinstance(name, Expression):
             name = name.text
+        names = several(name, columns) if not isinstance(name, str) or name not in columns else None
+        if names is not None:
+            return np.stack([self[one] for one in names.flat], axis=-1).reshape(-1, *names.shape)
         if not isinstance(name, str):
             raise TypeError(f"r[{name!r}]: a column is taken by its name, e.g. r['t']; a row of all states is r.x[i]")
         if name not in columns:

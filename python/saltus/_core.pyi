@@ -37,12 +37,14 @@ class Event:
     contact_modes_before: list[str]
     contact_modes_after: list[str]
     impulse: list[list[float]] | None
+    states: list[str]
     x: Floats
     x_after: Floats
     unique: bool | None
     alternatives: list[Alternative]
     reason: str
     intersection: Intersection | None
+    def __getitem__(self, name: str) -> typing.Any: ...
     def __repr__(self) -> str: ...
 
 class Run:
@@ -97,6 +99,7 @@ class Model:
     @typing.overload
     def __init__(self, text: str, name: str, files: list[tuple[str, str]] = ...) -> None: ...
     def equations(self, latex: bool) -> list[tuple[str, str, str]]: ...
+    until: float | None
     def declares(self, name: str) -> bool: ...
     def quantities(self, of_states: bool) -> list[tuple[str, float]]: ...
     def simulate(

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _core
 from ._errors import needed
+from ._names import several
 from ._outcome import unknown
 
 Event = _core.Event
@@ -24,15 +25,15 @@ Event.__doc__ = """A change of mode, a jump, an impact, or an event of the user,
 ``kind`` is "start", "crossing", "enter_sliding", "leave_sliding", "change_sliding", "jump", "impact", "accumulation",
 "contact", "lift_off", "stick", "slip" or "user"; ``name`` of a jump or an event, ``surfaces`` that changed. ``turned`` of
 the jump of a hysteresis is "on" or "off". ``x`` and
-``x_after`` are the state on both sides, so are ``mode_before`` and ``mode_after``, ``alpha_…``, ``regions_…`` and
-``contact_modes_…``; ``impulse`` of an impact by contact. ``unique`` says whether the solution goes on in one way only
+``x_after`` are the state on both sides, in the order of ``states``, so are ``mode_before`` and ``mode_after``, ``alpha_…``, ``regions_…`` and
+``contact_modes_…``; ``event["v"]`` and ``event["v(after)"]`` are one of the states. ``impulse`` of an impact by contact. ``unique`` says whether the solution goes on in one way only
 (None: not decided), ``alternatives`` how else, ``reason`` why it went on as it did; ``intersection`` what was decided at
 where two surfaces that influence each other met.
 
 >>> event = saltus.catalogue("bouncing-ball").simulate(until=2).events[0]
 >>> event
 <jump of bounce at t = 1.42857143>
->>> event.x[1].round(6).item(), event.x_after[1].round(6).item()
+>>> round(event["v"], 6), round(event["v(after)"], 6)
 (-14.0, 12.6)
 """
 Alternative.__doc__ = """A continuation that was possible at an event: ``mode``, ``alpha`` and ``regions`` behind it.
@@ -51,6 +52,22 @@ Intersection.__doc__ = """Where the modes of two ``surfaces`` that influence eac
 >>> len(met.surfaces), len(met.velocities[0])
 (2, 4)
 """
+
+
+def _of_event(event: Event, name: str) -> typing.Any:
+    """What a state is at an event: ``event["x"]`` before it, ``event["x(after)"]`` behind; of an array all of its entries."""
+    text = getattr(name, "text", name)
+    after = isinstance(text, str) and text.endswith("(after)")
+    values, name = (event.x_after, text.removesuffix("(after)")) if after else (event.x, text)
+    if name in event.states:
+        return float(values[event.states.index(name)])
+    names = several(name, event.states)
+    if names is None:
+        raise unknown(name, event.states, "the event")
+    return np.array([values[event.states.index(one)] for one in names.flat]).reshape(names.shape)
+
+
+Event.__getitem__ = _of_event  # type: ignore[method-assign]
 
 _OF_EVENT = "t kind name surfaces mode_before mode_after alpha_before alpha_after x x_after unique reason".split()
 _IF_THERE = "turned regions_before regions_after contact_modes_before contact_modes_after impulse".split()
@@ -112,24 +129,29 @@ class Events(list[_core.Event]):
         return _rows([event.x_after for event in self])
 
     def table(self) -> typing.Any:
-        """A table of pandas: a row for every event.
+        """A table of pandas: a row for every event, with the states before and after it (``v``, ``v(after)``).
 
         >>> r = saltus.catalogue("stick-slip").simulate(until=10)
         >>> r.events.table()["kind"].tolist()[:2]
         ['enter_sliding', 'leave_sliding']
         """
         pandas = needed("pandas", "data")
-        return pandas.DataFrame(
-            {
-                "t": [event.t for event in self],
-                "kind": [event.kind for event in self],
-                "name": [event.name for event in self],
-                "turned": [event.turned for event in self],
-                "surfaces": [", ".join(event.surfaces) for event in self],
-                "unique": [event.unique for event in self],
-                "reason": [event.reason for event in self],
-            }
-        )
+        columns: dict[str, typing.Any] = {
+            "t": [event.t for event in self],
+            "kind": [event.kind for event in self],
+            "name": [event.name for event in self],
+            "turned": [event.turned for event in self],
+            "surfaces": [", ".join(event.surfaces) for event in self],
+            "unique": [event.unique for event in self],
+            "reason": [event.reason for event in self],
+        }
+        states = list(dict.fromkeys(name for event in self for name in event.states))
+        for after, sides in ("", [event.x for event in self]), ("(after)", [event.x_after for event in self]):
+            rows = [dict(zip(event.states, side.tolist())) for event, side in zip(self, sides)]
+            for name in states:
+                column = name + after if name + after not in columns else f"{name}{after} (model)"
+                columns[column] = [row.get(name, math.nan) for row in rows]
+        return pandas.DataFrame(columns)
 
     @typing.overload
     def __getitem__(self, which: typing.SupportsIndex) -> _core.Event: ...
@@ -182,6 +204,7 @@ def _stored(events: typing.Sequence[_core.Event]) -> list[Json]:
 def _stored_event(event: _core.Event) -> Json:
     entries = {name: _number(getattr(event, name)) for name in _OF_EVENT}
     entries["alternatives"] = [_stored_alternative(other) for other in event.alternatives]
+    entries["states"] = event.states
     for name in _IF_THERE:
         value = getattr(event, name)
         if value:
@@ -229,11 +252,7 @@ def _result_with(event: Json) -> Json:
     """The smallest result in which an event can stand."""
     columns = next((len(event[name]) for name in _OF_EVENT[4:8] if event[name] is not None), 0)
     contacts = event.get("contact_modes_after", [])
-    states = [str(i) for i in range(len(event["x"]))]
-    if "turned" in event:  # what is told by the state of the event's name
-        sides = (0, 1) if event["turned"] == "on" else (1, 0)
-        both = [tuple(map(_side, values)) for values in zip(event["x"], event["x_after"])]
-        states[both.index(sides)] = event["name"]
+    states = event.pop("states", [])  # that of its name tells which way a hysteresis turned
     rows: Json = {name: [] for name in ("t", "x", "u", "alpha", "mode", "outputs")}
     final = {"t": 0.0, "x": [0.0] * len(states), "mode": [0] * columns, "alpha": [0.0] * columns, "outputs": []}
     result = {
@@ -261,10 +280,6 @@ def _result_with(event: Json) -> Json:
         final["regions"] = [group["modes"] for group in groups]
         final["theta"] = [0.0] * sum(len(group["modes"]) for group in groups)
     return result
-
-
-def _side(value: float | None) -> float | None:
-    return None if value is None else round(value, 5)
 
 
 def _region_groups(event: Json) -> list[Json]:

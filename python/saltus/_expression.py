@@ -122,6 +122,11 @@ class Expression:
         one = [_one(value).view(_array.Array) if isinstance(value, Expression) else value for value in inputs]
         return getattr(ufunc, method)(*one, **how)
 
+    def __array_function__(self, func: typing.Any, types: typing.Any, args: typing.Any, kwargs: typing.Any) -> typing.Any:
+        """What numpy does with an expression it does with an array that has no axis: np.where(x > 0, 1, 2)."""
+        found = func(*map(_as_arrays, args), **{name: _as_arrays(value) for name, value in kwargs.items()})
+        return found[()] if isinstance(found, np.ndarray) and found.ndim == 0 else found
+
     # Conditions ----------------------------------------------------------------------------------------------------
 
     def __lt__(self, other: Operand) -> Expression:
@@ -329,6 +334,15 @@ def _one(operand: Operand) -> np.ndarray[typing.Any, typing.Any]:
     entry = np.empty((), dtype=object)
     entry[()] = operand
     return entry
+
+
+def _as_arrays(value: typing.Any) -> typing.Any:
+    """The same with arrays that have no axis in place of expressions."""
+    if isinstance(value, Expression):
+        return _one(value).view(_array.Array)
+    if isinstance(value, (list, tuple)) and any(isinstance(entry, Expression) for entry in value):
+        return [_as_arrays(entry) for entry in value]
+    return value
 
 
 @entry_by_entry

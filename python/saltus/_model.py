@@ -23,8 +23,10 @@ from ._settings import (
     check_text,
     check_together,
     count_of,
+    entry_by_entry,
     is_several,
     mapping_of,
+    last_of_times,
     names_in,
     names_no_keys,
     near_option,
@@ -134,8 +136,8 @@ class Model(Source):
     ) -> Result:
         """Simulates the model and returns everything that was computed.
 
-        `until` is the end of the simulation; without it that of the file holds. `set` changes parameters, initial
-        values and constant inputs (``{"mu": 0.5}``), and by dotted names any key of the file
+        `until` is the end of the simulation; without it that of the file holds, or the last one of `times`. `set` changes
+        parameters, initial values and constant inputs (``{"mu": 0.5}``; ``{"x": [1, 0]}`` of x1, x2), and by dotted names any key of the file
         (``{"dynamics.v": "-x"}``); the end of a run, ``set=r.final``, its states. With `start` the run goes on from the
         end of another one: its states, its time, and what it slides on. `inputs` are expressions or data in memory:
         ``{"u": "sin(t)"}``, ``{"u": (times, values)}``, a DataFrame with a column for every control.
@@ -150,8 +152,9 @@ class Model(Source):
             stated: Settings | None = set
             asked: typing.Mapping[str, Value] = options
             if start is not None:
+                changed = entry_by_entry(mapping_of(set), self._core.declares)
                 stated, asked = continued(
-                    start, self.states, self.parameters, dict(mapping_of(set)), options, self._core.method, self._core.forced_modes
+                    start, self.states, self.parameters, dict(mapping_of(changed)), options, self._core.method, self._core.forced_modes
                 )
             run, settings, chosen = self._run("simulate", until, stated, asked, tell)
         return Result(run, (self, settings, chosen))
@@ -242,7 +245,7 @@ class Model(Source):
             start = guess
             del stated["initial_guess"]
         typed, chosen = optimize_options(stated)
-        settings = [*settings_of(set), *typed]
+        settings = [*settings_of(entry_by_entry(set, self._core.declares)), *typed]
         if executor is None:
             with own_results(), lines_of_problems(self.name, progress) as tell:
                 run, warned = self._optimum(settings, chosen, start, tell)
@@ -308,7 +311,8 @@ class Model(Source):
         (3, True, [0.1, 0.2, 0.3])
         """
         check_sweep(over, sample, runs, seed, jobs)
-        options = {"until": until, **options}
+        set = entry_by_entry(set, self._core.declares)
+        options = {"until": self._end(until, set, options), **options}
         swept = self._swept(over or {}, set, options)
         for name in sample or {}:
             once(name, names_in(set))
@@ -411,7 +415,7 @@ class Model(Source):
         >>> "slip: " in saltus.catalogue("stick-slip").check()
         True
         """
-        return _Lines(self._core.check(settings_of(set)))
+        return _Lines(self._core.check(settings_of(entry_by_entry(set, self._core.declares))))
 
     def _run(
         self,
@@ -423,13 +427,19 @@ class Model(Source):
         more: tuple[str, ...] = (),
     ) -> tuple[_core.Run, list[str], list[Option]]:
         self._refuse_parameters(options)
-        typed, chosen = simulate_options({"until": until, **options}, self._core.method)
+        set = entry_by_entry(set, self._core.declares)
+        typed, chosen = simulate_options({"until": self._end(until, set, options), **options}, self._core.method)
         warned: list[str] = []
         with own_results():
             settings = [*settings_of(set), *typed]
             run: _core.Run = getattr(self._core, command)(settings, chosen, tell, warned, *more)
         warn(warned)
         return run, settings, chosen
+
+    def _end(self, until: Value, set: Settings | None, options: typing.Mapping[str, Value]) -> Value:
+        """What is asked for; where neither the call nor the model says an end, the last of the times of rows."""
+        stated = until is not None or self._core.until is not None or "simulate.until" in names_in(set)
+        return until if stated else last_of_times(options)
 
     def _refuse_parameters(self, options: typing.Mapping[str, Value]) -> None:
         """Of keywords that are no options those that the model knows; the rest is the tool's to say."""

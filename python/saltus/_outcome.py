@@ -7,6 +7,8 @@ import typing
 import numpy as np
 
 from . import _core
+from ._expression import Expression
+from ._names import several
 from ._spelling import in_python, keywords
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
@@ -57,12 +59,16 @@ class Final:
         self._states = dict(zip(run.states, self.x.tolist()))
         self._parameters = [parameter for parameter, _ in run.parameters]
 
-    def __getitem__(self, name: str) -> float:
-        """A state or an output by its name.
+    def __getitem__(self, name: typing.Any) -> typing.Any:
+        """A state or an output by its name; of an array x1, x2, … ``"x"`` has all, and so has a pattern, ``"x*"``.
 
         >>> saltus.catalogue("bouncing-ball").simulate(until=1).final["y"] > 0
         True
         """
+        name = name.text if isinstance(name, Expression) else name
+        names = several(name, self._named) if not isinstance(name, str) or name not in self._named else None
+        if names is not None:
+            return np.array([self[one] for one in names.flat], dtype=float).reshape(names.shape)
         if name not in self._named:
             raise unknown(name, list(self._named), parameters=self._parameters)
         return float(self._named[name])

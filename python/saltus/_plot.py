@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import typing
 
 import numpy as np
@@ -9,6 +11,7 @@ import numpy as np
 from ._events import Event
 from ._expression import Expression
 from ._errors import needed
+from ._names import several
 from ._recorded import Recorded
 from ._shape import as_drawn, broken_at_jumps, edges, is_alone, is_stepwise, slides, sliding_spans
 
@@ -40,55 +43,140 @@ def _matplotlib() -> typing.Any:
     return needed("matplotlib.pyplot", "plot")
 
 
+Arguments = typing.ParamSpec("Arguments")
+Returned = typing.TypeVar("Returned")
+#: What keywords of pictures are called elsewhere.
+_ELSEWHERE = {
+    **dict.fromkeys(("axis", "axes", "axs", "subplot"), "ax=axes of matplotlib"),
+    **dict.fromkeys(("colour", "c", "linecolor"), 'color="black"'),
+    **dict.fromkeys(("legend", "name"), 'label="its name in the legend"'),
+    **dict.fromkeys(("title", "xlabel", "ylabel", "xlim", "ylim", "figsize", "linewidth", "lw", "linestyle", "ls", "marker"),
+                    "that is for the axes which are returned, ax.set_title(…), or for their lines, ax.lines[0].set_linewidth(2)"),
+}
+
+
+def with_words(method: typing.Callable[Arguments, Returned]) -> typing.Callable[Arguments, Returned]:
+    """A picture that says, of a keyword that it does not have, which one is meant."""
+    known = list(inspect.signature(method).parameters)[1:]
+
+    @functools.wraps(method)
+    def checked(*arguments: Arguments.args, **keywords: Arguments.kwargs) -> Returned:
+        for word in keywords:
+            if word not in known:
+                instead = _ELSEWHERE.get(word)
+                hint = f"write {instead}" if instead and "=" in instead.split(",")[0] else instead or f"known: {', '.join(known)}"
+                raise TypeError(f"{method.__name__}() has no keyword {word!r}: {hint}")
+        return method(*arguments, **keywords)
+
+    return checked
+
+
+def axes_of(places: typing.Any, ax: typing.Any) -> typing.Any:
+    """Axes by either of their words."""
+    if places is not None and ax is not None:
+        raise TypeError("the axes are given twice: leave one of them out")
+    return places if ax is None else ax
+
+
+class Group(typing.NamedTuple):
+    """Columns in one picture, and what names all of them."""
+
+    title: str
+    names: list[str]
+
+
+def _groups(r: Recorded, names: typing.Any) -> list[Group]:
+    """What is drawn: an entry that is a list, an array or a pattern has its columns in one picture."""
+    if names is None:
+        return [Group(name, [name]) for name in [*r._run.states_in_rows, *r.controls, *r.output_names]]
+    if isinstance(names, (str, Expression, np.ndarray)):
+        names = [names]
+    return [_group(r, entry) for entry in names]
+
+
+def _group(r: Recorded, entry: typing.Any) -> Group:
+    if isinstance(entry, (list, tuple)):
+        return Group("", [name for one in entry for name in _group(r, one).names])
+    whole = several(entry, r.names) if not isinstance(entry, (str, Expression)) or str(entry) not in r.names else None
+    if whole is not None:
+        return Group("" if isinstance(entry, np.ndarray) else str(entry), whole.ravel().tolist())
+    return Group(str(entry), [str(entry)])
+
+
 def plot(
     r: Recorded,
-    names: typing.Sequence[str | Expression] | None,
+    names: typing.Any,
     axes: typing.Any,
     label: str | None = None,
     events: bool | None = None,
+    color: typing.Any = None,
 ) -> typing.Any:
     """A row of axes for every name; sliding is shaded, events are marked at their values."""
     r = as_drawn(r)
     pyplot, is_own = _matplotlib(), axes is None
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
-    names = [names] if isinstance(names, (str, Expression)) else names
-    all_names = [*r._run.states_in_rows, *r.controls, *r.output_names]
-    wanted = [str(name) for name in names] if names is not None else all_names
-    columns = {name: r[name] for name in wanted}
+    groups = _groups(r, names)
+    columns = {name: r[name] for group in groups for name in group.names}
     if axes is None:
         _, axes = pyplot.subplots(
-            len(wanted), 1, sharex=True, squeeze=False, figsize=(8, 1.2 + 1.4 * len(wanted)), layout="constrained"
+            len(groups), 1, sharex=True, squeeze=False, figsize=(8, 1.2 + 1.4 * len(groups)), layout="constrained"
         )
         axes = axes[:, 0]
     axes = list(getattr(axes, "flat", axes if isinstance(axes, (list, tuple)) else [axes]))
-    if len(axes) != len(wanted):
-        raise ValueError(f"axes: expected {len(wanted)} of matplotlib, one for each of {', '.join(wanted)}")
-    for axis, (name, column) in zip(axes, columns.items(), strict=True):
+    if len(axes) not in (1, len(groups)):
+        wanted = [group.title or ", ".join(group.names) for group in groups]
+        raise ValueError(f"axes: expected {len(groups)} of matplotlib, one for each of {', '.join(wanted)}, or one for all")
+    for axis, group in _by_axes(axes, groups):
         for begin, end in sliding_spans(r):
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
-        line = _line(axis, broken_at_jumps(r, r.t, column), label)
-        if is_stepwise(r.t, column):
-            axis.plot(*edges(r.t, column), color=line.get_color(), linewidth=0.6)
-        _mark_events(axis, r, "t", name, events)
-        axis.set_ylabel(caption_of(r, name))
+        for name in group.names:
+            words = [*([name] if len(group.names) > 1 else []), *([label] if label is not None else [])]
+            line = _line(axis, broken_at_jumps(r, r.t, columns[name]), ", ".join(words) or None, color)
+            if is_stepwise(r.t, columns[name]):
+                axis.plot(*edges(r.t, columns[name]), color=line.get_color(), linewidth=0.6)
+            _mark_events(axis, r, "t", name, events)
+        axis.set_ylabel(_title(r, group))
         axis.margins(x=0)
+        if axis is axes[0] or len(group.names) > 1:
+            _legend(axis)
     axes[0].set_title(r.model)
     axes[-1].set_xlabel("t")
-    _legend(axes[0])
     if is_own:
         # The room for labels is that of the ticks, which change with the height that the first layout gives.
         axes[0].figure.get_layout_engine().execute(axes[0].figure)
     return axes
 
 
-def _line(axis: typing.Any, curve: list[typing.Any], label: str | None) -> typing.Any:
+def _by_axes(axes: list[typing.Any], groups: list[Group]) -> list[tuple[typing.Any, Group]]:
+    """Every one of the axes once, with all that it has; one alone has everything."""
+    places = axes * len(groups) if len(axes) == 1 else axes
+    found: dict[int, tuple[typing.Any, Group]] = {}
+    for axis, group in zip(places, groups, strict=True):
+        if id(axis) in found:
+            group = Group("", [*found[id(axis)][1].names, *group.names])
+        found[id(axis)] = axis, group
+    return list(found.values())
+
+
+def _title(r: Recorded, group: Group) -> str:
+    """The caption that all have; else what names them, or their names if they are few; with the unit that all have."""
+    captions = dict.fromkeys(caption_of(r, name) for name in group.names)
+    if len(captions) == 1:
+        return next(iter(captions))
+    units = {r._captions.get(name, {}).get("unit", "") for name in group.names}
+    unit = f"[{units.pop()}]" if len(units) == 1 and "" not in units else ""
+    return " ".join(filter(None, [group.title or (", ".join(group.names) if len(group.names) < 4 else ""), unit]))
+
+
+def _line(axis: typing.Any, curve: list[typing.Any], label: str | None, color: typing.Any = None) -> typing.Any:
     """Another result over one that is there has another colour; a value between two gaps is a dot."""
     before = sum(line.get_gid() == _OURS for line in axis.lines)
     named = {"label": label} if label is not None else {}
     dots = np.flatnonzero(is_alone(curve[0] + curve[1])).tolist()
     style = {"marker": ".", "markersize": 2.4, "markevery": dots} if dots else {}
-    (line,) = axis.plot(*curve, color=LINES[before % len(LINES)], linewidth=1.2, gid=_OURS, **style, **named)
+    color = LINES[before % len(LINES)] if color is None else color
+    (line,) = axis.plot(*curve, color=color, linewidth=1.2, gid=_OURS, **style, **named)
     return line
 
 
@@ -135,6 +223,7 @@ def phase(
     axis: typing.Any,
     label: str | None = None,
     events: bool | None = None,
+    color: typing.Any = None,
 ) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
     r = as_drawn(r)
@@ -142,7 +231,7 @@ def phase(
     x, y = str(x), str(y)
     if axis is None:
         _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")
-    _line(axis, broken_at_jumps(r, r[x], r[y]), label)
+    _line(axis, broken_at_jumps(r, r[x], r[y]), label, color)
     held = slides(r)
     here, there = r[x].astype(float), r[y].astype(float)
     here[~held] = float("nan")

@@ -226,44 +226,51 @@ class Result(Recorded):
         _core.write_file(os.fspath(path), page)
         return None
 
+    @_plot.with_words
     def plot(
         self,
-        names: typing.Sequence[str | Expression] | None = None,
+        names: typing.Sequence[typing.Any] | str | Expression | None = None,
         axes: typing.Any = None,
         *,
+        ax: typing.Any = None,
         label: str | None = None,
+        color: typing.Any = None,
         events: bool | None = None,
     ) -> typing.Any:
-        """Draws columns over time (matplotlib): all states, controls and outputs, or those of `names`.
+        """Draws columns over time (matplotlib): all states, controls and outputs, or those of `names`. What of these is a
+        list, an array or a pattern is drawn into one picture, with a legend: ``[["x", "v"], "u"]``, ``["x*"]``.
 
         Sliding is shaded, the two sides of a jump are not joined. What changes at events only, as discrete states, has
         steps with thin edges. Events are marked if they are at most 100: `events` marks all (True) or none (False).
-        Returns the axes, one for every name; `axes` of a figure of your own, or of another result, are drawn into.
-        `label` names it in a legend.
+        Returns the axes, one for every name. `ax` are axes of a figure of your own, or of another result: as many, or one
+        for everything. `label` names the result in a legend, `color` is that of its lines.
 
         >>> axes = saltus.catalogue("stick-slip").simulate(until=10).plot(["v"])
         >>> axes[0].get_ylabel()
         'v'
         """
-        return _plot.plot(self._with_rows(2), names, axes, label, events)
+        return _plot.plot(self._with_rows(2), names, _plot.axes_of(axes, ax), label, events, color)
 
+    @_plot.with_words
     def phase(
         self,
         x: str | Expression,
         y: str | Expression,
         axis: typing.Any = None,
         *,
+        ax: typing.Any = None,
+        color: typing.Any = None,
         label: str | None = None,
         events: bool | None = None,
     ) -> typing.Any:
         """Draws one column over another (matplotlib); the line is thick where the solution slides. Returns the axes.
 
-        Events are marked as by :meth:`plot`.
+        Events are marked as by :meth:`plot`, of which `ax`, `label` and `color` are.
 
         >>> saltus.catalogue("stick-slip").simulate(until=10).phase("q", "v").get_xlabel()
         'q'
         """
-        return _plot.phase(self._with_rows(2), x, y, axis, label, events)
+        return _plot.phase(self._with_rows(2), x, y, _plot.axes_of(axis, ax), label, events, color)
 
     def frame(self, grid: typing.Any = None) -> typing.Any:
         """A table of pandas, a row for every row of the result, with the time as its index.

@@ -100,6 +100,12 @@ def _pair(what: str, name: str, value: Data) -> tuple[Data, Data]:
 
 
 def _of_mapping(what: str, name: str, value: typing.Mapping[typing.Any, typing.Any]) -> tuple[Data, Data]:
+    if value.get("kind") in ("linear", "cubic"):
+        raise refuse(
+            f"{what}: data of inputs are held from time to time, not joined",
+            f'lines between them are a table of the model: [tables] load = {{ x = [0, 1], y = [2, 3] }}, then {{"{name}": "load(t)"}}; '
+            'a Builder has b.table("load", times, values)',
+        )
     times = next((key for key in _TIMES if key in value), None)
     values = next((key for key in (name, "u", "values") if key in value), None)
     if times is None or values is None or len(value) != 2:

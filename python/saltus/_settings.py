@@ -13,6 +13,7 @@ import numpy as np
 
 from . import _core, _samples
 from ._expression import Expression, refuse
+from ._names import entries
 from ._outcome import Final
 
 #: What other programs call what has another name here.
@@ -87,12 +88,32 @@ def text_of(value: Value, name: str = "") -> str:
             f"{name}: a result is no value",
             'its end is set=r.final, all of it start=r; the values of a control are inputs={"u": r}',
         )
+    if callable(value):
+        raise refuse(
+            f"{name}: a function of Python is called at no time of a run",
+            'an expression does, "0.5*sin(t)" (if(t < 1, 0, 2) for pieces); or its values, (times, [f(t) for t in times])',
+        )
     raise TypeError(f"a number, a text or a list of numbers is expected, found {type(value).__name__}")
 
 
 def settings_of(values: Settings | None) -> list[str]:
     """NAME=VALUE of `set`; tables inside become dotted names."""
     return [f"{name}={text_of(_one_value(name, value), name)}" for name, value in _flat(mapping_of(values))]
+
+
+def entry_by_entry(values: Settings | None, declares: typing.Callable[[str], bool]) -> Settings | None:
+    """The same with an array of the model as its entries: x1, x2, … for ``{"x": [1, 0]}``."""
+    if not isinstance(values, typing.Mapping):
+        return values
+    changed: dict[typing.Any, typing.Any] = {}
+    for key, value in values.items():
+        shape = np.shape(value) if isinstance(value, (list, tuple, np.ndarray)) else ()
+        names = entries(key, shape) if isinstance(key, str) and "." not in key and 0 < len(shape) < 3 and 0 not in shape else None
+        if names is None or declares(key) or not all(declares(name) for name in names.flat):
+            changed[key] = value
+        else:
+            changed.update(zip(names.flat, np.array(value, dtype=object).flat))
+    return changed
 
 
 def names_in(values: Settings | None) -> list[str]:
@@ -147,6 +168,13 @@ def simulate_options(
         key = next((key for key in keys if key in _SIMULATE), by_surface)
         options.append((f"simulate.{key}", text_of(value, name), f"{name}={_shown(value)}"))
     return settings, options
+
+
+def last_of_times(options: typing.Mapping[str, Value]) -> float | None:
+    """The last of the times at which rows are asked for; None where no times are given."""
+    output = options.get("output")
+    times = options.get("times", output.get("times") if isinstance(output, typing.Mapping) else None)
+    return float(max(times)) if times is not None and is_list(times) and len(times) else None
 
 
 def option_of(name: str, value: Value) -> Option:

@@ -13,8 +13,10 @@ import numpy as np
 from . import _card, _core, _data, _sweep_plot
 from ._errors import needed, warn
 from ._expression import Expression, refuse
+from ._names import several
 from ._outcome import Kept, unknown
 from ._result import Again, Origin, Result
+from ._plot import axes_of, with_words
 from ._settings import text_of
 
 Array = np.ndarray[typing.Any, np.dtype[typing.Any]]
@@ -167,7 +169,7 @@ class Sweep:
         return iter(self.results)
 
     def __getitem__(self, name: str) -> Array:
-        """A column of the table.
+        """A column of the table; of an array x1, x2, … ``"x"`` has those of all, and so has a pattern, ``"x*"``.
 
         >>> saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=5)["events"].tolist()
         [1, 2]
@@ -176,6 +178,9 @@ class Sweep:
             name = name.text
         if not isinstance(name, str):
             raise TypeError(f"s[{name!r}]: a column is taken by its name, e.g. s['run']; a run is s.results[{name!r}]")
+        names = several(name, self.table) if name not in self.table else None
+        if names is not None:
+            return np.stack([self.table[one] for one in names.flat], axis=-1).reshape(-1, *names.shape)
         if name not in self.table:
             raise unknown(name, list(self.table), "the table")
         return self.table[name]
@@ -237,31 +242,54 @@ class Sweep:
             {name: (swept, values.reshape(self._shape)) for name, values in columns.items()}, coords=coordinates
         )
 
-    def plot(self, name: str | None = None, over: str | None = None, axis: typing.Any = None) -> typing.Any:
+    @with_words
+    def plot(
+        self,
+        name: str | Expression | None = None,
+        over: str | None = None,
+        axis: typing.Any = None,
+        *,
+        ax: typing.Any = None,
+        label: str | None = None,
+        color: typing.Any = None,
+    ) -> typing.Any:
         """Draws a column of the table (matplotlib) over what was swept; of several, one line for each value of the
         others. `over` says what lies along the axis, without it what has the most values. Random samples are points, not
         joined by lines. Runs that stopped early are gaps, with a cross at the foot. Without a name all states and
-        outputs at the end are drawn, each into axes of its own, which are returned. Needs ``keep="final"``.
+        outputs at the end are drawn, each into axes of its own, which are returned; so are the entries of an array. `ax`
+        are axes to draw into, `label` and `color` those of its lines. Needs ``keep="final"``.
 
         >>> s = saltus.catalogue("stick-slip").sweep(belt=np.linspace(0.1, 0.3, 5), q=[0, 0.1], until=5)
         >>> axis = s.plot("v")
         >>> axis.get_xlabel(), len(axis.lines)
         ('belt', 2)
         """
-        return _sweep_plot.plot(self, name, over, axis) if name is not None else _sweep_plot.plot_all(self, over, axis)
+        axes, text = axes_of(axis, ax), None if name is None else str(name)
+        names = several(text, self.table) if text is not None and text not in self.table else None
+        if text is not None and names is None:
+            return _sweep_plot.plot(self, text, over, axes, label, color)
+        first = self.results[0]
+        all_names = [*first.states, *first.output_names] if names is None else names.ravel().tolist()
+        return _sweep_plot.plot_all(self, all_names, over, axes, label, color)
 
+    @with_words
     def bifurcation(
         self,
-        name: str,
-        event: str | None = None,
+        name: str | Expression,
+        event: str | typing.Sequence[str] | None = None,
         after: float = -np.inf,
         over: str | None = None,
         axis: typing.Any = None,
+        *,
+        ax: typing.Any = None,
+        label: str | None = None,
+        color: typing.Any = None,
     ) -> typing.Any:
         """Draws a bifurcation diagram (matplotlib): a column at events, over what was swept, a point for each of them.
 
-        `event` is the name of the events, their kind, or both the kind and the surface ("crossing slip"); without it
-        all are drawn, each sort in its colour. `after` is the time from which on, as transients are no part of it. Needs
+        `event` is the name of the events, their kind, or both the kind and the surface ("crossing slip"), or a list of
+        these; without it all are drawn, each sort in its colour. `ax` are axes to draw into: what is drawn there before
+        keeps its colour. `label` and `color` are those of the points. `after` is the time from which on, as transients are no part of it. Needs
         ``keep="events"``.
 
         >>> m = saltus.catalogue("stick-slip")
@@ -269,7 +297,7 @@ class Sweep:
         >>> s.bifurcation("q", event="leave_sliding", after=20).get_ylabel()
         'q at leave_sliding'
         """
-        return _sweep_plot.bifurcation(self, name, event, after, over, axis)
+        return _sweep_plot.bifurcation(self, str(name), event, after, over, axes_of(axis, ax), label, color)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the table as the tool does: ``.csv``, or ``.npz`` with an array for every column.

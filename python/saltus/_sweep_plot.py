@@ -32,9 +32,10 @@ _DONE = ("completed", "stopped_by_event")
 Sort = tuple[str, str, str]
 
 
-def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
+def plot(
+    s: Sweep, name: str, over: str | None, axis: typing.Any, label: str | None = None, color: typing.Any = None
+) -> typing.Any:
     """Lines of a column over what was swept, one for each value of everything else."""
-    name = str(name)
     first_rows = np.unique(s["run"], return_index=True)[1]
 
     def of_runs(name: str) -> typing.Any:
@@ -52,21 +53,22 @@ def plot(s: Sweep, name: str, over: str | None, axis: typing.Any) -> typing.Any:
     for line in lines:
         runs = np.flatnonzero(np.ravel(line_of_run) == line)
         runs = runs[np.argsort(along[runs], kind="stable")]
-        label = ", ".join(f"{other} = {_shown(of_runs(other)[runs[0]])}" for other in others)
-        marker = "." if len(runs) < 60 or s._sampled else None
-        axis.plot(along[runs], column[runs], marker=marker, linewidth=0 if s._sampled else 1.2, label=label or None)
+        words = [f"{other} = {_shown(of_runs(other)[runs[0]])}" for other in others]
+        words = [*([label] if label is not None else []), *words]
+        style = {"marker": "." if len(runs) < 60 or s._sampled else None, "linewidth": 0 if s._sampled else 1.2}
+        axis.plot(along[runs], column[runs], **style, label=", ".join(words) or None, color=color)
     _mark_lost_runs(s, x, axis)
-    if not done.all() or 1 < len(lines) <= 12:
+    if not done.all() or label is not None or 1 < len(lines) <= 12:
         axis.legend()
     axis.set_xlabel(_caption(s, x))
     axis.set_ylabel(_caption(s, name))
     return axis
 
 
-def plot_all(s: Sweep, over: str | None, axes: typing.Any) -> typing.Any:
-    """The same for all states and outputs, below each other."""
-    first = s.results[0]
-    names = [*first.states, *first.output_names]
+def plot_all(
+    s: Sweep, names: list[str], over: str | None, axes: typing.Any, label: str | None = None, color: typing.Any = None
+) -> typing.Any:
+    """The same for several columns, below each other."""
     if axes is None:
         needed("matplotlib", "plot")
         _, axes = needed("matplotlib.pyplot", "plot").subplots(
@@ -74,11 +76,20 @@ def plot_all(s: Sweep, over: str | None, axes: typing.Any) -> typing.Any:
         )
         axes = list(axes[:, 0])
     for name, axis in zip(names, axes, strict=True):
-        plot(s, name, over, axis)
+        plot(s, name, over, axis, label, color)
     return axes
 
 
-def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str | None, axis: typing.Any) -> typing.Any:
+def bifurcation(
+    s: Sweep,
+    name: str,
+    event: str | typing.Sequence[str] | None,
+    after: float,
+    over: str | None,
+    axis: typing.Any,
+    label: str | None = None,
+    color: typing.Any = None,
+) -> typing.Any:
     """Points: a column at events over what was swept; other parameters and sorts of events have looks of their own.
 
     A run that goes on after `after` without any event is drawn by its end, one that stopped early by a cross at the foot.
@@ -86,18 +97,22 @@ def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str 
     if "kind" not in s.table:
         raise ValueError('a bifurcation diagram is made of events: sweep(…, keep="events")')
     sorts, sort_of_row = _sorts_of_events(s)
-    wanted = [i for i, sort in enumerate(sorts) if event is None or event in _names_of(sort)]
-    if event is not None and not wanted:
-        raise unknown(event, sorted({name for sort in sorts for name in _names_of(sort)}), "the list of events")
+    events = [event] if isinstance(event, str) else list(event or [])
+    known = {name for sort in sorts for name in _names_of(sort)}
+    for one in events:
+        if one not in known:
+            raise unknown(one, sorted(known), "the list of events")
+    wanted = [i for i, sort in enumerate(sorts) if not events or set(events) & set(_names_of(sort))]
     x, others = _axes(s, over)
     axis, is_own = _axis(axis), axis is None
     values, label_of_row = _other_values(s, others)
     ends = _quiet_ends(s, name, after)
     looks = _looks(s, [sorts[i] for i in wanted], [sort_of_row == i for i in wanted], label_of_row, values, after)
     if not looks:
-        _warn_of_nothing(s["t"][np.isin(sort_of_row, wanted)], event, after, len(ends[0]))
+        _warn_of_nothing(s["t"][np.isin(sort_of_row, wanted)], ", ".join(events), after, len(ends[0]))
+    before = _drawn_before(axis)
     for rows, style in looks:
-        axis.plot(s[x][rows], s[name][rows], linestyle="none", markersize=2.5, **style)
+        _draw_points(axis, s[x][rows], s[name][rows], style, before, label, color)
     _draw_ends(s, x, ends, label_of_row, len(values), axis)
     _mark_lost_runs(s, x, axis)
     # One sort of points alone needs no words; some runs that are drawn otherwise do.
@@ -108,8 +123,40 @@ def bifurcation(s: Sweep, name: str, event: str | None, after: float, over: str 
     axis.dataLim.update_from_data_x(s[x], ignore=False)
     axis.autoscale_view()
     axis.set_xlabel(_caption(s, x))
-    axis.set_ylabel(_caption(s, name) + (f" at {event}" if event is not None else ""))
+    heading = _caption(s, name) + (f" at {', '.join(events)}" if events else "")
+    drawn = axis.get_ylabel() if before else ""
+    axis.set_ylabel(f"{drawn}; {heading}" if drawn not in ("", heading) else heading)
     return axis
+
+
+#: Marks points as those of a sweep: one for each sort of events.
+_OURS = "saltus sort"
+
+
+def _drawn_before(axis: typing.Any) -> int:
+    """How many sorts of events other calls have drawn. One that was alone had no need of words; now it has."""
+    ours = [line for line in axis.lines if str(line.get_gid()).startswith(_OURS)]
+    for line in ours:
+        line.set_label(line.get_label().removeprefix("_"))
+    return len({line.get_gid() for line in ours})
+
+
+def _draw_points(
+    axis: typing.Any, x: Array, y: Array, look: Look, before: int, label: str | None, color: typing.Any
+) -> None:
+    number = before + look.sort
+    words = ", ".join([*([label] if label is not None else []), *look.words])
+    # Words that begin with "_" are in no legend.
+    axis.plot(
+        x,
+        y,
+        linestyle="none",
+        markersize=2.5,
+        gid=f"{_OURS} {number}",
+        color=color if color is not None else LINES[(number if look.value is None else look.value) % len(LINES)],
+        marker="." if look.value is None else _MARKERS[number % len(_MARKERS)],
+        label=words if look.is_named or before or label is not None else f"_{words}",
+    )
 
 
 #: Markers of sorts of events where colours stand for values of another parameter.
@@ -131,10 +178,19 @@ def _other_values(s: Sweep, others: list[str]) -> tuple[list[str], Array]:
     return words, np.ravel(number)
 
 
+class Look(typing.NamedTuple):
+    """How points look: colours by value of other parameters, where these have one value by sort of event."""
+
+    sort: int
+    value: int | None  # which of the values of other parameters; None where there is one
+    words: list[str]
+    is_named: bool  # one sort of points alone needs no words
+
+
 def _looks(
     s: Sweep, sorts: list[Sort], rows_of_sorts: list[Array], label_of_row: Array, values: list[str], after: float
-) -> list[tuple[Array, dict[str, typing.Any]]]:
-    """Rows with their colour, marker and label: colours by value of other parameters, of one value by sort of event."""
+) -> list[tuple[Array, Look]]:
+    """Rows with their look."""
     late = s["t"] > after
     present = [(sort, rows & late) for sort, rows in zip(sorts, rows_of_sorts) if (rows & late).any()]
     looks = []
@@ -143,14 +199,10 @@ def _looks(
             chosen = rows & (label_of_row == k)
             if not chosen.any():
                 continue
-            many = len(values) > 1
-            style: dict[str, typing.Any] = {
-                "color": LINES[(k if many else n) % len(LINES)],
-                "marker": _MARKERS[n % len(_MARKERS)] if many else ".",
-            }
+            many, several_sorts = len(values) > 1, len(present) > 1
             named = [words] if many else []
-            named += [_names_of(sort)[0]] if len(present) > 1 else []
-            looks.append((chosen, style | ({"label": ", ".join(named)} if named else {})))
+            named += [_names_of(sort)[0]] if several_sorts or not many else []
+            looks.append((chosen, Look(n, k if many else None, named, many or several_sorts)))
     return looks
 
 
@@ -170,7 +222,8 @@ def _draw_ends(
 ) -> None:
     """Open diamonds in the colours of the points; one of them has the words."""
     rows, heights = ends
-    label: dict[str, typing.Any] = {"label": "at the end, without events"}
+    words = "at the end, without events"
+    label: dict[str, typing.Any] = {"label": words} if words not in axis.get_legend_handles_labels()[1] else {}
     for k in np.unique(label_of_row[rows]).tolist():
         chosen = label_of_row[rows] == k
         style = {"color": LINES[k % len(LINES)] if count > 1 else "#555555", "markerfacecolor": "none"}
@@ -205,8 +258,8 @@ def _names_of(sort: Sort) -> list[str]:
     return list(dict.fromkeys(filter(None, [name, *(with_surfaces if surfaces else []), kind, *surfaces.split()])))
 
 
-def _warn_of_nothing(times: Array, event: str | None, after: float, ends: int) -> None:
-    what = f'events "{event}"' if event is not None else "events"
+def _warn_of_nothing(times: Array, event: str, after: float, ends: int) -> None:
+    what = f'events "{event}"' if event else "events"
     instead = f"; {ends} run{' is' if ends == 1 else 's are'} drawn by the end" if ends else ""
     if len(times) == 0:
         warn([f"no point is drawn: no run has {what}{instead}"])

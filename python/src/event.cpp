@@ -56,6 +56,7 @@ void add_event(nb::module_& module) {
       .def_prop_ro("contact_modes_before", [](const Event& self) { return words_of(self.contact_modes_before); })
       .def_prop_ro("contact_modes_after", [](const Event& self) { return words_of(self.contact_modes_after); })
       .def_ro("impulse", &Event::impulse)
+      .def_prop_ro("states", [](const Event& self) { return self.states ? *self.states : std::vector<std::string>(); })
       .def_prop_ro("x", [](const Event& self) { return owned_array(self.x); })
       .def_prop_ro("x_after", [](const Event& self) { return owned_array(self.x_after); })
       .def_ro("unique", &Event::unique)

@@ -280,16 +280,17 @@ void add_result(nb::module_& module) {
                                             : result::region_labels(run.result->region_groups).size();
                      return block_array(run.theta, run.result->trajectory.theta, width, self);
                    })
-      .def_prop_ro(
-          "events",
-          [](const Run& self) {
-            nb::list list;
-            for (result::Event event : self.result->events) {
-              const auto word = turned(event, *self.result);
-              list.append(nb::cast(RunEvent{std::move(event), word ? std::optional(text_of(*word)) : std::nullopt}));
-            }
-            return list;
-          })
+      .def_prop_ro("events",
+                   [](const Run& self) {
+                     nb::list list;
+                     const auto states = std::make_shared<const std::vector<std::string>>(self.result->states);
+                     for (result::Event event : self.result->events) {
+                       const auto word = turned(event, *self.result);
+                       list.append(nb::cast(
+                           RunEvent{std::move(event), word ? std::optional(text_of(*word)) : std::nullopt, states}));
+                     }
+                     return list;
+                   })
       .def_prop_ro("final", final_of)
       .def_prop_ro("branches", branches)
       .def_prop_ro("is_continuous", [](const Run& self) { return self.result->continuous != nullptr; })

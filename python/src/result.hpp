@@ -27,9 +27,10 @@ struct Run {
   Block<int> mode;
 };
 
-/// An event, and what only its result tells: which way a hysteresis turned.
+/// An event, and what only its result tells: which way a hysteresis turned, the names of states.
 struct RunEvent : result::Event {
   std::optional<std::string> turned;
+  std::shared_ptr<const std::vector<std::string>> states;  ///< one list for all events
 };
 
 /// An array of Python with its own numbers.

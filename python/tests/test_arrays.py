@@ -155,3 +155,70 @@ def test_a_matrix_that_does_not_fit_is_refused():
         np.array([[1.0, np.nan, 0.0]]) @ x
     with pytest.raises(saltus.ModelError, match="more than 5000 terms"):
         np.ones((1, 5100)) @ saltus.Builder("m").states("y", np.ones(5100))
+
+
+@pytest.fixture(scope="module")
+def ring():
+    m = saltus.Builder("ring")
+    p, m_ = m.states("p", [1, 0, 0]), m.states("T", [[1, 2], [3, 4]])
+    m.rate(p, np.roll(p, 1) - p)
+    m.rate(m_, -m_)
+    m.event(p[0] - 0.5, name="half")
+    return m, p
+
+
+def test_a_result_knows_arrays(ring):
+    m, p = ring
+    r = m.simulate(until=1, points=3)
+    assert r["p"].tolist() == np.column_stack([r["p1"], r["p2"], r["p3"]]).tolist() == r[p].tolist() == r["p*"].tolist()
+    assert r["T"].shape == (len(r.t), 2, 2) and r["T"][:, 1, 0].tolist() == r["T2_1"].tolist()
+    assert r.final["p"].tolist() == [r.final["p1"], r.final["p2"], r.final["p3"]] and r.final["T"].shape == (2, 2)
+    for name in ("P", "q*", "p1_"):
+        with pytest.raises(KeyError):
+            r[name]
+    s = m.sweep(p1=[1, 2], until=1)
+    assert s["p"].tolist() == [[s[f"p{i}"][k] for i in (1, 2, 3)] for k in (0, 1)]
+
+
+def test_an_array_is_set_entry_by_entry(ring):
+    m, p = ring
+    r = m.simulate(until=1, set={"p": [1, 2, 3], "T": np.zeros((2, 2))})
+    assert r["p"][0].tolist() == [1, 2, 3] and not r["T"].any()
+    assert m.simulate(until=2, start=r, set={"p": [0, 0, 0]})["p"][0].tolist() == [0, 0, 0]
+    assert m.sweep(p1=[1], set={"T": np.zeros((2, 2))}, until=1)["T1_1"].tolist() == [0]
+    with pytest.raises(saltus.ModelError, match="expected one value"):
+        m.simulate(until=1, set={"p": [1, 2, 3, 4]})
+    with pytest.raises(saltus.ModelError, match="changed twice"):
+        m.sweep(p1=[1], set={"p": [1, 2, 3]}, until=1)
+
+
+def test_events_know_states_by_their_names(ring):
+    m, p = ring
+    m.jump(at=[0.25], set={p[1]: 5}, name="dose")
+    events = m.simulate(until=1).events
+    jump = events["dose"][0]
+    assert jump.states[:3] == ["p1", "p2", "p3"]
+    assert (jump["p2"], jump["p2(after)"], jump["p"].tolist()) == (jump.x[1], 5, jump.x[:3].tolist())
+    table = events.table()
+    assert table["p2(after)"].tolist() == events.x_after[:, 1].tolist() and table["p1"].tolist() == events.x[:, 0].tolist()
+    with pytest.raises(KeyError, match="the event has no 'q'"):
+        jump["q"]
+
+
+def test_a_column_of_another_program_is_told():
+    m = saltus.Builder("m")
+    x, u = m.states("x", [0, 0]), m.controls("u", [1])
+    A, B = np.array([[0, 1], [-1, -1]]), np.array([[0], [1.0]])
+    with pytest.raises(saltus.ModelError, match=r"write B\[:, 0\]\*u"):
+        m.rate(x, A @ x + B * u[0])
+    m.rate(x, A @ x + B @ u)
+    assert m.simulate(until=1).final["x"][0] > 0
+
+
+def test_functions_of_numpy_take_expressions_of_no_axis():
+    m = saltus.Builder("m")
+    z = m.state("z", 0)
+    assert str(np.clip(3 * z, -1, 1)) == "min(max(3*z,-1),1)"
+    assert str(np.where(z > 0, 1, 2)) == "if(z>0,1,2)"
+    assert texts(np.where(z > 0, saltus.array([z, 1]), 2)) == ["if(z>0,z,2)", "if(z>0,1,2)"]
+    assert texts(np.stack([z, 2 * z])) == ["z", "2*z"] and np.ndim(z) == 0

@@ -86,11 +86,18 @@ def test_a_sweep_takes_them(cart):
     ({"u": [0, 1, 2]}, "an input is no list of values"),
     ({"u": {"t": TIMES}}, 'expected the keys "t" and "u"'),
     ({"w": (TIMES, VALUES)}, "w"),
+    ({"u": {"times": TIMES, "values": VALUES, "kind": "linear"}}, r'a table of the model: \[tables\].*"load\(t\)"'),
     ([1, 2], "expected a dict"),
 ])
 def test_what_is_wrong_with_inputs_is_said(cart, inputs, said):
     with pytest.raises(saltus.ModelError, match=said):
         cart.simulate(until=3, inputs=inputs)
+
+
+def test_data_that_begin_late_are_told(cart):
+    with pytest.warns(saltus.ModelWarning, match=r"input 'u' begin at t = 0.5, the run at t = 0: until then it is 3"):
+        r = cart.simulate(until=3, inputs={"u": ([0.5, 1], [3, 4])})
+    assert r["u"][0] == 3
 
 
 def test_a_column_that_is_not_there_is_said(cart):

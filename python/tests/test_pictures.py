@@ -412,7 +412,7 @@ def test_contacts_are_seen():
 
 def test_what_cannot_be_drawn_is_told(slip):
     with pytest.raises(ValueError, match="one for each of"):
-        slip.plot(axes=[1])
+        slip.plot(axes=[1, 2, 3])
     with pytest.raises(TypeError, match="by its name"):
         slip[0]
 

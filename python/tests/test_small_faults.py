@@ -3,6 +3,7 @@
 import sys
 import types
 
+import numpy as np
 import pytest
 
 import saltus
@@ -127,3 +128,61 @@ def test_a_line_tells_what_is_prepared(capsys, monkeypatch):
     written = capsys.readouterr().err.split("\r")
     assert written[1].startswith("slow: reading")
     assert written[-3].startswith("slow: t = 1   50 %   3 steps   4 events")
+
+
+@pytest.mark.parametrize("text, said", [
+    ('[states]\nm = [1, 0, 0]\n[dynamics]\nm = "-m"', ["expected one number for 'm', found a list", "name the entries m1, m2", 'b.states("m", [1, 0, 0])']),
+    ('[states]\ny = 1\n[dynamics]\ny = "-delay(y, 0.5)"', ["unknown function 'delay'", "states in a row come close"]),
+    ('[states]\ny = 1\n[dynamics]\ny = "randn()"', ["unknown function 'randn'", "nothing in a run is random"]),
+    ('[states]\ny = 1\n[dynamics]\ny = "-y"\n[[events]]\nwhen = "y - 0.5"\nset = { y = 1 }', ["an event records", "write it under [[jumps]]"]),
+    ('[inputs]\nu = 1\n[states]\ny = 1\n[dynamics]\ny = "-y"', ["unknown table [inputs]", "declared under [controls]", "under [simulate]"]),
+])
+def test_a_file_is_told_what_is_meant(text, said):
+    told = said_by(lambda: saltus.Model.from_text(f'[model]\nname = "m"\n{text}\n').simulate(until=1))
+    assert all(words in told for words in said), told
+
+
+@pytest.mark.parametrize("name, text, what", [
+    ("m.ant", "S1 -> S2; k*S1\nk = 0.1\n", "Antimony"),
+    ("m.txt", "// a loop\nmodel M\n  S1 -> S2; k*S1\nend\n", "Antimony"),
+    ("m.cps", '<?xml version="1.0"?>\n<COPASI xmlns="http://www.copasi.org/static/schema"/>\n', "a model of COPASI"),
+    ("m.mo", "Model ball\n Real x;\nequation\n der(x) = -x;\nend ball;\n", "Modelica"),
+])
+def test_files_of_others_are_named(tmp_path, name, text, what):
+    (tmp_path / name).write_text(text)
+    assert f"this is {what}: Saltus does not read it yet" in said_by(lambda: saltus.Model(tmp_path / name))
+
+
+def test_the_end_is_the_last_of_the_times_where_nothing_else_says_it(brake):
+    b = saltus.Builder("decay")
+    x = b.state("x", 1)
+    b.rate(x, -x)
+    assert b.simulate(times=[0.5, 2]).t.tolist() == b.model().simulate(output={"times": [0.5, 2]}).t.tolist() == [0.5, 2]
+    assert b.model().sweep(x=[1, 2], times=[0.5, 2])["t"].tolist() == [2, 2]
+    assert brake.simulate(times=[1, 2]).final.t == 6
+
+
+def test_a_function_as_an_input_is_told(brake):
+    b = saltus.Builder("m")
+    x, u = b.state("x", 1), b.control("u")
+    b.rate(x, u)
+    text = said_by(lambda: b.simulate(until=1, inputs={"u": lambda t: t}))
+    assert "a function of Python is called at no time" in text and "0.5*sin(t)" in text
+
+
+def test_a_converter_rounds_at_its_samples():
+    """floor of a state in `set` is the value at an instant."""
+    m = saltus.Model.from_text(
+        '[model]\nname = "adc"\n[states]\ny = 0\nus = 0\n[dynamics]\ny = "us - y"\nus = 0\n'
+        '[[jumps]]\nevery = 0.1\nset = { us = "2*(1 - 0.25*floor(y/0.25))" }\n[simulate]\nuntil = 3\n')
+    r = m.simulate()
+    assert len(r.events) == 30
+    y, us = 0.0, 0.0
+    for event in r.events:
+        y = us + (y - us) * np.exp(-0.1)
+        assert event["y"] == pytest.approx(y, abs=1e-8)
+        us = 2 * (1 - 0.25 * np.floor(y / 0.25))
+        assert event["us(after)"] == pytest.approx(us, abs=1e-8)
+    assert {round(us, 9) for us in r["us"].tolist()} >= {2, 1.5, 1}
+    assert "for `set` of jumps" in said_by(lambda: saltus.Model.from_text(
+        '[model]\nname = "m"\n[states]\ny = 0\n[dynamics]\ny = "1 - floor(y)"\n').simulate(until=1))

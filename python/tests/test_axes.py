@@ -1,0 +1,71 @@
+"""Pictures in axes of one's own: several columns, several calls, the words for them."""
+
+import matplotlib
+import numpy as np
+import pytest
+
+import saltus
+
+matplotlib.use("Agg")
+from matplotlib import pyplot  # noqa: E402
+
+
+@pytest.fixture(autouse=True)
+def close_figures():
+    yield
+    pyplot.close("all")
+
+
+@pytest.fixture(scope="module")
+def slip():
+    return saltus.catalogue("stick-slip").simulate(until=20)
+
+
+def test_several_columns_share_axes(slip):
+    (axis,) = slip.plot([["q", "v"]])
+    lines = [line for line in axis.lines if line.get_gid() == "saltus"]
+    assert [line.get_ydata().tolist() for line in lines] == [slip["q"].tolist(), slip["v"].tolist()]
+    assert [text.get_text() for text in axis.get_legend().get_texts()] == ["q", "v"] and axis.get_ylabel() == "q, v"
+    assert len({line.get_color() for line in lines}) == 2
+    own = pyplot.subplots()[1]
+    for axes in (own, [pyplot.subplots()[1]] * 2):
+        (axis, *rest) = slip.plot(["q", "v"], ax=axes, label="run")
+        assert [text.get_text() for text in axis.get_legend().get_texts()] == ["q, run", "v, run"]
+    m = saltus.Builder("chain")
+    x = m.states("x", [1, 0], unit="mol")
+    m.rate(x, np.roll(x, 1) - x)
+    r = m.simulate(until=1)
+    for names in (["x"], "x", ["x*"]):
+        (axis,) = r.plot(names)
+        assert axis.get_ylabel() == f"{names[0]} [mol]" and len(axis.lines) == 2
+    assert [axis.get_ylabel() for axis in m.sweep(x1=[1, 2], until=1).plot("x")] == ["x1 [mol]", "x2 [mol]"]
+
+
+def test_pictures_have_one_word_for_axes_and_say_it(slip):
+    s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=40)
+    events = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=40, keep="events")
+    for draw in (lambda **how: slip.plot("v", **how)[0], lambda **how: slip.phase("q", "v", **how),
+                 lambda **how: s.plot("v", **how), lambda **how: events.bifurcation("v", **how)):
+        own = pyplot.subplots()[1]
+        assert draw(ax=own, color="red", label="mine") is own
+        assert any(line.get_color() == "red" and "mine" in line.get_label() for line in own.lines)
+        with pytest.raises(TypeError, match="has no keyword 'subplot': write ax=axes of matplotlib"):
+            draw(subplot=own)
+        with pytest.raises(TypeError, match=r'write color="black"'):
+            draw(colour="red")
+
+
+def test_a_bifurcation_diagram_of_several_events():
+    s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2, 0.3], until=40, keep="events")
+    both = ["enter_sliding", "leave_sliding"]
+    axis = s.bifurcation("q", event=both, after=20)
+    assert len(axis.lines) == 2 and axis.get_ylabel() == "q at enter_sliding, leave_sliding"
+    one = s.bifurcation("q", event=both[0], after=20)
+    assert one.get_legend() is None
+    s.bifurcation("q", event=both[1], after=20, ax=one)
+    assert [line.get_color() for line in one.lines] == [line.get_color() for line in axis.lines]
+    words = [text.get_text() for text in one.get_legend().get_texts()]
+    assert words == [text.get_text() for text in axis.get_legend().get_texts()] and len(words) == 2
+    assert one.get_ylabel() == "q at enter_sliding; q at leave_sliding"
+    with pytest.raises(KeyError, match="has no 'maxi'"):
+        s.bifurcation("q", event=["enter_sliding", "maxi"])
