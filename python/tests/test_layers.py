@@ -8,7 +8,7 @@ LAYERS = {
     "ground": "_core _build _libraries _spelling _progress _signature _keywords",
     "errors": "_errors",
     "expressions": "_array _sums _expression _functions _casadi _sympy",
-    "words": "_outcome _samples _settings _entries",
+    "words": "_names _outcome _samples _settings _entries",
     "recorded": "_columns _events _facts _recorded",
     "pictures": "_shape _data _plot _card _sweep_plot",
     "results": "_result _difference _mpcc",
