@@ -131,7 +131,7 @@ def test_a_line_tells_what_is_prepared(capsys, monkeypatch):
 
 
 @pytest.mark.parametrize("text, said", [
-    ('[states]\nm = [1, 0, 0]\n[dynamics]\nm = "-m"', ["expected one number for 'm', found a list", "name the entries m1, m2", 'b.states("m", [1, 0, 0])']),
+    ('[states]\nm = [1, 0, 0]\n[dynamics]\nm = "-m"', ["in quotes, found a list", "name the entries m1, m2", "b.states and b.parameters"]),
     ('[states]\ny = 1\n[dynamics]\ny = "-delay(y, 0.5)"', ["unknown function 'delay'", "states in a row come close"]),
     ('[states]\ny = 1\n[dynamics]\ny = "randn()"', ["unknown function 'randn'", "nothing in a run is random"]),
     ('[states]\ny = 1\n[dynamics]\ny = "-y"\n[[events]]\nwhen = "y - 0.5"\nset = { y = 1 }', ["an event records", "write it under [[jumps]]"]),

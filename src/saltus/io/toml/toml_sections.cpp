@@ -34,14 +34,13 @@ Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::ve
   Quantity quantity;
   const auto* table = std::get_if<TomlTable>(&entry.value.value);
   if (std::holds_alternative<TomlArray>(entry.value.value)) {
-    reader.fail(
-        {ErrorCode::parse_failure,
-         fmt::format("expected one number for '{}', found a list", entry.key),
-         fmt::format("a file has no arrays: name the entries {0}1, {0}2, …; saltus.Builder of the Python package "
-                     "has them, b.states(\"{0}\", [1, 0, 0])",
-                     entry.key),
-         entry.value.location,
-         {}});
+    reader.fail({ErrorCode::parse_failure,
+                 "expected a number or an expression in quotes, found a list",
+                 fmt::format("a file has no arrays: name the entries {0}1, {0}2, …; saltus.Builder of the Python "
+                             "package has them, b.states and b.parameters",
+                             entry.key),
+                 entry.value.location,
+                 {}});
     quantity.initial = expression::unreadable(entry.value.location);
     return quantity;
   }
