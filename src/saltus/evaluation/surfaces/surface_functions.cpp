@@ -7,8 +7,10 @@
 #include <set>
 #include <utility>
 
+#include <casadi/core/sx_elem.hpp>
+
 #include "saltus/base/at.hpp"
-#include "saltus/base/contains.hpp"
+#include "saltus/evaluation/surfaces/composer_internal.hpp"
 #include "saltus/evaluation/surfaces/guard_words.hpp"
 #include "saltus/model/graph/model_function.hpp"
 #include "saltus/model/system.hpp"
@@ -18,112 +20,11 @@ namespace saltus::evaluation {
 using model::ModelFunction;
 namespace {
 
-using casadi::DM;
 using casadi::SX;
+using casadi::SXElem;
 
 /// More states than this do not fit into a plane.
 constexpr std::size_t most_states_of_curves = 2;
-
-std::vector<int> dependencies(const SX& expression, const SX& variables) {
-  std::vector<int> found;
-  if (variables.numel() == 0) return found;
-  for (const casadi_int column : SX::jacobian_sparsity(expression, variables).get_col()) {
-    found.push_back(static_cast<int>(column));
-  }
-  return found;
-}
-
-/// A switching function with what it depends on, the inner ones' dependencies included.
-struct Composed {
-  SX psi;  ///< over t, x and the constants of cells
-  std::set<int> states;
-  std::set<int> cells;  ///< in it, and in their arguments
-  bool on_time = false;
-  bool nested = false;
-  bool resolved = true;  ///< no selections are left in it
-};
-
-class Composer {
- public:
-  explicit Composer(const model::System& system) : system_(system), parameters_(DM(system.parameter_values)) {
-    std::vector<SX> symbols{SX(0, 1)};
-    for (std::size_t c = 0; c < system.cells.size(); ++c) {
-      symbols.push_back(system.cells[c].symbols);
-      owners_.insert(owners_.end(), static_cast<std::size_t>(symbols.back().numel()), static_cast<int>(c));
-    }
-    symbols_ = SX::vertcat(symbols);
-    arguments_.resize(system.cells.size());
-    for (std::size_t c = 0; c < system.cells.size(); ++c) compose_argument(static_cast<int>(c));
-    // Inner functions have smaller indices, so one pass in order composes all.
-    for (const auto& entry : system.switching) composed_.push_back(compose(entry.psi));
-  }
-
-  [[nodiscard]] Composed compose(const SX& expression) const {
-    const SX psi = with_inputs(expression);
-    Composed result;
-    for (const int i : dependencies(psi, system_.x)) result.states.insert(i);
-    result.on_time = !dependencies(psi, system_.t).empty();
-    for (const int symbol : dependencies(psi, symbols_)) {
-      const int cell = owners_[at(symbol)];
-      result.cells.insert(cell);
-      include(arguments_[at(cell)], result);
-    }
-    const auto inner = dependencies(psi, system_.alpha);
-    if (!inner.empty() && composed_.empty()) {
-      // The argument of a cell holds selections only where an input of time brings them.
-      result.on_time = true;
-      result.resolved = false;
-      return result;
-    }
-    SX selections = SX::zeros(system_.alpha.numel(), 1);
-    for (const int j : inner) {
-      const auto& other = composed_[at(j)];
-      selections(j) = SX::if_else(other.psi > 0, 1, 0);
-      include(other, result);
-    }
-    result.nested = !inner.empty();
-    result.psi = result.nested ? SX::substitute(psi, system_.alpha, selections) : psi;
-    return result;
-  }
-
-  /// The arguments of all cells, over x and the constants of others; these come first in `order`.
-  [[nodiscard]] const std::vector<Composed>& arguments() const { return arguments_; }
-  [[nodiscard]] const std::vector<int>& order() const { return order_; }
-  [[nodiscard]] const SX& symbols() const { return symbols_; }
-  [[nodiscard]] const Composed& function(int j) const { return composed_[at(j)]; }
-
- private:
-  [[nodiscard]] SX with_inputs(const SX& expression) const {
-    SX psi = SX::densify(expression);
-    if (system_.u.numel() > 0) psi = SX::substitute(psi, system_.u, SX::densify(system_.input));
-    if (system_.p.numel() > 0) psi = SX::substitute(psi, system_.p, parameters_);
-    return psi;
-  }
-
-  /// Behind the cells in it. A control may have a table, and its input be another one of a larger index.
-  void compose_argument(int cell) {
-    if (contains(order_, cell)) return;
-    const SX& argument = system_.cells[at(cell)].argument;
-    for (const int symbol : dependencies(with_inputs(argument), symbols_)) compose_argument(owners_[at(symbol)]);
-    arguments_[at(cell)] = compose(argument);
-    order_.push_back(cell);
-  }
-
-  static void include(const Composed& part, Composed& whole) {
-    whole.states.insert(part.states.begin(), part.states.end());
-    whole.cells.insert(part.cells.begin(), part.cells.end());
-    whole.on_time = whole.on_time || part.on_time;
-    whole.resolved = whole.resolved && part.resolved;
-  }
-
-  const model::System& system_;
-  SX parameters_;
-  SX symbols_;
-  std::vector<int> owners_;  ///< the cell of every symbol
-  std::vector<Composed> arguments_;
-  std::vector<int> order_;
-  std::vector<Composed> composed_;
-};
 
 /// Squares of distances to two points differ by an affine function, although both are curved.
 bool curvature_cancels(const Composed& composed, const SX& arguments) {
@@ -137,19 +38,23 @@ bool curvature_cancels(const Composed& composed, const SX& arguments) {
 std::optional<AffineForm> affine_part(const model::System& system, const Composed& composed,
                                       const std::set<int>& states) {
   if (composed.nested || !composed.cells.empty()) return std::nullopt;
-  const SX arguments = SX::vertcat({system.x, system.t});
+  std::vector<SXElem> own;
+  for (const int i : composed.states) own.push_back(system.x(i).scalar());
+  own.push_back(system.t.scalar());
+  const SX arguments(own);
   const auto nonlinear = SX::which_depends(composed.psi, arguments, 2, false);
   const bool looks_curved = std::any_of(nonlinear.begin(), nonlinear.end(), [](bool value) { return value; });
   if (looks_curved && !curvature_cancels(composed, arguments)) return std::nullopt;
   ModelFunction function("affine", {arguments}, {SX::jacobian(composed.psi, arguments), composed.psi});
-  const std::vector<double> origin(static_cast<std::size_t>(arguments.numel()), 0.0);
-  std::vector<double> slopes(origin.size());
+  const std::vector<double> origin(own.size(), 0.0);
+  std::vector<double> slopes(own.size());
   AffineForm affine;
   function(std::array{origin.data()}, std::array{slopes.data(), &affine.constant});
-  for (const int i : states) affine.gradient.push_back(slopes[at(i)]);
-  affine.rate = slopes.back();
   const bool finite = std::all_of(slopes.begin(), slopes.end(), [](double value) { return std::isfinite(value); });
   if (!finite || !std::isfinite(affine.constant)) return std::nullopt;
+  affine.rate = slopes.back();
+  auto slope = slopes.begin();
+  for (const int i : states) affine.gradient.push_back(composed.states.contains(i) ? *slope++ : 0.0);
   return affine;
 }
 
