@@ -72,9 +72,12 @@ def warn(messages: typing.Iterable[str]) -> None:
         warnings.warn(in_python(message), ModelWarning, stacklevel=depth)
 
 
+_PACKAGES = {"plot": "matplotlib", "data": "pandas xarray pyarrow"}  #: of the extras of this package
+
+
 def needed(package: str, extra: str) -> typing.Any:
     """The package, or what to install."""
     try:
         return importlib.import_module(package)
     except ImportError as error:
-        raise ImportError(f"this needs {package}: pip install 'saltus[{extra}]'") from error
+        raise ImportError(f"this needs {package}: pip install {_PACKAGES[extra]}") from error

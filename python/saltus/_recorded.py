@@ -110,6 +110,17 @@ class Recorded(Facts):
         return {key: self._facts[key] for key in _OF_OPTIMUM if key in self._facts}
 
     @property
+    def error_estimate(self) -> dict[str, typing.Any] | None:
+        """Estimated errors, if they were asked for (``error_estimate=True``): ``x`` of every row and state,
+        ``event_times``, ``final``, … (docs/result-file.md).
+
+        >>> r = saltus.catalogue("bouncing-ball").simulate(until=1, error_estimate=True)
+        >>> len(r.error_estimate["final"])
+        2
+        """
+        return self._stored.get("error_estimate")
+
+    @property
     def comparison(self) -> dict[str, typing.Any] | None:
         """The runs of :meth:`Model.compare`.
 

@@ -397,7 +397,7 @@ def test_what_is_not_installed_is_told(slip, monkeypatch):
         return real(name)
 
     monkeypatch.setattr(importlib, "import_module", without)
-    with pytest.raises(ImportError, match=r"pip install 'saltus\[data\]'"):
+    with pytest.raises(ImportError, match=r"pip install pandas xarray pyarrow"):
         slip.frame()
 
 
