@@ -40,25 +40,29 @@ function(build_and_run name folder)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
-# CasADi of the active Python is found by itself; where it has none, one sentence says where it was expected.
-function(configure_with_python python)
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=VIRTUAL_ENV --unset=CONDA_PREFIX
-    ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${work_dir}/build/python -G ${generator} --fresh
-    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_PREFIX_PATH=${work_dir}/prefix -D saltus_python=${python} -D wanted_version=${version}
+# CasADi of the active Python, the first one in PATH, is found by itself; where it has none, one sentence says where it
+# was expected. The next try in the same folder may have another Python.
+function(configure_with_python path)
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env --unset=VIRTUAL_ENV --unset=CONDA_PREFIX "PATH=${path}:$ENV{PATH}"
+    ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${work_dir}/build/python -G ${generator}
+    -D CMAKE_CXX_COMPILER=${compiler} -D CMAKE_PREFIX_PATH=${work_dir}/prefix -D wanted_version=${version}
     RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   set(result "${result}" PARENT_SCOPE)
   string(REGEX REPLACE "[ \n]+" " " output "${output}")
   set(output "${output}" PARENT_SCOPE)
 endfunction()
-file(WRITE ${work_dir}/build/python_without "#!/bin/sh\necho /nowhere/casadi/cmake\n")
-file(CHMOD ${work_dir}/build/python_without PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
-configure_with_python(${work_dir}/build/python_without)
-if(result EQUAL 0 OR NOT output MATCHES "CasADi was expected in .* the active Python .* pip install")
+set(without ${work_dir}/build/without/bin)
+file(WRITE ${without}/python3 "#!/bin/sh\necho /nowhere/casadi/cmake\n")
+file(CHMOD ${without}/python3 PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+configure_with_python(${without})
+if(result EQUAL 0 OR NOT output MATCHES "CasADi was expected in .* the active Python \\(/nowhere/casadi/cmake\\) .* pip install")
   message(FATAL_ERROR "find_package without CasADi said\n${output}")
 endif()
-configure_with_python(${source_dir}/.venv/bin/python3)
-if(EXISTS ${source_dir}/.venv/bin/python3 AND NOT result EQUAL 0)
-  message(FATAL_ERROR "find_package did not find CasADi of the active Python:\n${output}")
+if(EXISTS ${source_dir}/.venv/bin/python3)
+  configure_with_python(${source_dir}/.venv/bin)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "find_package did not find CasADi of the active Python:\n${output}")
+  endif()
 endif()
 
 build_and_run(consumer ${CMAKE_CURRENT_LIST_DIR}/project)
