@@ -14,6 +14,11 @@ namespace {
 using result::Result;
 using result::Termination;
 
+Result run(const std::string& text) {
+  const Simulator model = Simulator::from_text(text);
+  return model.run(model.options());
+}
+
 /// A relay that stands still on its reference, of second order, until the reference steps or ramps.
 std::string stepped_loop(const std::string& reference, const std::string& field) {
   return fmt::format(R"toml([model]
@@ -35,7 +40,7 @@ until = 5
 
 // From t = 1 on v' = 1 - v until y = 1, at 1 + s with s + exp(-s) = 2.
 TEST(StepsOfTime, EndSlidingOfSecondOrder) {
-  const Result result = Simulator::from_text(stepped_loop("if(t < 1, 0, 1)", "sign(e) - v")).run();
+  const Result result = run(stepped_loop("if(t < 1, 0, 1)", "sign(e) - v"));
   ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
   double since = 2.0;
   for (int pass = 0; pass < 60; ++pass) since = 2.0 - std::exp(-since);
@@ -48,11 +53,11 @@ TEST(StepsOfTime, EndSlidingOfSecondOrder) {
 // A step is a step, however it is written: before, after, as a steep ramp, beside friction.
 TEST(StepsOfTime, AreTheSameHoweverTheyAreWritten) {
   const std::string field = "4*e + 0.5*sign(e) - v - 0.2*sign(v)";
-  const Result wanted = Simulator::from_text(stepped_loop("if(t < 1, 0, 1)", field)).run();
+  const Result wanted = run(stepped_loop("if(t < 1, 0, 1)", field));
   ASSERT_EQ(wanted.status.termination, Termination::completed) << wanted.status.message;
   for (const auto& [reference, tolerance] : {std::pair{"step(t - 1)", 1e-8}, std::pair{"0.5 + 0.5*sign(t - 1)", 1e-8},
                                              std::pair{"max(0, min(1, 1e6*(t - 1)))", 1e-5}}) {
-    const Result result = Simulator::from_text(stepped_loop(reference, field)).run();
+    const Result result = run(stepped_loop(reference, field));
     ASSERT_EQ(result.status.termination, Termination::completed) << reference << ": " << result.status.message;
     for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(result.final.x[i], wanted.final.x[i], tolerance) << reference;
   }
@@ -69,7 +74,7 @@ TEST(StepsOfTime, AreSeenByASampleAtTheirTime) {
   for (const auto& model :
        {text("", "if(t < 1, 0, 1)", ""), text(controls, "r", "inputs = { r = { times = [0, 1], values = [0, 1] } }\n"),
         text(controls, "r", "inputs = { r = \"if(t < 1, 0, 1)\" }\n"), text("", "floor(t)", "")}) {
-    const Result result = Simulator::from_text(model).run();
+    const Result result = run(model);
     ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
     EXPECT_EQ(result.final.x[0], 1.0) << model;
   }
