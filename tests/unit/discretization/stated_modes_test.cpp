@@ -52,6 +52,22 @@ TEST(StatedModes, TheKinksOfAGuessAreNoSwitches) {
   EXPECT_EQ(plain.problem->pairs(), stated.problem->pairs());
 }
 
+/// While the ball is stopped time stands still, so that the elements end behind the horizon.
+TEST(StatedModes, MultipliersHaveTimesOfTheClock) {
+  const std::string terminal = "terminal_constraints = [\"vz == 0\"]\n";
+  const auto stated = stated_problem(landing_ball(terminal + stated_guess("modes")));
+  const auto& problem = *stated.problem;
+  const auto w = problem.start();
+  const auto& last = problem.read(w).elements.back().back();
+  ASSERT_GT(last.t + last.h, 1.005);
+  const auto found = problem.constraint_multipliers(w, linalg::Vector::zero(problem.constraints()), {});
+  ASSERT_FALSE(found.empty());
+  for (const auto& multiplier : found) EXPECT_LE(multiplier.time, 1.0 + 1e-12) << multiplier.name;
+  const auto at_end = std::find_if(found.begin(), found.end(), [](const auto& one) { return one.name == "vz == 0"; });
+  ASSERT_NE(at_end, found.end());
+  EXPECT_NEAR(at_end->time, 1.0, 1e-12);
+}
+
 /// An element falls, one stands still in time while the ball is stopped, one rests.
 TEST(StatedModes, AContactThatClosesGetsAnElementInWhichTimeStands) {
   const auto stated = stated_problem(landing_ball(stated_guess("modes")));

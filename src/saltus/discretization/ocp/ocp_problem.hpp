@@ -93,7 +93,8 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] OcpSolution read(mpcc::ConstVectorView w) const;
   /// Returns parts of the user's objective at w.
   [[nodiscard]] result::ObjectiveTerms objective_terms(mpcc::ConstVectorView w);
-  /// Returns multipliers of path, terminal and boundary constraints from those of rows and bounds (upper minus lower).
+  /// Returns multipliers of path, terminal and boundary constraints from those of rows and bounds (upper minus lower),
+  /// at times of the clock where there is one.
   [[nodiscard]] std::vector<result::ConstraintMultiplier> constraint_multipliers(mpcc::ConstVectorView w,
                                                                                  mpcc::ConstVectorView rows,
                                                                                  mpcc::ConstVectorView bounds) const;

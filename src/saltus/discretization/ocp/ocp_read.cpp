@@ -93,7 +93,8 @@ std::vector<result::ConstraintMultiplier> OcpProblem::constraint_multipliers(Con
   const auto end_of = [&](int number) {
     const auto& element = made.element[at(number)];
     const auto& one = solution.elements[at(element.interval)][at(element.number)];
-    return one.t + one.h;
+    // Where time stands still, that of the elements is not the one of the user.
+    return made.kernel.clock < 0 ? one.t + one.h : one.end[made.kernel.clock];
   };
   for (const auto& placed : made.functions) {
     // Rows of slacks are none of the user's.
