@@ -63,14 +63,18 @@ class Descent {
  public:
   explicit Descent(Run& run) : run_(run) {}
 
-  void descend() {
+  /// @param is_solution  ends where a better branch is found, and gives false then
+  bool descend(bool is_solution) {
+    const double first = branch().objective;
     for (int round = 0; round < largest_rounds; ++round) {
       certify();
       if (run_.is_over() || !leaves()) break;
+      if (is_solution && first - branch().objective > worth_leaving * std::max(1.0, std::abs(first))) return false;
     }
     const bool is_cut_short = run_.is_over();
     if (!is_certified()) go_back();
     run_.solution.certificate.other_sides_tried = !is_cut_short;
+    return true;
   }
 
  private:
@@ -276,7 +280,9 @@ class Descent {
 
 }  // namespace
 
-void descend(Run& run) { Descent(run).descend(); }
+void descend(Run& run) { Descent(run).descend(/*is_solution=*/false); }
+
+bool remains(Run& run) { return Descent(run).descend(/*is_solution=*/true); }
 
 void rescue(Run& run) {
   const linalg::Vector w = run.relaxed.point.w.head(run.problem.variables());

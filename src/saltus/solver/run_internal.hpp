@@ -78,6 +78,9 @@ class Run {
 /// Goes from run.branch to better branches, until none is found: flips of biactive pairs with negative multipliers,
 /// then the linear program over them. Leaves certificate and multipliers in run.solution.
 void descend(Run& run);
+/// Does the same for a branch that ought to be the solution: false, with the better one in run.branch, as soon as there
+/// is one.
+[[nodiscard]] bool remains(Run& run);
 /// Adds to the certificate of run.branch what gradients of constraints and second derivatives say, if it is solved.
 /// Leaves the set of its multipliers in run.solution.
 void appraise(Run& run);

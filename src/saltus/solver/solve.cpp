@@ -16,6 +16,8 @@ using result::Termination;
 
 /// Of the branch problem of a start, which may be far from its solution. In one go: the solver keeps its barrier.
 constexpr int start_iterations = 3000;
+/// Of one that nobody asked for: where the solution is near, it is found sooner.
+constexpr int near_iterations = 150;
 
 tl::unexpected<Error> refuse(ErrorCode code, std::string message) {
   Error error;
@@ -69,19 +71,42 @@ double infeasibility_of(mpcc::Problem& problem, const linalg::Vector& w) {
   return std::max(certificate::scaled_infeasibility(problem, w), certificate::complementarity(problem, w));
 }
 
+/// What the solution begins with. A start that has multipliers was solved; where each of its pairs has a zero side,
+/// too, these sides are those of a solution, and few of them change with the problem. Whoever asks for relaxed
+/// problems, by a first sigma or random starts, gets them.
+FirstProblem first_problem(const Run& run, const std::optional<Start>& start) {
+  const auto& options = run.options;
+  if (options.first != FirstProblem::automatic) return options.first;
+  const bool wants_relaxed =
+      !options.crossover || options.sigma_initial.has_value() || options.compared_starts.value_or(0) > 0;
+  const bool is_solved = start && start->multipliers.lower.size() == run.problem.variables() &&
+                         certificate::complementarity(run.problem, start->w) <= options.tolerance;
+  return is_solved && !wants_relaxed ? FirstProblem::branch : FirstProblem::relaxed;
+}
+
 /// The branch of the start's sides, if it has a solution. Where a limit ends it, its point is kept if it is more nearly
 /// feasible than the start.
 bool solve_first_branch(Run& run, const linalg::Vector& w) {
   linalg::Vector c(run.problem.rows());
   run.problem.functions(w, c);
   const auto sides = crossover::smaller_sides(run.problem, run.groups, c);
-  auto branch = run.solve_branch(sides, w, start_iterations, "sides of the start");
+  const int most = run.options.first == FirstProblem::branch ? start_iterations : near_iterations;
+  auto branch = run.solve_branch(sides, w, most, "sides of the start");
   const bool is_better = run.is_over() && std::max(branch.primal_infeasibility, branch.complementarity_residual) <
                                               infeasibility_of(run.problem, w);
   if (!is_better && !branch.is_feasible(run.options.tolerance)) return false;
   if (!std::isfinite(branch.objective)) return false;
   run.branch = std::move(branch);
   return true;
+}
+
+/// A start that was taken for a solution, and is none: the problem is another one, and its sides are kept for the case
+/// that nothing else is found.
+bool is_still_solution(Run& run) {
+  if (remains(run)) return true;
+  run.refused = std::move(run.branch);
+  run.branch.reset();
+  return false;
 }
 
 bool has_small_residuals(const result::Certificate& certificate, double tolerance) {
@@ -141,16 +166,19 @@ Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver
 
   Run run(problem, nlp, lpcc, options);
   run.relaxed.point.w = from.w;
-  const bool is_on_branch = options.first == FirstProblem::branch  ? solve_first_branch(run, from.w)
-                            : options.first == FirstProblem::modes ? solve_modes(run, from.w)
-                                                                   : false;
+  const FirstProblem first = first_problem(run, start);
+  const bool has_branch = first == FirstProblem::branch  ? solve_first_branch(run, from.w)
+                          : first == FirstProblem::modes ? solve_modes(run, from.w)
+                                                         : false;
+  const bool is_descended = has_branch && options.first == FirstProblem::automatic && is_still_solution(run);
+  const bool is_on_branch = is_descended || (has_branch && options.first != FirstProblem::automatic);
   const auto others = start ? std::vector<mpcc::NamedStart>() : problem.other_starts();
   const PathEnd end = is_on_branch ? PathEnd::crossed_over : follow_paths(run, from, others);
   if (options.crossover && end != PathEnd::crossed_over && end != PathEnd::stopped) rescue(run);
   if (!run.branch) run.branch = std::move(run.refused);
   Solution& solution = run.solution;
   if (run.branch) {
-    descend(run);
+    if (!is_descended) descend(run);
     appraise(run);
     solution.crossed_over = true;
     solution.w = run.branch->w;

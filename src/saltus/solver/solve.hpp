@@ -21,9 +21,10 @@ namespace saltus::solver {
 
 /// Names the problem that a solution begins with.
 enum class FirstProblem {
-  relaxed,  ///< that of the first sigma
-  branch,   ///< that of the sides of the start, which are right where it is a solution of a similar problem
-  modes,    ///< likewise, but sides that lead to no solution are changed: those of a motion that is only similar
+  automatic,  ///< `branch` for a start that solves a similar problem, else `relaxed`
+  relaxed,    ///< that of the first sigma
+  branch,     ///< that of the sides of the start, which are right where it is a solution of a similar problem
+  modes,      ///< likewise, but sides that lead to no solution are changed: those of a motion that is only similar
 };
 
 /// Holds what one thread solves with.
@@ -43,7 +44,7 @@ struct SolveOptions {
   /// are solved in one loop: the schedule's over its factor squared (100), and times its factor (0.1).
   std::optional<double> sigma_initial{};
   homotopy::WarmStart warm_start = homotopy::WarmStart::primal;
-  FirstProblem first = FirstProblem::relaxed;
+  FirstProblem first = FirstProblem::automatic;
   bool crossover = true;
   /// The start itself, and others by seeds 1, 2, ...: all of them. Nothing: one after the other, until one is
   /// completed.
@@ -85,7 +86,8 @@ struct Solution {
   double evaluation_seconds = 0.0, solver_seconds = 0.0;
 };
 
-/// Says where to begin; multipliers may be empty.
+/// Says where to begin; multipliers may be empty. With multipliers, and pairs that are complementary, it is taken as a
+/// solution of a similar problem (FirstProblem::automatic).
 struct Start {
   linalg::Vector w;
   MpccMultipliers multipliers;

@@ -282,6 +282,56 @@ TEST(Solve, ABranchOfTheStartIsKeptWhereALimitEndsIt) {
   EXPECT_GT(solution.certificate.primal_infeasibility, 1e-8);
 }
 
+bool has_relaxed(const Solution& solution) {
+  return std::any_of(solution.homotopy.begin(), solution.homotopy.end(),
+                     [](const auto& step) { return step.phase == result::HomotopyPhase::relaxed; });
+}
+
+/// min (w0 - a)^2 + (w1 - b)^2, 0 <= w0, 0 <= w1, one of them 0.
+Solution solved_again(double a, double b, const Start& start, const SolveOptions& options = {}) {
+  mpcc::PolynomialProblem problem(
+      small::statement(2, 1, {{{1.0, {2}}, {-2.0 * a, {1}}, {1.0, {0, 2}}, {-2.0 * b, {0, 1}}}}));
+  adapters::IpoptSolver ipopt;
+  adapters::HighsLpcc highs;
+  auto solution = solve(problem, ipopt, highs, options, start);
+  EXPECT_TRUE(solution.has_value());
+  return solution ? std::move(*solution) : Solution{};
+}
+
+TEST(Solve, AStartThatSolvesASimilarProblemIsTakenAsASolution) {
+  const Solution first = solved_again(2.0, 1.0, {.w = linalg::Vector{1.0, 1.0}, .multipliers = {}});
+  EXPECT_TRUE(has_relaxed(first)) << log_of(first);
+  const Solution next = solved_again(2.5, 1.0, {.w = first.w, .multipliers = first.multipliers});
+  EXPECT_FALSE(has_relaxed(next)) << log_of(next);
+  EXPECT_EQ(next.termination, Termination::completed) << log_of(next);
+  EXPECT_NEAR(next.w[0], 2.5, 1e-8);
+}
+
+/// (0, 1) first; then the branch of w0 = 0 ends in (0, 0), and (3, 0) beside it is better.
+TEST(Solve, AStartWhoseActiveSetIsNotTheBestIsLeft) {
+  const Solution first = solved_again(-1.0, 1.0, {.w = linalg::Vector{0.5, 0.5}, .multipliers = {}});
+  ASSERT_NEAR(first.w[1], 1.0, 1e-8) << log_of(first);
+  const Solution next = solved_again(3.0, -1.0, {.w = first.w, .multipliers = first.multipliers});
+  EXPECT_EQ(next.homotopy.front().message, "sides of the start") << log_of(next);
+  EXPECT_TRUE(has_relaxed(next)) << log_of(next);
+  EXPECT_EQ(next.termination, Termination::completed) << log_of(next);
+  EXPECT_NEAR(next.w[0], 3.0, 1e-8) << log_of(next);
+}
+
+TEST(Solve, OtherStartsBeginWithRelaxedProblems) {
+  const Solution first = solved_again(2.0, 1.0, {.w = linalg::Vector{1.0, 1.0}, .multipliers = {}});
+  const Start point{.w = first.w, .multipliers = {}},
+      beside{.w = linalg::Vector{2.0, 0.5}, .multipliers = first.multipliers};
+  EXPECT_TRUE(has_relaxed(solved_again(2.5, 1.0, point)));
+  EXPECT_TRUE(has_relaxed(solved_again(2.5, 1.0, beside)));
+  SolveOptions options;
+  options.sigma_initial = 1e-3;
+  EXPECT_TRUE(has_relaxed(solved_again(2.5, 1.0, {.w = first.w, .multipliers = first.multipliers}, options)));
+  options.sigma_initial.reset();
+  options.first = FirstProblem::relaxed;
+  EXPECT_TRUE(has_relaxed(solved_again(2.5, 1.0, {.w = first.w, .multipliers = first.multipliers}, options)));
+}
+
 TEST(Solve, EveryProblemIsReported) {
   mpcc::PolynomialProblem problem(small::minimum_on_one_axis());
   SolveOptions options;

@@ -40,8 +40,9 @@ constexpr double most_iterations = std::numeric_limits<int>::max();
 
 constexpr Choices<Strategy, 2> strategies{{"structured", "ipopt"}, {Strategy::structured, Strategy::ipopt}};
 constexpr Choices<Steering, 3> steerings{{"direct", "l1", "linf"}, {Steering::direct, Steering::l1, Steering::linf}};
-constexpr Choices<FirstProblem, 3> first_problems{{"relaxed", "branch", "modes"},
-                                                  {FirstProblem::relaxed, FirstProblem::branch, FirstProblem::modes}};
+constexpr Choices<FirstProblem, 4> first_problems{
+    {"auto", "relaxed", "branch", "modes"},
+    {FirstProblem::automatic, FirstProblem::relaxed, FirstProblem::branch, FirstProblem::modes}};
 constexpr Choices<WarmStart, 2> warm_starts{{"primal", "primal_dual"}, {WarmStart::primal, WarmStart::primal_dual}};
 
 /// Their names stand beside the relaxations themselves.
@@ -83,7 +84,9 @@ const std::array fields_of_mpcc{
         "first",
         "The problem that is solved first: the relaxed one of sigma_initial; that of the sides of the start, for a "
         "start at a result of a similar problem; or that of the modes of the states that initial_guess states, with a "
-        "price on what they cannot do, which changes them."),
+        "price on what they cannot do, which changes them. auto: branch, where the start is a stored result that was "
+        "solved with the same intervals and elements, and neither sigma_initial nor compared_starts is given; else "
+        "relaxed."),
     truth_field<crossover_of, SolveOptions>(
         "crossover",
         "Problems with one side of every pair fixed, after the relaxed ones: exact zeros, and a certificate."),
