@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import collections.abc
 import functools
 import html
 import typing
@@ -26,6 +27,8 @@ if typing.TYPE_CHECKING:
 
     from ._keywords import OptimizeOptions, SweepCall
 
+#: What the names of an array begin with, or these names.
+Names = typing.Union[str, collections.abc.Sequence[str]]
 Entries = typing.Union[np.ndarray[typing.Any, typing.Any], list[typing.Any], tuple[typing.Any, ...]]
 
 
@@ -115,21 +118,25 @@ class Builder(Structure):
         beside = {"lower": lower, "upper": upper, "free": free or None, "unit": unit, "label": label}
         return self._declare("states", name, self._value("initial", initial, beside))
 
-    def states(self, name: str, initial: typing.Any, **beside: typing.Any) -> _array.Array:
-        """Several states as an array of the shape of the initial values: NAME1, NAME2, …; of two axes NAME1_1, NAME1_2, ….
+    def states(self, name: Names, initial: typing.Any, **beside: typing.Any) -> _array.Array:
+        """Several states as an array of the shape of the initial values: NAME1, NAME2, …; of two axes NAME1_1, NAME1_2, …;
+        or with names of their own, a list of them.
 
         What is given beside them, as to :meth:`state`, is one value for all of them, or an array. Results know the array,
         too: ``r["x"]``, ``r.final["x"]``, ``r.plot(["x"])``, ``set={"x": [1, 0, 0]}``.
 
         >>> saltus.Builder("m").states("x", [1, 0, 0])
         Array([x1, x2, x3], dtype=object)
+        >>> x, z = saltus.Builder("m").states(["x", "z"], [0, 1])
+        >>> x + z
+        x+z
         >>> saltus.Builder("m").states("T", np.zeros((2, 2)), unit="K")
         Array([[T1_1, T1_2],
                [T2_1, T2_2]], dtype=object)
         """
         return self._array(self.state, name, initial, beside, "initial values", "[0] * 3")
 
-    def parameters(self, name: str, values: typing.Any, **beside: typing.Any) -> _array.Array:
+    def parameters(self, name: Names, values: typing.Any, **beside: typing.Any) -> _array.Array:
         """Several parameters as an array, named as :meth:`states` are.
 
         >>> m = saltus.Builder("m")
@@ -139,7 +146,7 @@ class Builder(Structure):
         """
         return self._array(self.parameter, name, values, beside, "values", "[1, 2]")
 
-    def controls(self, name: str, initial: typing.Any, **beside: typing.Any) -> _array.Array:
+    def controls(self, name: Names, initial: typing.Any, **beside: typing.Any) -> _array.Array:
         """Several controls as an array, named as :meth:`states` are.
 
         >>> saltus.Builder("m").controls("u", [0, 0], lower=-1, upper=[1, 2])
@@ -150,13 +157,17 @@ class Builder(Structure):
     def _array(
         self,
         declare: typing.Callable[..., Expression],
-        name: str,
+        name: Names,
         values: typing.Any,
         beside: dict[str, typing.Any],
         what: str,
         example: str,
     ) -> _array.Array:
+        if not isinstance(name, str) and np.shape(values) == ():
+            values = [values] * len(name)
         shape = np.shape(values)
+        if not isinstance(name, str) and shape != (len(name),):
+            raise refuse(f"{len(name)} names and {what} of shape {shape}", "one value for each name, or one for all of them")
         if len(shape) not in (1, 2) or 0 in shape:
             raise refuse(
                 f"{values!r} is no list of {what}, nor an array of one or two axes", f'm.{declare.__name__}s("{name}", {example})'
@@ -167,7 +178,8 @@ class Builder(Structure):
         except ValueError:
             wrong = next(key for key, value in beside.items() if np.shape(value) not in ((), shape))
             raise refuse(f"{wrong} has the shape {np.shape(beside[wrong])}", f"expected one value, or the shape {shape}") from None
-        made, names = np.empty(shape, dtype=object), entries(name, shape)
+        made = np.empty(shape, dtype=object)
+        names = entries(name, shape) if isinstance(name, str) else np.array(name, dtype=object)
         with self._all_or_nothing():
             for place in np.ndindex(*shape):
                 of_one = {key: value[place] for key, value in more.items()}

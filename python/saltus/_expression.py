@@ -239,7 +239,7 @@ def number_text(value: int | float) -> str:
 def _instead_of(value: typing.Any) -> str:
     """What to write for what is no expression."""
     if isinstance(value, str):
-        return "write what was given for the name, without quotes: x = m.state(\"x\", 0), then -x"
+        return "expressions are written without quotes, of what was given for the names: x = m.state(\"x\", 0), then -saltus.sign(x)"
     if isinstance(value, (bool, np.bool_)):
         return "write 1 or 0; a condition of the model is a comparison: x > 0"
     if np.ndim(value) > 0:

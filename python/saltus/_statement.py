@@ -17,10 +17,10 @@ from ._expression import Expression, Operand, expression, is_foreign, number, ow
 _PART = re.compile(r"§\d+§")
 Rates = typing.Mapping[typing.Any, Operand]
 Entries = dict[str, typing.Any]
-#: Names that the language has already.
-RESERVED = frozenset(
-    "t pi otherwise and or not if step sign abs max min floor mod initial sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 "
-    "sqrt hypot pow".split()
+#: Names that the language has already: words, and functions, which may name what no expression has.
+WORDS = frozenset("t pi otherwise and or not".split())
+FUNCTIONS = frozenset(
+    "if step sign abs max min floor mod initial sin cos tan asin acos atan atan2 sinh cosh tanh exp log log10 sqrt hypot pow".split()
 )
 
 
@@ -108,19 +108,21 @@ class Statement:
     # Names and owners ----------------------------------------------------------------------------------------------
 
     def _named(self, name: str | None) -> str | None:
-        """A name that may be used, of what others may be called like, too."""
+        """A name that may be used, of what others may be called like, too, and of what no expression has."""
         if name is not None:
-            self._check_name(name)
+            self._check_name(name, WORDS)
         return name
 
-    def _check_name(self, name: str) -> None:
+    def _check_name(self, name: str, reserved: typing.Container[str]) -> None:
         if not isinstance(name, str) or not name.isidentifier() or not name.isascii():
             raise refuse(f"{name!r} is no name", "letters, digits and _, with a letter first: \"x1\"")
-        if name in RESERVED:
+        if name in reserved:
             raise refuse(f"'{name}' is a word of the language", f"choose another name, e.g. {name}_")
 
-    def _take(self, name: str, taken: typing.Container[str] | None = None) -> None:
-        self._check_name(name)
+    def _take(
+        self, name: str, taken: typing.Container[str] | None = None, reserved: typing.Container[str] = WORDS | FUNCTIONS
+    ) -> None:
+        self._check_name(name, reserved)
         if name in (self._taken if taken is None else taken):
             raise refuse(f"the name '{name}' is taken", "every name of a model is declared once")
         self._taken.add(name)
@@ -168,28 +170,40 @@ class Statement:
         more = given(beside)
         return {main: own, **{name: self._own_all(entry) for name, entry in more.items()}} if more else own
 
-    def _name_in(self, part: str, name: Expression | str) -> str:
-        text = name.text if isinstance(name, Expression) else name
-        if isinstance(name, Expression):
-            self._own(name)
+    def _name_in(self, part: str, name: typing.Any) -> str:
+        """A declared name: as a text, or as its expression, of other packages, too."""
+        text = name if isinstance(name, str) else self._own(name).text
         if text not in self._parts[part]:
             known = ", ".join(self._parts[part]) or "none"
             raise refuse(f"'{text}' is none of the {part} of this builder", f"known: {known}")
         return text
 
-    def _state(self, state: Expression | str) -> str:
+    def _state(self, state: typing.Any) -> str:
         return self._name_in("states", state)
+
+    def _states(self, states: typing.Any) -> list[str]:
+        return [self._state(state) for state in vector_of(states)]
 
     def _rates(self, rates: Rates) -> dict[str, Expression]:
         if not isinstance(rates, typing.Mapping):
             raise refuse(f"expected a dict by states, found {rates!r}", "e.g. {x: -1}")
         return {self._state(state): self._own(number(value)) for state, value in rates.items()}
 
-    def _rates_or_none(self, rates: Rates | None) -> dict[str, Expression] | None:
-        return None if rates is None else self._rates(rates)
-
     def __repr__(self) -> str:
         return f"<saltus.Builder {self.name!r}: {', '.join(self._parts['states'])}>"
+
+
+def vector_of(value: typing.Any) -> list[typing.Any]:
+    """The entries of a list, or of a row or a column of any package.
+
+    >>> vector_of(np.array([[1, 2]]))
+    [1, 2]
+    """
+    found = entries_of(value)
+    entries = [value] if found is None and is_foreign(value) else list(value if found is None else found)
+    if len(entries) == 1 and isinstance(entries[0], (list, tuple, np.ndarray)):
+        return list(entries[0])
+    return entries
 
 
 def given(entries: Entries) -> Entries:

@@ -7,10 +7,13 @@ import typing
 
 import numpy as np
 
-from ._array import entries_of
+from ._array import entries_of, is_sparse
 from ._entries import least_squares, one_of
-from ._expression import Expression, Operand, refuse
-from ._statement import Entries, Rates, Statement, given
+from ._expression import Expression, Operand, is_foreign, refuse
+from ._statement import WORDS, Entries, Rates, Statement, given, vector_of
+
+#: By state, or in the order of the states that are meant.
+Coefficients = typing.Any
 
 
 class Structure(Statement):
@@ -87,17 +90,18 @@ class Structure(Statement):
 
     def mechanics(
         self,
-        positions: typing.Sequence[Expression | str],
-        velocities: typing.Sequence[Expression | str],
+        positions: typing.Any,
+        velocities: typing.Any,
         *,
         mass: typing.Any = None,
-        force: Rates | None = None,
+        force: Coefficients | None = None,
         potential: Operand = None,
         coriolis: str | None = None,
         draw: typing.Sequence[typing.Mapping[str, typing.Any]] | None = None,
     ) -> None:
-        """Moves positions and velocities by M(q) v' = force - grad potential; `force` by velocity. Without `mass` M is
-        the identity; it is a list of rows, or a matrix of NumPy, CasADi, SymPy or scipy.sparse. ``coriolis="auto"`` adds the terms of a mass matrix that depends on positions. `draw` lists lines
+        """Moves positions and velocities by M(q) v' = force - grad potential; `force` by velocity, or a vector in their
+        order. Without `mass` M is the identity; it is a list of rows, or a matrix of NumPy, CasADi, SymPy or scipy.sparse;
+        positions and velocities may be vectors of these, too. ``coriolis="auto"`` adds the terms of a mass matrix that depends on positions. `draw` lists lines
         and discs for the page of a report: ``[{"point": [0, y], "radius": 0.1}]``.
 
         >>> m = saltus.Builder("ball")
@@ -110,11 +114,12 @@ class Structure(Statement):
         if self._mechanics:
             raise refuse("the mechanics are stated twice", "state all positions and velocities at once")
         one_of("coriolis", coriolis, "auto", "none")
+        moving = self._states(velocities)
         entry = {
-            "positions": [self._state(name) for name in positions],
-            "velocities": [self._state(name) for name in velocities],
-            "mass": None if mass is None else self._matrix(mass, len(velocities)),
-            "force": self._rates_or_none(force),
+            "positions": self._states(positions),
+            "velocities": moving,
+            "mass": None if mass is None else self._matrix(mass, len(moving)),
+            "force": None if force is None else self._by_state("force", force, moving),
             "potential": self._own_or_none(potential),
             "coriolis": coriolis,
             "draw": None if draw is None else self._own_all(draw),
@@ -126,14 +131,15 @@ class Structure(Statement):
         name: str,
         gap: Operand,
         *,
-        tangent: Rates | None = None,
-        tangents: collections.abc.Sequence[Rates] | None = None,
+        tangent: Coefficients | None = None,
+        tangents: typing.Any = None,
         friction: Operand = None,
         restitution: Operand = None,
     ) -> None:
         """Bodies of :meth:`mechanics` that touch where `gap` is 0.
 
-        `tangent` has the coefficients of velocities by position; in space there are two of them, `tangents`.
+        `tangent` has the coefficients of velocities by position, or is a vector in the order of the positions, as the
+        Jacobian of the point that touches; in space there are two of them, `tangents`, a list or the rows of a matrix.
 
         >>> m = saltus.Builder("block")
         >>> x, y, u, v = m.state("x", 0), m.state("y", 0), m.state("u", 2), m.state("v", 0)
@@ -142,16 +148,33 @@ class Structure(Statement):
         >>> m.simulate(until=1).events[0]
         <stick of ground at t = 0.4>
         """
+        positions = self._mechanics.get("positions", [])
+        rows = None if tangents is None else entries_of(tangents)
         entry = {
             "name": name,
             "gap": self._own(gap),
-            "tangent": self._rates_or_none(tangent),
-            "tangents": None if tangents is None else [self._rates(one) for one in tangents],
+            "tangent": None if tangent is None else self._by_state("tangent", tangent, positions),
+            "tangents": None
+            if tangents is None
+            else [self._by_state("tangents", one, positions) for one in (tangents if rows is None else rows)],
             "friction": self._own_or_none(friction),
             "restitution": self._own_or_none(restitution),
         }
-        self._take(name)
+        self._take(name, reserved=WORDS)
         self._lists["contacts"].append(given(entry))
+
+    def _by_state(self, what: str, value: Coefficients, states: list[str]) -> dict[str, Expression]:
+        """Expressions by state; those of a vector, but for zeros, in the order of these states."""
+        if isinstance(value, collections.abc.Mapping):
+            return self._rates(value)
+        if not (isinstance(value, (list, tuple, np.ndarray)) or is_sparse(value) or is_foreign(value)):
+            raise refuse(f"{what}: expected a dict by states, or a vector in their order, found {value!r}", "e.g. {x: 1}")
+        if not states:
+            raise refuse(f"{what}: whose entries these are is not known", "state m.mechanics first, or give a dict: {x: 1}")
+        entries = [self._own(entry) for entry in vector_of(value)]
+        if len(entries) != len(states):
+            raise refuse(f"{what} has {len(entries)} entries", f"expected one for each of {', '.join(states)}, or a dict: {{{states[0]}: 1}}")
+        return {name: entry for name, entry in zip(states, entries) if entry.text.lstrip("-") not in ("0", "0.0")}
 
     def _matrix(self, mass: typing.Any, size: int) -> list[list[Expression]]:
         found = entries_of(mass)

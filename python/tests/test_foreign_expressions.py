@@ -39,6 +39,82 @@ def test_casadi_in_drawings_and_masses():
     assert b.simulate(until=1).events[0].kind == "impact"
 
 
+def slid(stated):
+    """A block in the plane on a floor that pushes and brakes it; `stated` says how positions and tangent are written."""
+    b = saltus.Builder("block")
+    names = b.states(["x", "z", "vx", "vz"], [0, 0, 2, 0])
+    stated(b, *names)
+    return b.to_toml(), b.simulate(until=1).final["x"]
+
+
+@pytest.mark.parametrize("package", ["casadi", "sympy", "numpy"])
+def test_mechanics_and_contacts_are_stated_by_vectors(package):
+    def by_dicts(b, x, z, vx, vz):
+        b.mechanics([x, z], [vx, vz], force={vz: -10, vx: 1})
+        b.contact("floor", gap=z, tangent={x: 1}, friction=0.5)
+
+    def by_vectors(b, *own):
+        if package == "casadi":
+            ca = pytest.importorskip("casadi")
+            x, z, vx, vz = map(ca.SX.sym, ("x", "z", "vx", "vz"))
+            q, v, force = ca.vertcat(x, z), ca.vertcat(vx, vz), ca.vertcat(1, -10)
+            tangent = ca.jacobian(x + 1, q)
+        elif package == "sympy":
+            sympy = pytest.importorskip("sympy")
+            x, z, vx, vz = sympy.symbols("x z vx vz")
+            q, v, force = sympy.Matrix([x, z]), sympy.Matrix([vx, vz]), sympy.Matrix([1, -10])
+            tangent = sympy.Matrix([x + 1]).jacobian(q)
+        else:
+            x, z, vx, vz = own
+            q, v, force, tangent = np.array([x, z]), np.array([vx, vz]), np.array([1, -10]), np.array([[1, 0]])
+        b.mechanics(q, v, force=force)
+        b.contact("floor", gap=z, tangent=tangent, friction=0.5)
+
+    expected, stated = slid(by_dicts), slid(by_vectors)
+    assert stated[1] == expected[1]
+    assert 'positions = ["x", "z"]' in stated[0] and "tangent = { x = 1 }" in stated[0]
+
+    def by_symbols(b, *own):
+        names = ("x", "z", "vx", "vz")
+        if package == "casadi":
+            own = [pytest.importorskip("casadi").SX.sym(name) for name in names]
+        elif package == "sympy":
+            own = pytest.importorskip("sympy").symbols(" ".join(names))
+        x, z, vx, vz = own
+        b.mechanics([x, z], [vx, vz], force={vx: 1, vz: -10})
+        b.contact("floor", gap=z, tangent={x: 1}, friction=0.5)
+
+    assert slid(by_symbols)[1] == expected[1]
+
+
+def test_tangents_are_the_rows_of_a_matrix():
+    casadi = pytest.importorskip("casadi")
+    texts = []
+    for rows in ([{"x": 1}, {"y": 1}], casadi.DM([[1, 0, 0], [0, 1, 0]]), np.eye(3)[:2]):
+        b = saltus.Builder("puck")
+        b.states(["x", "y", "z"], 0), b.states(["u", "v", "w"], [1, 1, 0])
+        b.mechanics(["x", "y", "z"], ["u", "v", "w"], force=[0, 0, -10])
+        b.contact("table", gap=casadi.SX.sym("z"), tangents=rows, friction=0.5)
+        texts.append(b.to_toml().replace("1.0", "1"))
+    assert texts[0] == texts[1] == texts[2]
+
+
+def test_vectors_that_do_not_fit_are_refused():
+    b = saltus.Builder("m")
+    x, z, vx, vz = b.states(["x", "z", "vx", "vz"], 0)
+    with pytest.raises(saltus.ModelError, match="state m.mechanics first"):
+        b.contact("floor", gap=z, tangent=[1, 0])
+    with pytest.raises(saltus.ModelError, match="force: expected a dict by states, or a vector in their order, found 3"):
+        b.mechanics([x, z], [vx, vz], force=3)
+    b.mechanics([x, z], [vx, vz])
+    with pytest.raises(saltus.ModelError, match="tangent has 3 entries"):
+        b.contact("floor", gap=z, tangent=[1, 0, 0])
+    with pytest.raises(saltus.ModelError, match="2 names and initial values of shape"):
+        b.states(["a", "b"], [1, 2, 3])
+    with pytest.raises(saltus.ModelError, match="saltus.sign"):
+        b.contact("floor", gap="z")
+
+
 @pytest.mark.parametrize("make", ["casadi", "numpy", "sympy", "scipy", "lists"])
 def test_a_mass_is_a_matrix_of_any_package(make):
     if make == "casadi":

@@ -43,7 +43,20 @@ def test_a_model_without_states_is_told_before_its_end():
     assert "no end time" in said_by(b.simulate)
 
 
-@pytest.mark.parametrize("name", ["floor", "left wall", "1st", "wall-left", "otherwise", "bounce é"])
+def test_what_no_expression_has_may_be_called_like_a_function():
+    b = saltus.Builder("m")
+    x, v = b.state("x", 1), b.state("v", 0)
+    b.mechanics([x], [v], force={v: -9.81})
+    b.contact("floor", gap=x, restitution=0.5)
+    b.event(v, name="max", direction="down")
+    r = b.simulate(until=0.8)
+    assert [(e.kind, e.name) for e in r.events if e.kind in ("impact", "user")] == [("impact", "floor"), ("user", "max")]
+    assert r["gap(floor)"].min() >= -1e-12
+    with pytest.raises(saltus.ModelError, match="'floor' is a word of the language"):
+        b.parameter("floor", 1)
+
+
+@pytest.mark.parametrize("name", ["left wall", "1st", "wall-left", "otherwise", "bounce é"])
 def test_names_that_may_not_be_used_are_told_where_they_are_declared(name):
     b = saltus.Builder("m")
     x, v = b.state("x", 1), b.state("v", 0)

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,18 +16,29 @@ constexpr EnumNames<NameKind::contact> kinds_with_article("a parameter", "a stat
                                                           "a switching function", "an output", "an event", "a jump",
                                                           "a table", "a hysteresis", "a contact");
 
+/// Names that no expression has: functions are written as they are, whatever is called like one of them.
+bool is_label(NameKind kind) { return kind == NameKind::event || kind == NameKind::jump || kind == NameKind::contact; }
+
+bool names_function(const std::string& name) {
+  const auto& known = expression::functions();
+  return std::any_of(known.begin(), known.end(), [&](const auto& function) { return function.name == name; });
+}
+
 }  // namespace
 
 std::string with_article(NameKind kind) { return std::string(kinds_with_article(kind)); }
 
 std::optional<Error> NameTable::declare(const std::string& name, const Meaning& meaning) {
-  if (expression::is_reserved(name)) {
-    return Error{
-        ErrorCode::invalid_model,
-        fmt::format("'{}' is reserved and cannot name {}", name, with_article(meaning.kind)),
-        "t, pi, otherwise, and, or, not and the names of functions have their fixed meaning; choose another name",
-        meaning.location,
-        {}};
+  if (expression::is_reserved(name) && !(is_label(meaning.kind) && names_function(name))) {
+    const char* remedy =
+        is_label(meaning.kind)
+            ? "t, pi, otherwise, and, or, not have their fixed meaning; choose another name"
+            : "t, pi, otherwise, and, or, not and the names of functions have their fixed meaning; choose another name";
+    return Error{ErrorCode::invalid_model,
+                 fmt::format("'{}' is reserved and cannot name {}", name, with_article(meaning.kind)),
+                 remedy,
+                 meaning.location,
+                 {}};
   }
   if (!expression::is_identifier(name)) {
     return Error{ErrorCode::invalid_model,

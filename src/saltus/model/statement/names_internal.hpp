@@ -39,7 +39,8 @@ inline constexpr const char* clock_name = "frozen.clock";
 
 class NameTable {
  public:
-  /// Refuses names that are reserved, not made of letters, digits and underscores, or taken.
+  /// Refuses names that are reserved, not made of letters, digits and underscores, or taken. Events, jumps and contacts
+  /// may be called like a function (a contact "floor"): they occur in no expression.
   [[nodiscard]] std::optional<Error> declare(const std::string& name, const Meaning& meaning);
   [[nodiscard]] const Meaning* find(const std::string& name) const;
   /// Returns names of these kinds, in alphabetical order.
