@@ -7,6 +7,7 @@
 #include <saltus/base/symbolic_lock.hpp>
 #include <saltus/io/json/json_result.hpp>
 #include <saltus/model/builder.hpp>
+#include <saltus/model/places.hpp>
 #include <saltus/pipeline/options/stated_run.hpp>
 #include <saltus/pipeline/simulate.hpp>
 #include <saltus/pipeline/sweep.hpp>
@@ -29,7 +30,7 @@ T value(saltus::Expected<T> expected) {
   return std::move(*expected);
 }
 
-// A mass on a spring, braked by dry friction: parameter 0 is mu.
+// A mass on a spring, braked by dry friction.
 saltus::Expected<model::System> brake(double mu_value) {
   model::Builder m("brake");
   const auto mu = m.parameter("mu", mu_value), x = m.state("x", {0.0}), v = m.state("v", {3.0});
@@ -41,9 +42,10 @@ saltus::Expected<model::System> brake(double mu_value) {
 // [many runs]
 // Where it comes to rest, for each mu. What is computed does not depend on the number of threads.
 std::vector<double> swept(const model::System& system, const std::vector<double>& mu) {
+  const std::size_t place = value(model::parameter_place(system, "mu"));
   const auto state = [&](std::size_t run) -> saltus::Expected<pipeline::StatedRun> {
     pipeline::StatedRun stated{system, {.until = 30.0}};
-    stated.system.parameter_values[0] = mu[run];
+    stated.system.parameter_values[place] = mu[run];
     return stated;
   };
   const auto outcome = value(pipeline::sweep({.runs = mu.size(), .jobs = 2}, state));
@@ -56,6 +58,7 @@ std::vector<double> swept(const model::System& system, const std::vector<double>
 std::vector<double> in_threads(const model::System& system, const std::vector<double>& mu) {
   pipeline::KernelStore kernels;
   std::vector<double> rest(mu.size(), std::nan(""));
+  const std::size_t place = value(model::parameter_place(system, "mu"));
   const auto work = [&](std::size_t begin, std::size_t end) {
     std::optional<model::System> own;
     {
@@ -63,7 +66,7 @@ std::vector<double> in_threads(const model::System& system, const std::vector<do
       own = system;
     }
     for (std::size_t run = begin; run < end; ++run) {
-      own->parameter_values[0] = mu[run];
+      own->parameter_values[place] = mu[run];
       if (const auto result = pipeline::simulate(*own, {.until = 30.0}, {}, &kernels)) rest[run] = result->final.x[0];
     }
     const saltus::SymbolicLock lock;
@@ -99,7 +102,7 @@ int main() {
 
   // Without friction nothing jumps: a system that was built for it cannot be given some.
   auto frictionless = value(brake(0));
-  frictionless.parameter_values[0] = 2;
+  frictionless.parameter_values[value(model::parameter_place(frictionless, "mu"))] = 2;
   if (const auto refused = pipeline::simulate(frictionless, options); !refused) {
     std::puts(saltus::to_text(refused.error()).c_str());
   }

@@ -41,10 +41,8 @@ def environment():
 def copy_pages():
     shutil.rmtree(SOURCE, ignore_errors=True)
     shutil.copytree(ROOT / "docs", SOURCE)
-    shutil.copytree(ROOT / "examples/01_first_simulation", SOURCE / "examples", ignore=shutil.ignore_patterns("*.md"))
-    shutil.copy(ROOT / "tests/optimal_control/builder_test.cpp", SOURCE / "examples")
-    shutil.copy(ROOT / "examples/03_embedded/main.cpp", SOURCE / "examples/embedded.cpp")
-    shutil.copy(ROOT / "examples/03_embedded/CMakeLists.txt", SOURCE / "examples/embedded.cmake")
+    # Pages name programs as they are beside docs/ in the source tree and in installations.
+    shutil.copytree(ROOT / "examples", SOURCE.parent / "examples", dirs_exist_ok=True)
     for name, page in (("CHANGELOG.md", "changes.md"), ("ARCHITECTURE.md", "architecture.md")):
         text = (ROOT / name).read_text().replace("](docs/adr)", "](decisions.md)").replace("](docs/", "](")
         # What the source tree has, and the site has not, is named without a link.

@@ -86,6 +86,11 @@ foreach(expected "x\\(0.5\\) = 1\\.22" "the same end: yes" "the same in threads:
   endif()
 endforeach()
 
+build_and_run(optimal_control ${source_dir}/examples/04_optimal_control)
+if(NOT output MATCHES "completed: T = 13\\.3333.*completed: T = 13\\.[0-9]+ with 210")
+  message(FATAL_ERROR "examples/04_optimal_control printed\n${output}")
+endif()
+
 foreach(file LICENSE CITATION.cff docs/python.md examples/01_first_simulation/main.cpp)
   if(NOT EXISTS ${work_dir}/prefix/share/doc/saltus/${file})
     message(FATAL_ERROR "share/doc/saltus/${file} was not installed")

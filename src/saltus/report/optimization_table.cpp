@@ -92,8 +92,8 @@ std::string optimization_statistics(const result::Optimization& optimization) {
   auto text = paragraph("size", fmt::format("{} variables, {} equations, {} pairs", statistics.variables,
                                             statistics.equations, statistics.pairs));
   text += starts_table(optimization.starts);
-  text += paragraph("statistics", fmt::format("{} problem{}{}, {} iterations; {:.3g} s (building {:.2g}, functions "
-                                              "{:.2g}, linear algebra {:.2g})",
+  text += paragraph("statistics", fmt::format("{} problem{}{}, {} iterations; {:.3g} s (building {:.2g}; in all "
+                                              "threads together: functions {:.2g}, linear algebra {:.2g})",
                                               solved, solved == 1 ? "" : "s",
                                               kinds.empty() ? "" : fmt::format(" ({})", fmt::join(kinds, ", ")),
                                               statistics.iterations, statistics.wall_seconds, statistics.build_seconds,

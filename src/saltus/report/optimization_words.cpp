@@ -210,7 +210,13 @@ std::vector<Finding> certificate_findings(const result::Certificate& certificate
 }
 
 std::vector<Finding> certificate_findings(const result::Result& result) {
-  auto findings = certificate_findings(result.optimization->certificate, residual_tolerance(result.options));
+  const auto& certificate = result.optimization->certificate;
+  auto findings = certificate_findings(certificate, residual_tolerance(result.options));
+  if (certificate.licq == false && !result.contacts.empty()) {
+    findings.push_back({Finding::Tone::neutral,
+                        "That is usual while a contact stays closed: its gap and the rate of the gap are both zero, so "
+                        "that equations repeat each other. Nothing has to be changed."});
+  }
   for (auto& finding : multiplier_findings(result.optimization->multipliers)) findings.push_back(std::move(finding));
   return findings;
 }

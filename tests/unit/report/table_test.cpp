@@ -239,10 +239,17 @@ TEST(Table, SaysWhichMultipliersAreNotUnique) {
   optimization.certificate.dependent = {"v == 0", "q == 200"};
   optimization.certificate.sosc = false;
   optimization.certificate.other_sides_tried = false;
-  std::string text = to_table(r);
-  for (std::size_t end = text.find("\n  "); end != std::string::npos; end = text.find("\n  ")) {
-    text.replace(end, text.find_first_not_of(' ', end + 1) - end, " ");
-  }
+  const auto unwrapped = [&] {
+    std::string text = to_table(r);
+    for (std::size_t end = text.find("\n  "); end != std::string::npos; end = text.find("\n  ")) {
+      text.replace(end, text.find_first_not_of(' ', end + 1) - end, " ");
+    }
+    return text;
+  };
+  const std::string text = unwrapped(), usual = "That is usual while a contact stays closed";
+  EXPECT_EQ(text.find(usual), std::string::npos) << text;
+  r.contacts = {"ground"};
+  EXPECT_NE(unwrapped().find(usual), std::string::npos) << unwrapped();
   for (const char* part : {"The multiplier of `q == 200` at t = ", "is not unique: at most 2; 1 more is not.",
                            "2 of them are combinations of others (`v == 0`, `q == 200`)", "NOT second-order sufficient",
                            "Not every other way to write this point was tried"}) {

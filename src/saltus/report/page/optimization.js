@@ -86,8 +86,8 @@ saltus.optimizationStatistics = (result) => {
     ["problems solved", number(homotopy.length)], ["iterations", number(statistics.iterations)],
     ["variables", number(statistics.variables)], ["equations", number(statistics.equations)],
     ["complementarities", number(statistics.pairs)], ["building the problem", seconds(statistics.build_seconds)],
-    ["functions and derivatives", seconds(statistics.evaluation_seconds)],
-    ["linear algebra", seconds(statistics.linear_algebra_seconds)], ["wall time", seconds(statistics.wall_seconds)]
+    ["functions and derivatives, all threads", seconds(statistics.evaluation_seconds)],
+    ["linear algebra, all threads", seconds(statistics.linear_algebra_seconds)], ["wall time", seconds(statistics.wall_seconds)]
   ];
 };
 
