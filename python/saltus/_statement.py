@@ -196,7 +196,7 @@ class Statement:
 def vector_of(value: typing.Any) -> list[typing.Any]:
     """The entries of a list, or of a row or a column of any package.
 
-    >>> vector_of(np.array([[1, 2]]))
+    >>> vector_of([[1, 2]])
     [1, 2]
     """
     found = entries_of(value)
