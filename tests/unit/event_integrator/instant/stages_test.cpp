@@ -142,11 +142,30 @@ TEST(SwitchStage, WhatIsLocatedIsTouchedAndDecided) {
   ASSERT_TRUE(collect_surfaces(context, zero, 0.0));
   EXPECT_EQ(context.out.switching_point.touched, std::vector<int>{0});
   EXPECT_EQ(context.out.switching_point.at_zero, std::vector<int>{0});
-  const ModeState& from = touch_others(context);
+  const ModeState& from = mode_before(context);
   EXPECT_EQ(&from, &context.out.before);
   decide_touched(context, from, at.resolver.single(), at.resolver.pair());
   EXPECT_EQ(context.out.transition.state.mode, std::vector<int>{0});
   EXPECT_EQ(at.mode(), std::vector<int>{-1});  // nothing is entered
+}
+
+// What is slid on steps away in time: its new sign is read, as after a jump.
+TEST(CellStage, WhatTimeMovesIsDecidedAsAfterAJump) {
+  Builder model("stepped");
+  const SX x = model.state("x", {0.0});
+  const SX reference = model.step(model.time() - 1.0);
+  model.dynamics("x", 0.5 - model.sign(x - reference));
+  Instants at(model);
+  ASSERT_TRUE(at.resolver.start());
+  ASSERT_EQ(at.mode(), (std::vector<int>{-1, 0}));
+  const Located step = at.located(1.0, {0.0}, {{FunctionKind::surface, 0}});
+  at.run.here.move_to(step.t, step.x.data());
+  const auto context = at.context();
+  arrive(context, false);
+  ASSERT_TRUE(collect_surfaces(context, step, 0.0));
+  ASSERT_TRUE(time_moves_surfaces(context));
+  ASSERT_TRUE(decide_behind_times(context));
+  EXPECT_EQ(context.out.transition.state.mode, (std::vector<int>{1, -1}));
 }
 
 TEST(InstantRows, AnInstantHasARowBeforeItAndBehindIt) {
