@@ -37,7 +37,8 @@ int main() {
   auto first = value(pipeline::optimize(value(turbo_car(200)), options));
   const auto& found = *first.optimization;
   std::printf("%s: T = %.4f\n", std::string(name(first.status.termination)).c_str(), found.horizon);
-  for (std::size_t k = 0; k < found.u.size(); ++k) std::printf("from t = %.4f: u = %.4f\n", found.grid[k], found.u[k][0]);
+  for (std::size_t k = 0; k < found.u.size(); ++k)
+    std::printf("from t = %.4f: u = %.4f\n", found.grid[k], found.u[k][0]);
 
   // A start that solves a similar problem is taken as a solution: its mode sequence comes first.
   const int cold = found.statistics.iterations;

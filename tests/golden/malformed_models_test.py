@@ -58,6 +58,7 @@ class MalformedModels(tool.ToolTest):
                 ("m.fmu", b"PK\x03\x04\x14\x00\x00", "this is an FMU", "#modelica"),
                 ("A.mo", "model A\n  Real x;\nend A;\n", "this is Modelica", "#modelica"),
                 ("m.slx", b"PK\x03\x04\x14\x00\x00", "this is a model of Simulink", "#matlab-simulink-stateflow"),
+                ("pendulum.m", "dx = @(t, x) -x;\n", "this is a program of MATLAB", "#matlab-simulink-stateflow"),
                 ("arm.xml", "<mujoco></mujoco>\n", "this is a robot's XML", "#drake-mujoco")):
             with self.subTest(name):
                 self.write(name, content)

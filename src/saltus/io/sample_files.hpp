@@ -17,12 +17,16 @@ struct Columns {
   std::vector<int> lines;
 };
 
+/// Says what the two columns are: samples of an input over time, or points of a table over anything.
+enum class ColumnsOf { input, table };
+
 /// Reads two columns of numbers, separated by commas, semicolons, tabs or spaces; empty lines and lines that begin with
-/// # are skipped. A first line without numbers is a header; with it there may be more columns, of which the first one
-/// and the one named `second` are taken (the second one if there are just two). Fails with the file's own line: what is
-/// no number, wrong number of columns, no such column.
-[[nodiscard]] Expected<Columns> parse_columns(std::string_view text, const std::string& file,
-                                              const std::string& second);
+/// # are skipped. A first line without numbers is a header, whose names count: `second` is the column of the values,
+/// t, time or times that of the times (of a table x, too), in any order, and others are skipped. Of two columns one
+/// name is enough, of an input that of the values; columns of a table that have other names are x and y in this order.
+/// Fails with the file's own line: what is no number, wrong number of columns, no such column.
+[[nodiscard]] Expected<Columns> parse_columns(std::string_view text, const std::string& file, const std::string& second,
+                                              ColumnsOf of);
 
 /// Returns the mistake that was found in the columns, with the line of its row.
 [[nodiscard]] Error located(const model::PointMistake& mistake, const Columns& columns);

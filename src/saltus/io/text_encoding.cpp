@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <utility>
@@ -49,7 +50,38 @@ Expected<void> check_characters(std::string_view text, const std::string& file) 
   return {};
 }
 
+/// What is known by its first bytes, after "this is"; empty if nothing is.
+std::string_view binary_format(std::string_view text, std::string_view file) {
+  struct Format {
+    std::string_view begins, what;
+  };
+  if (text.starts_with("PK\x03\x04") && file.ends_with(".xlsx")) return "a workbook of Excel";
+  for (const auto& [begins, what] :
+       std::array{Format{"PK\x03\x04", "a zip archive, as .xlsx and .npz files are"},
+                  Format{"MATLAB 5.0 MAT-file", "a MAT-file"}, Format{"MATLAB 7.3 MAT-file", "a MAT-file"},
+                  Format{"\x89HDF", "an HDF5 file"}, Format{"\x93NUMPY", "an array of NumPy"},
+                  Format{"PAR1", "a Parquet file"}, Format{"\xD0\xCF\x11\xE0", "an old file of Excel or Word"}}) {
+    if (text.starts_with(begins)) return what;
+  }
+  return {};
+}
+
 }  // namespace
+
+Expected<void> check_is_text(std::string_view text, const std::string& file, std::string_view remedy) {
+  const SourceLocation whole{file, 0, 0};
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    return tl::unexpected(not_readable(whole, "the file is UTF-16", "save it as UTF-8"));
+  }
+  if (const auto known = binary_format(text, file); !known.empty()) {
+    return tl::unexpected(not_readable(whole, fmt::format("this is {}", known), std::string(remedy)));
+  }
+  if (const auto place = text.find('\0'); place != std::string_view::npos) {
+    return tl::unexpected(
+        not_readable(whole, fmt::format("this is no text file: byte {} is 0", place), std::string(remedy)));
+  }
+  return {};
+}
 
 Expected<void> check_encoding(std::string_view text, const std::string& file) {
   const SourceLocation whole{file, 0, 0};
@@ -58,13 +90,7 @@ Expected<void> check_encoding(std::string_view text, const std::string& file) {
     return tl::unexpected(not_readable(whole, "the file is empty",
                                        "a model needs at least [model] with a name, [states] and [dynamics]"));
   }
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    return tl::unexpected(not_readable(whole, "the file is UTF-16", "save it as UTF-8"));
-  }
-  if (const auto place = text.find('\0'); place != std::string_view::npos) {
-    return tl::unexpected(not_readable(whole, fmt::format("this is no text file: byte {} is 0", place),
-                                       "a model file is TOML: text in UTF-8"));
-  }
+  if (auto is_text = check_is_text(text, file, "a model file is TOML: text in UTF-8"); !is_text) return is_text;
   return check_characters(text, file);
 }
 

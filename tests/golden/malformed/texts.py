@@ -14,6 +14,8 @@ FILES = {
     "random bytes without zero": (bytes(1 + byte % 255 for byte in random.Random(5).randbytes(4096)), "1:4",
                                   "not valid UTF-8: byte 3 is 0xA0"),
     "zero byte at the end": (GOOD.encode() + b"\x00", None, "this is no text file", f"byte {len(GOOD)} is 0"),
+    "MAT-file": (b"MATLAB 5.0 MAT-file, Platform: GLNXA64\x00\x01", None, "this is a MAT-file", "a model file is TOML"),
+    "zip archive": (b"PK\x03\x04\x14\x00", None, "this is a zip archive", "a model file is TOML"),
     "utf-16": (GOOD.encode("utf-16"), None, "UTF-16", "save it as UTF-8"),
     "utf-16 the other way round": (b"\xfe\xff" + GOOD.encode("utf-16-be"), None, "UTF-16"),
     "latin-1": (GOOD.encode() + b"# \xe9t\xe9\n", 13, "not valid UTF-8", "save it as UTF-8"),

@@ -78,10 +78,15 @@ TEST_F(Tables, MistakesInFilesHaveTheLineOfTheFile) {
            Case{"", 0, "at least 2 points"},
            Case{"s,h,w\n0,0,0\n", 1, "expected a column 'road'"},
            Case{"0,0\n1,1e999\n", 2, "expected a number"},
+           Case{"0,5;1,5\n1;2\n", 1, "expected a number, found '0,5'"},
+           Case{"0,0\n1,2,\n", 2, "expected 2 columns as before, found 3\n  end no line with a separator"},
+           Case{"PK\x03\x04\n", 0, "this is a zip archive"},
+           Case{"MATLAB 5.0 MAT-file, Platform: GLNXA64\n", 0, "this is a MAT-file"},
+           Case{"\xFF\xFEt\n", 0, "the file is UTF-16"},
        }) {
     write("road.csv", content);
     const auto error = refused("[tables.road]\nfile = 'road.csv'\n");
-    EXPECT_NE(error.message.find(message), std::string::npos) << content << to_text(error);
+    EXPECT_NE((error.message + "\n  " + error.remedy).find(message), std::string::npos) << content << to_text(error);
     EXPECT_EQ(error.location.line, line) << content;
     EXPECT_EQ(fs::path(error.location.file).filename(), "road.csv") << content;
     ASSERT_FALSE(error.context.empty());
@@ -112,6 +117,44 @@ TEST_F(Tables, SamplesOfAnInput) {
   EXPECT_TRUE(expression->description.sampled_inputs.empty());
   EXPECT_EQ(expression->description.inputs.size(), 1U);
   EXPECT_FALSE(with_setting(*model, "simulate.inputs.u.fil", "v.csv").has_value());
+}
+
+/// A name says which column is which wherever it stands.
+TEST_F(Tables, NamesInAHeaderSayWhichColumnsAreTaken) {
+  const std::string with_input =
+      "[tables.road]\nx = [0, 1]\ny = [0, 1]\n[simulate]\nuntil = 3\ninputs = { u = { file = 'u.csv' } }\n";
+  for (const std::string names : {"u,t\n", "u,time\n", "u,s\n", "\"u\",\"t\"\n"}) {
+    write("u.csv", names + "0.5,0\n1.5,1\n");
+    const auto model = parse(with_input);
+    ASSERT_TRUE(model.has_value()) << names << to_text(model.error());
+    EXPECT_EQ(model->description.sampled_inputs.at(0).times, (std::vector<double>{0, 1})) << names;
+    EXPECT_EQ(model->description.sampled_inputs.at(0).values, (std::vector<double>{0.5, 1.5})) << names;
+  }
+  write("u.csv", "u,w,t\n0.5,7,0\n1.5,7,1\n");
+  const auto three = parse(with_input);
+  ASSERT_TRUE(three.has_value()) << to_text(three.error());
+  EXPECT_EQ(three->description.sampled_inputs.at(0).times, (std::vector<double>{0, 1}));
+  EXPECT_EQ(three->description.sampled_inputs.at(0).values, (std::vector<double>{0.5, 1.5}));
+  for (const std::string names : {"time,voltage\n", "a,b\n", "u,a,b\n", "t,a,b\n"}) {
+    write("u.csv", names + (names.size() == 6 ? "0,1,2\n" : "0,1\n"));
+    const auto error = refused(with_input);
+    EXPECT_NE(error.message.find("expected a column '"), std::string::npos) << names << to_text(error);
+    EXPECT_EQ(error.location.line, 1) << names;
+  }
+  // A table may be over anything: two columns of other names are x and y.
+  struct Case {
+    std::string names;
+    std::vector<double> x, y;
+  };
+  const std::vector<double> first{0, 1}, second{2, 3};
+  for (const auto& [names, x, y] : {Case{"road,t\n", second, first}, Case{"height,x\n", second, first},
+                                    Case{"s,road\n", first, second}, Case{"s,h\n", first, second}}) {
+    write("road.csv", names + "0,2\n1,3\n");
+    const auto model = parse("[tables.road]\nfile = 'road.csv'\n");
+    ASSERT_TRUE(model.has_value()) << names << to_text(model.error());
+    EXPECT_EQ(model->description.tables.at(0).x, x) << names;
+    EXPECT_EQ(model->description.tables.at(0).y, y) << names;
+  }
 }
 
 TEST_F(Tables, SamplesOfAStoredResult) {

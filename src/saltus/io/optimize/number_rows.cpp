@@ -7,6 +7,7 @@
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/optimize/number_rows_internal.hpp"
 #include "saltus/io/separated_line_internal.hpp"
+#include "saltus/io/text_encoding_internal.hpp"
 
 namespace saltus::io {
 namespace {
@@ -33,6 +34,7 @@ bool is_header(const std::vector<std::string_view>& fields) {
 Expected<NumberRows> parse_rows(std::string_view text, const std::string& file, std::size_t columns,
                                 const std::string& what) {
   constexpr std::size_t shown = 40;
+  if (auto readable = check_is_text(text, file, data_remedy); !readable) return tl::unexpected(readable.error());
   NumberRows found;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   bool begins = true;

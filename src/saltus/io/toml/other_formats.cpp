@@ -54,6 +54,12 @@ bool is_antimony(std::string_view text) {
   return false;
 }
 
+/// A model file, whatever its name is, begins with a table or a comment; so does no program.
+bool is_program(std::string_view text) {
+  const auto word = first_word(text);
+  return !word.empty() && !word.starts_with('[') && !word.starts_with('#');
+}
+
 std::optional<Format> format_of(std::string_view text, std::string_view file) {
   if (text.starts_with("PK\x03\x04")) {
     if (file.ends_with(".fmu")) return Format{"an FMU", "modelica"};
@@ -67,6 +73,7 @@ std::optional<Format> format_of(std::string_view text, std::string_view file) {
   if (file.ends_with(".mo") && (is_modelica(text) || text.find("\nequation") != std::string_view::npos))
     return Format{"Modelica", "modelica"};
   if (is_antimony(text)) return Format{"Antimony", "sbml-tools-copasi-tellurium"};
+  if (file.ends_with(".m") && is_program(text)) return Format{"a program of MATLAB", "matlab-simulink-stateflow"};
   if (file.ends_with(".mdl")) return Format{"a model of Simulink", "matlab-simulink-stateflow"};
   return std::nullopt;
 }

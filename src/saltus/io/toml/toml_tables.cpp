@@ -99,7 +99,7 @@ void read_points(TomlReader& reader, const TomlEntry& entry, const StatedTable& 
   } else {
     const auto file = beside(reader.file(), *stated.file);
     auto columns = read_named(reader.files(), file).and_then([&](const std::string& text) {
-      return parse_columns(text, file.string(), entry.key);
+      return parse_columns(text, file.string(), entry.key, ColumnsOf::table);
     });
     if (!columns) {
       reader.fail(with_context(columns.error(), fmt::format("{}, line {}", frame, stated.file_location.line)));
@@ -205,8 +205,8 @@ Expected<model::SampledInput> sampled_input(const std::string& control, std::str
   const auto frame = fmt::format("in the input of {}", control);
   const auto text = read_named(files, file);
   if (!text) return tl::unexpected(with_context(text.error(), frame));
-  auto columns =
-      source == "file" ? parse_columns(*text, file.string(), control) : parse_control(*text, file.string(), control);
+  auto columns = source == "file" ? parse_columns(*text, file.string(), control, ColumnsOf::input)
+                                  : parse_control(*text, file.string(), control);
   if (!columns) return tl::unexpected(with_context(columns.error(), frame));
   if (const auto mistake = model::find_mistake(columns->first, columns->second)) {
     return tl::unexpected(with_context(located(*mistake, *columns), frame));
