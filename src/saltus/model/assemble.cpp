@@ -10,6 +10,7 @@
 #include "saltus/model/recognition/surface_points_internal.hpp"
 #include "saltus/model/recognition/surfaces_internal.hpp"
 #include "saltus/model/statement/jumps_internal.hpp"
+#include "saltus/model/statement/quantities_internal.hpp"
 #include "saltus/model/statement/regions_internal.hpp"
 #include "saltus/model/statement/statement_internal.hpp"
 
@@ -40,7 +41,7 @@ class Assembly {
     keep_used_functions();
     classify_functions();
     if (auto error = take_right_hand_side()) return tl::unexpected(*error);
-    if (auto error = interpolate_quantities()) return tl::unexpected(*error);
+    if (auto error = interpolate_quantities(graph_, sliding_, system_)) return tl::unexpected(*error);
     take_switching();
     if (auto error = add_regions(graph_, statement_, sliding_, system_)) return tl::unexpected(*error);
     take_cells();
@@ -307,43 +308,6 @@ class Assembly {
     }
     system_.f_as_written = column(as_written);
     system_.f = column(reduced);
-    return std::nullopt;
-  }
-
-  /// What is shown, awaited or assigned while a surface slides is the mixture that moves the states: the mean of
-  /// infinitely fast switching, not the expression at the mean of the selections.
-  std::optional<Error> interpolate_quantities() {
-    if (statement_.inclusion == Inclusion::aizerman_pyatnitskii) return std::nullopt;
-    for (casadi_int i = 0; i < system_.outputs.numel(); ++i) {
-      auto& output = system_.outputs.nonzeros()[at(i)];
-      if (auto error = mix(output, "the output " + system_.output_names[at(i)])) return error;
-    }
-    for (auto& event : system_.events) {
-      // The value of a condition is over the truths of its comparisons.
-      auto& functions = event.guards.numel() > 0 ? event.guards : event.value;
-      if (auto error = mix_all(functions, "the event " + event.name)) return error;
-    }
-    for (auto& jump : system_.jumps) {
-      for (auto* expressions : {&jump.guards, &jump.values, &jump.priority, &jump.delay}) {
-        if (auto error = mix_all(*expressions, "the jump " + jump.name)) return error;
-      }
-    }
-    return std::nullopt;
-  }
-
-  std::optional<Error> mix_all(casadi::SX& expressions, const std::string& what) {
-    for (SXElem& e : expressions.nonzeros()) {
-      if (auto error = mix(e, what)) return error;
-    }
-    return std::nullopt;
-  }
-
-  std::optional<Error> mix(SXElem& expression, const std::string& what) {
-    const auto node = graph_.add(expression);
-    if (!node) return std::nullopt;  // of a jump, with comparisons: they have one truth at an instant
-    const auto mixture = interpolate(graph_, *node, sliding_, what);
-    if (!mixture) return mixture.error();
-    expression = *mixture;
     return std::nullopt;
   }
 
