@@ -33,7 +33,8 @@ saltus::Expected<model::Ocp> turbo_car(double distance) {
   return problem.build();
 }
 int main() {
-  pipeline::OptimizeOptions options{.control_intervals = 10};
+  pipeline::OptimizeOptions options;
+  options.control_intervals = 10;
   auto first = value(pipeline::optimize(value(turbo_car(200)), options));
   const auto& found = *first.optimization;
   std::printf("%s: T = %.4f\n", std::string(name(first.status.termination)).c_str(), found.horizon);
