@@ -85,8 +85,8 @@ const std::array fields_of{
                       : "Lengths are fixed: all mean the same."),
     number_or_none_field<option_of<part, &ElementOptions::lifting>, off_word>(
         "lifting", Numbers{.whole = true, .from = 2.0, .up_to = most_factors},
-        "The largest number of factors in a product of selections. Longer products get variables of their own; "
-        "solutions are the same."),
+        "Most factors in a product of selections; longer ones get variables of their own, with "
+        "the same solutions."),
     truth_field<option_of<part, &ElementOptions::sensitivities>>(
         "sensitivities",
         "Derivatives of the end state with respect to initial state and parameters, of the discretisation."),
