@@ -11,16 +11,24 @@ namespace saltus::linalg {
 
 struct SingularValues {
   Vector values;  ///< decreasing
-  Matrix right;   ///< V of A = U S V'
+  Matrix right;   ///< V of A = U S V', one column per column of A
 };
 
-/// Of a square matrix, by Jacobi's method.
+/// By Jacobi's method, with all of V.
 [[nodiscard]] SingularValues singular_values(ConstView a);
-/// The largest singular value of a square matrix; 0 of nothing.
+/// The largest singular value; 0 of nothing.
 [[nodiscard]] double spectral_norm(ConstView a);
 
-/// Of a symmetric matrix, increasing.
+struct SymmetricSpectrum {
+  Vector values;   ///< increasing
+  Matrix vectors;  ///< a column each
+};
+
+[[nodiscard]] SymmetricSpectrum symmetric_spectrum(ConstView a);
+/// Increasing; cheaper than the spectrum.
 [[nodiscard]] Vector symmetric_eigenvalues(ConstView a);
+/// Of any square matrix. Empty where the iteration does not converge.
+[[nodiscard]] std::optional<std::vector<std::complex<double>>> eigenvalues(ConstView a);
 
 /// One eigenvalue alpha / beta of a pencil.
 struct PencilValue {
