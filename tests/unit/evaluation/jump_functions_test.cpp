@@ -47,6 +47,7 @@ model::System jumping_example() {
   guard.trigger = model::JumpTrigger::guard_down;
   guard.guards = s.x(0) * s.x(1);
   s.jumps = {condition, times, guard};
+  s.input_at_instant = s.input;
   return s;
 }
 

@@ -175,6 +175,7 @@ void take_steps(MethodChoice& choice, Position& here, double rate, double h, int
     ASSERT_EQ(stepper.attempt(field, here.t, here.x.data(), &slope, length, tolerances), ode::Attempt::finite);
     here.t += length;
     here.x[0] = stepper.x_new()[0];
+    choice.count(stepper.method(), length);
     choice.accepted(stepper, tolerances, true);
   }
 }

@@ -69,6 +69,7 @@ Located breaks_here(RunState& run) {
 }
 
 bool time_moves_surfaces(const InstantContext& c) {
+  if (!c.out.before.higher) return false;  // what is slid on is decided with the surfaces inside it
   const auto moved = functions_moved_by_time(c);
   const auto& at_zero = c.out.switching_point.at_zero;
   return std::any_of(at_zero.begin(), at_zero.end(), [&](int j) { return moved[at(j)]; });

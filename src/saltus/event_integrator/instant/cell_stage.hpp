@@ -13,8 +13,8 @@ namespace saltus::event_integrator {
 CellChange leave_cells(const InstantContext& c, const Located& located);
 /// Returns breaks at which values jump, at this time to rounding.
 [[nodiscard]] Located breaks_here(RunState& run);
-/// Returns whether time moves the values of surfaces that are at zero here: those that hold constants of a cell that is
-/// left, or selections of a function of time that is passed.
+/// Returns whether time moves the values of surfaces that are held at zero to a higher order: those that hold constants
+/// of a cell that is left, or selections of a function of time that is passed.
 [[nodiscard]] bool time_moves_surfaces(const InstantContext& c);
 /// Decides the mode behind values that time moves, as at a start, into the transition of the outcome. What slides and
 /// is still at zero goes on sliding if it can. Returns false where the run ends.

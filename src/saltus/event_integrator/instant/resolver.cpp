@@ -102,7 +102,7 @@ Resolver::Stage Resolver::leave_cells() {
 /// The mode behind the surfaces that are at zero; or the same, where only cells and guards have changed.
 Resolver::Stage Resolver::decide() {
   if (!collect_surfaces(context(), *instant_->located, client_.longest_step())) return Stage::done;
-  const ModeState& from = mode_before(context());
+  const ModeState& from = touch_others(context());
   const Position& here = run_.here;
   if (time_moves_surfaces(context())) return decide_behind_times(context()) ? Stage::conclusion : Stage::done;
   if (!out_.switching_point.touched.empty()) {
@@ -248,13 +248,13 @@ bool Resolver::resolve(const Instant& instant) {
   }
   arrive(context(), instant.row_is_written);
   if (instant.cause == Cause::due) {
+    // Jumps read the values of tables and inputs from here on.
+    out_.cell_change = event_integrator::leave_cells(context(), breaks_here(run_));
     cascade_.begin();
-    if (update_jumps(context()) && !run_.jumps.due(run_.here.t)) return false;
-    if (run_.running) {
-      // Jumps read the values of tables and inputs from here on.
-      out_.cell_change = event_integrator::leave_cells(context(), breaks_here(run_));
-      run(jump_from_here(true));
-    }
+    const bool is_late = update_jumps(context()) && !run_.jumps.due(run_.here.t);
+    if (is_late && out_.cell_change == CellChange::none) return false;
+    if (is_late && decide_behind_times(context())) run(Stage::conclusion);
+    if (!is_late && run_.running) run(jump_from_here(true));
   } else if (instant.cause == Cause::departure) {
     out_.transition = instant.transition;
     run(Stage::conclusion);

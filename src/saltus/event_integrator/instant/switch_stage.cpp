@@ -58,7 +58,15 @@ bool collect_surfaces(const InstantContext& c, const Located& located, double lo
   return true;
 }
 
-const ModeState& mode_before(const InstantContext& c) { return c.out.freed.empty() ? c.out.before : slid_on_freed(c); }
+const ModeState& touch_others(const InstantContext& c) {
+  auto& [run, cascade, out] = c;
+  const ModeState& from = out.freed.empty() ? out.before : slid_on_freed(c);
+  for (const int j : run.here.state.sliding) {
+    // Sliding goes on with the new gradient, or ends, behind a kink of its own psi.
+    if (out.cell_change != CellChange::none && run.cells.moved_in(j)) out.switching_point.touched.push_back(j);
+  }
+  return from;
+}
 
 void decide_touched(const InstantContext& c, const ModeState& from, SingleSurface& single, SurfacePair& pair) {
   auto& [run, cascade, out] = c;

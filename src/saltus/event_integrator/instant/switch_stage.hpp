@@ -13,8 +13,9 @@ namespace saltus::event_integrator {
 ///                      changes
 bool collect_surfaces(const InstantContext& c, const Located& located, double longest_step);
 
-/// Returns the mode to decide from: the one before, where guards that let go here were surfaces that it slid on.
-[[nodiscard]] const ModeState& mode_before(const InstantContext& c);
+/// Adds the surfaces that are touched by what happens to others here: freed by a guard, or moved into another cell.
+/// Returns the mode to decide from.
+const ModeState& touch_others(const InstantContext& c);
 
 /// Decides the mode behind the surfaces that are touched, into the transition of the outcome: by one surface, by two,
 /// or by all that are at zero.
