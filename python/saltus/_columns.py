@@ -134,7 +134,7 @@ class Columns:
         columns = self._columns
         if isinstance(name, Expression):
             name = name.text
-        names = several(name, columns) if not isinstance(name, str) or name not in columns else None
+        names = several(name, columns)
         if names is not None:
             return np.stack([self[one] for one in names.flat], axis=-1).reshape(-1, *names.shape)
         if not isinstance(name, str):

@@ -12,9 +12,9 @@ from ._expression import Expression
 Names = np.ndarray[typing.Any, np.dtype[typing.Any]]
 
 
-def several(name: typing.Any, known: typing.Iterable[str]) -> Names | None:
+def several(name: typing.Any, known: typing.Collection[str]) -> Names | None:
     """The names that are meant by an array ("x" of x1, x2, …; or the array itself) or a pattern ("x*"), in its shape; None
-    where there are none.
+    where there are none, and for a name that is known itself.
 
     >>> several("x", ["x1", "x2", "v"]).tolist(), several("T", ["T1_1", "T2_1"]).shape, several("x*", ["x1", "xa"]).tolist()
     (['x1', 'x2'], (2, 1), ['x1', 'xa'])
@@ -22,7 +22,7 @@ def several(name: typing.Any, known: typing.Iterable[str]) -> Names | None:
     if isinstance(name, np.ndarray):
         return np.asarray(np.frompyfunc(str, 1, 1)(name)) if name.ndim > 0 else None
     text = name.text if isinstance(name, Expression) else name
-    if not isinstance(text, str):
+    if not isinstance(text, str) or text in known:
         return None
     if "*" in text:
         pattern = re.compile(".*".join(map(re.escape, text.split("*"))), re.DOTALL)

@@ -66,7 +66,7 @@ class Final:
         True
         """
         name = name.text if isinstance(name, Expression) else name
-        names = several(name, self._named) if not isinstance(name, str) or name not in self._named else None
+        names = several(name, self._named)
         if names is not None:
             return np.array([self[one] for one in names.flat], dtype=float).reshape(names.shape)
         if name not in self._named:

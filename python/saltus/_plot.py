@@ -97,7 +97,7 @@ def _groups(r: Recorded, names: typing.Any) -> list[Group]:
 def _group(r: Recorded, entry: typing.Any) -> Group:
     if isinstance(entry, (list, tuple)):
         return Group("", [name for one in entry for name in _group(r, one).names])
-    whole = several(entry, r.names) if not isinstance(entry, (str, Expression)) or str(entry) not in r.names else None
+    whole = several(entry, r.names)
     if whole is not None:
         return Group("" if isinstance(entry, np.ndarray) else str(entry), whole.ravel().tolist())
     return Group(str(entry), [str(entry)])

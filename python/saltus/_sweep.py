@@ -178,7 +178,7 @@ class Sweep:
             name = name.text
         if not isinstance(name, str):
             raise TypeError(f"s[{name!r}]: a column is taken by its name, e.g. s['run']; a run is s.results[{name!r}]")
-        names = several(name, self.table) if name not in self.table else None
+        names = several(name, self.table)
         if names is not None:
             return np.stack([self.table[one] for one in names.flat], axis=-1).reshape(-1, *names.shape)
         if name not in self.table:
@@ -265,7 +265,7 @@ class Sweep:
         ('belt', 2)
         """
         axes, text = axes_of(axis, ax), None if name is None else str(name)
-        names = several(text, self.table) if text is not None and text not in self.table else None
+        names = several(text, self.table)
         if text is not None and names is None:
             return _sweep_plot.plot(self, text, over, axes, label, color)
         first = self.results[0]

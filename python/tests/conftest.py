@@ -60,3 +60,17 @@ def source():
 def tool():
     """The tool as a program of its own."""
     return os.environ["SALTUS_TEST_TOOL"]
+
+
+@pytest.fixture
+def close_figures():
+    """For tests of pictures: what they draw is closed behind them."""
+    from matplotlib import pyplot
+
+    yield
+    pyplot.close("all")
+
+
+@pytest.fixture(scope="module")
+def slip():
+    return saltus.catalogue("stick-slip").simulate(until=20)

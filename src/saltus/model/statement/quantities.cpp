@@ -1,9 +1,8 @@
-#include "saltus/model/statement/quantities_internal.hpp"
-
 #include <string>
 
 #include "saltus/base/at.hpp"
 #include "saltus/model/recognition/reduction_internal.hpp"
+#include "saltus/model/statement/quantities_internal.hpp"
 
 namespace saltus::model {
 namespace {
