@@ -155,6 +155,7 @@ class Outputs(RequestTest):
     def test_names(self):
         (self.folder / "d.json").mkdir()
         for out, message in {"r.txt": ["r.txt: the name must end in .json or .csv"], "r": ["must end in .json or .csv"],
+                             "r.parquet": ["must end in .json or .csv", "Python writes .parquet files"],
                              ".json": ["must end in"], "": ["must end in"], "r.JSON": ["must end in .json or .csv"],
                              "d.json": ["d.json: error: cannot write: this is a folder"],
                              "none/r.json": ["there is no folder 'none'", "create it first"],

@@ -51,6 +51,13 @@ class Order(tool.ToolTest):
         self.assertEqual(page, (self.folder / "again.html").read_bytes())
         self.assertIn(b'"order":{"floor"', page)
 
+    def test_a_solution_that_is_not_unique_is_said(self):
+        arguments = ("order", "stay-or-leave", "--schemes", "radau_iia:2", "--steps", "20,40")
+        table, _ = self.run_tool(*arguments, code=0)
+        self.assertIn("the solution has other continuations at t = ", table)
+        table, _ = self.run_tool(*arguments, "--until", "2", code=0)
+        self.assertNotIn("continuations", table)
+
     def test_refusals(self):
         for arguments, message in ((("--schemes", "radau_ia:2"), "radau_iia"),
                                    (("--schemes", "radau_iia"), "expected NAME:STAGES"),

@@ -1,6 +1,7 @@
 #include "saltus/cli/outputs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <set>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/docs_page.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/frontend/catalogue.hpp"
@@ -47,9 +49,14 @@ Expected<void> check_suffix(const Output& output) {
   if (contains(known, suffix)) return {};
   if (const auto csv = std::find(known.begin(), known.end(), ".csv"); csv != known.end())
     known.insert(csv + 1, ".events.csv");
-  return tl::unexpected(refused(output.option, output.file,
-                                fmt::format("the name must end in {}", fmt::join(known, " or ")),
-                                "the suffix says what is written"));
+  constexpr std::array<std::string_view, 5> of_python{".parquet", ".feather", ".mat", ".xlsx", ".h5"};
+  const bool has_table = contains(known, std::string(".csv"));
+  return tl::unexpected(
+      refused(output.option, output.file, fmt::format("the name must end in {}", fmt::join(known, " or ")),
+              has_table && contains(of_python, suffix)
+                  ? fmt::format("the suffix says what is written; Python writes {} files of a result: see {}", suffix,
+                                docs_page("howto", "write-parquet-matlab-or-excel-files"))
+                  : "the suffix says what is written"));
 }
 
 Expected<void> check(const Output& output, std::set<fs::path>& taken) {

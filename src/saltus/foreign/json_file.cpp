@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/docs_page.hpp"
 #include "saltus/foreign/json_file_internal.hpp"
 
 namespace saltus::foreign {
@@ -107,7 +108,8 @@ void JsonFile::fail(std::string message, std::string remedy, ErrorCode code) {
 const Json* JsonFile::member(const char* key) {
   if (failed()) return nullptr;
   if (const auto found = json_.find(key); found != json_.end()) return &*found;
-  fail(fmt::format("there is no member \"{}\"", key), "copy the file again as a whole");
+  fail(fmt::format("there is no member \"{}\"", key),
+       fmt::format("what it holds is in {}", docs_page("foreign-mpcc", "what-is-read")));
   return nullptr;
 }
 
@@ -123,7 +125,8 @@ std::vector<double> JsonFile::numbers(const char* key, std::optional<std::size_t
   if (!json->is_array()) take(*json);
   if (json->is_array()) std::for_each(json->begin(), json->end(), take);
   if (size && values.size() != *size) {
-    fail(fmt::format("{}: expected {} numbers, found {}", key, *size, values.size()), "copy the file again as a whole");
+    fail(fmt::format("{}: expected {} numbers, found {}", key, *size, values.size()),
+         "one for each variable of w, for each row of g_fun, for each pair");
     values.assign(*size, 0.0);
   }
   return values;

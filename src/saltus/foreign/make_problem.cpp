@@ -59,7 +59,8 @@ std::unique_ptr<Problem> make_problem(Statement statement) {
   all->hessian_pattern = pattern_of(hessian);
   const casadi::Slice sides(static_cast<casadi_int>(all->statement.rows.size()), c.numel());
   all->signs = signs_of(w, c(sides), jacobian(sides, casadi::Slice()), all->variable_bounds);
-  all->row_ranges = ranges_of(w, c, jacobian, all->variable_bounds);
+  all->row_ranges = ranges_of(w, c, jacobian,
+                              with_rows_of_one_variable(w, c, jacobian, all->variable_bounds, all->constraint_bounds));
   all->values = CachedFunction("values", w, f, c);
   all->derivatives = CachedFunction("derivatives", w, SX::densify(SX::gradient(f, w)), entries_of(jacobian));
   all->hessian = model::ModelFunction("hessian", {w, factor, y}, {entries_of(hessian)});

@@ -37,8 +37,8 @@ class Problem final : public mpcc::Problem {
   [[nodiscard]] std::string name(int variable) const override;
   [[nodiscard]] std::string row_name(int row) const override;
 
-  /// Returns the least and the greatest value of rows of (g, G, H) that are affine, within the bounds of the variables;
-  /// infinite for the others.
+  /// Returns the least and the greatest value of rows of (g, G, H) that are affine, within the bounds of the variables
+  /// and of rows of one variable; infinite for the others.
   [[nodiscard]] const mpcc::Bounds& row_ranges() const;
   [[nodiscard]] int file_variables() const;
   /// Returns names of the file's variables; empty if it has none.

@@ -7,6 +7,12 @@
 
 namespace saltus::foreign {
 
+/// Returns the bounds of the variables, and what rows that are affine in one variable alone leave of them.
+/// @param of_rows  of the first rows; others have none
+[[nodiscard]] mpcc::Bounds with_rows_of_one_variable(const casadi::SX& w, const casadi::SX& rows,
+                                                     const casadi::SX& jacobian, mpcc::Bounds bounds,
+                                                     const mpcc::Bounds& of_rows);
+
 /// Returns the least and the greatest value of each row that is affine in w, infinite for the others. Constants count
 /// as affine.
 /// @param jacobian  of rows

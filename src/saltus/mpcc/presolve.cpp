@@ -55,8 +55,9 @@ class Finder {
     contradict(G, 0.0, no_bound);
     contradict(H, 0.0, no_bound);
     if (is_positive(G) && is_positive(H)) {
-      found_.infeasible.push_back(fmt::format("{} and {}: both are positive within the bounds of the variables",
-                                              problem_.row_name(G), problem_.row_name(H)));
+      found_.infeasible.push_back(
+          fmt::format("{} and {}: both are positive within the bounds of the variables and of rows of one variable",
+                      problem_.row_name(G), problem_.row_name(H)));
     }
     for (const auto& [side, other] : {std::pair(G, H), std::pair(H, G)}) {
       if (is_positive(side)) {

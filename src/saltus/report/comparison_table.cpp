@@ -58,14 +58,14 @@ void note_stop(const result::ComparedRun& run, std::vector<Stop>& stops) {
   stop->runs.push_back(of_run(run));
 }
 
-std::string not_unique(const result::Result& reference) {
+/// @param what  what that means for the table
+std::string not_unique(const result::Result& reference, std::string_view what) {
   const auto& events = reference.events;
   const auto ambiguous = [](const result::Event& event) { return event.unique == false; };
   const auto found = std::find_if(events.begin(), events.end(), ambiguous);
   if (found == events.end()) return "";
-  return paragraph("not unique", fmt::format("the solution has other continuations at t = {:.12g}: there methods may "
-                                             "differ and both be right",
-                                             found->t));
+  return paragraph("not unique",
+                   fmt::format("the solution has other continuations at t = {:.12g}: {}", found->t, what));
 }
 
 /// When the states were compared, in words.
@@ -115,7 +115,7 @@ std::string comparison_table(const result::Result& result, const result::Compari
       paragraph("compared", fmt::format("{}{}, and the times of switches", compared_states(result, comparison),
                                         states < result.states.size() ? ", the first components" : ""));
   text += aligned(rows);
-  text += not_unique(result);
+  text += not_unique(result, "there methods may differ and both be right");
   if (!remarks.empty()) text += "remarks\n" + remarks;
   if (!stops.empty()) text += "stopped early\n" + stops;
   if (!refusals.empty()) text += "not run\n" + refusals;
@@ -172,6 +172,7 @@ std::string order_table(const result::Result& result, const result::OrderStudy& 
     rows.push_back(std::move(row));
   }
   text += aligned(rows);
+  text += not_unique(result, "a scheme that follows another one has errors and slopes that say nothing");
   if (!refusals.empty()) text += "no error\n" + refusals;
   return text;
 }

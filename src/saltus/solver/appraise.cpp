@@ -4,6 +4,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/solver/certificate/second_order.hpp"
+#include "saltus/solver/certificate/strongest_type.hpp"
 #include "saltus/solver/run_internal.hpp"
 
 namespace saltus::solver {
@@ -58,6 +59,11 @@ void appraise(Run& run) {
     if (of.dependent.size() < most_names) of.dependent.push_back(run.problem.row_name(row));
   }
   of.unique_multipliers = set.is_unique();
+  if (set.dependent_rows() > 0 && of.stationarity_type && of.biactive > 0) {
+    const auto states = certificate::pair_states(run.problem, branch.w, branch.sides, tolerance);
+    of.stationarity_type = certificate::strongest_type(run.problem, set, states.biactive, *of.stationarity_type,
+                                                       zero_multiplier * tolerance, run.lpcc);
+  }
   linalg::Vector gradient(run.problem.variables());
   run.problem.objective_gradient(branch.w, gradient);
   const double zero = zero_multiplier * tolerance * std::max(1.0, gradient.max_abs());

@@ -22,8 +22,6 @@ using result::Termination;
 constexpr double radius = 1e-3;
 /// Barrier parameter of a branch that begins where its objective falls.
 constexpr double near_mu = 1e-6;
-/// Of one linear program with complementarities.
-constexpr double lpcc_seconds = 60.0;
 /// Branches that a solution may visit: every one is better than the one before, so this is only a guard.
 constexpr int largest_rounds = 200;
 /// Of one branch problem: those that are solved need 25 to 130, and others stand still where equations depend on each
@@ -45,12 +43,6 @@ ActiveSide other(ActiveSide side) { return side == ActiveSide::G ? ActiveSide::H
 std::vector<ActiveSide> flipped(std::vector<ActiveSide> sides, const std::vector<int>& group) {
   for (const int pair : group) sides[at(pair)] = other(sides[at(pair)]);
   return sides;
-}
-
-/// A limit of the whole holds for its linear programs, too.
-double seconds_of_lpcc(const Run& run) {
-  const double left = run.options.time_limit ? *run.options.time_limit - run.seconds() : lpcc_seconds;
-  return std::clamp(left, 0.0, lpcc_seconds);
 }
 
 /// Improvements below are rounding.
@@ -329,9 +321,9 @@ void certify_relaxed(Run& run) {
   auto& multipliers = run.solution.multipliers;
   multipliers = certificate::multipliers_of_relaxed(run.problem, *run.relaxed.problem, run.relaxed.point, states);
   of.stationarity = certificate::stationarity(run.problem, w, multipliers, nullptr);
-  of.stationarity_type = certificate::stationarity_type(multipliers, states.biactive, run.options.tolerance);
-  // Directions from a point that is not feasible say nothing of the problem.
+  // Directions from a point that is not feasible, and multipliers there, say nothing of the problem.
   if (!is_feasible) return;
+  of.stationarity_type = certificate::stationarity_type(multipliers, states.biactive, run.options.tolerance);
   if (of.stationarity_type == StationarityType::S) {
     if (of.stationarity <= run.options.tolerance) of.b_stationary = true;
     return;

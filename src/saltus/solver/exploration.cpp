@@ -59,7 +59,9 @@ std::vector<Explored> explore(Run& run, const std::vector<Attempt>& starts, doub
     if (!is_given(starts[i])) run.iteration_limit += solution.iterations;
     run.add(solution);
     run.is_infeasible = run.is_infeasible || is_infeasible;
-    if (stopped == result::Termination::stopped_by_user) run.stopped = stopped;
+    const bool is_unbounded = stopped == result::Termination::not_converged;
+    run.is_diverging = run.is_diverging || is_unbounded;
+    if (is_unbounded || stopped == result::Termination::stopped_by_user) run.stopped = stopped;
     explored.push_back(std::move(end));
   }
   return explored;

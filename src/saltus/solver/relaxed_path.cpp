@@ -15,6 +15,8 @@ constexpr double sharp_sigma = 1e-6;
 constexpr double nearly_feasible = 1e-6;
 /// Relaxed problems in a row that lead to a branch which was refused, until the next ones will, too.
 constexpr int settled_problems = 2;
+/// A point that has gone so many times farther than its start, and is no solution, may be on its way to infinity.
+constexpr double astray = 1e6;
 /// Iterations of one barrier problem of the loop after which another way is better.
 constexpr int longest_barrier = 100;
 
@@ -246,7 +248,10 @@ bool RelaxedPath::take(const NlpPoint& point, const NlpReport& report) {
   }
   at_.last_objective = at_.objective;
   at_.objective = run_.problem.objective(at_.w);
-  run_.is_diverging = report.diverging;
+  const bool is_far = w.all_finite() && w.max_abs() > astray * std::max(1.0, attempt_.w.max_abs());
+  const bool falls = !is_solved && is_far && falls_without_end(run_, w);
+  run_.is_diverging = report.diverging || falls;
+  if (falls) run_.stopped = Termination::not_converged;  // no other sigma changes that
   run_.is_infeasible = run_.is_infeasible || report.termination == Termination::infeasible;
   run_.failure = is_solved ? "" : report.message;
   result::HomotopyStep step;

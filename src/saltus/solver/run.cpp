@@ -11,10 +11,18 @@ using result::Termination;
 
 namespace {
 
+/// Of one linear program with complementarities.
+constexpr double lpcc_seconds = 60.0;
 /// Of the solver's scaled error; what is missing to rounding, refine.hpp adds.
 constexpr double problem_tolerance = 1e-10;
 
 }  // namespace
+
+/// A limit of the whole holds for its linear programs, too.
+double seconds_of_lpcc(const Run& run) {
+  const double left = run.options.time_limit ? *run.options.time_limit - run.seconds() : lpcc_seconds;
+  return std::clamp(left, 0.0, lpcc_seconds);
+}
 
 Run::Run(mpcc::Problem& problem_to_solve, NlpSolver& nlp_solver, LpccSolver& lpcc_solver, const SolveOptions& wanted)
     : problem(problem_to_solve),

@@ -57,15 +57,20 @@ class Run {
   std::optional<crossover::Branch> branch;   ///< the best one accepted
   std::optional<crossover::Branch> refused;  ///< feasible, but its objective was too far above the relaxed one
   std::map<std::vector<mpcc::ActiveSide>, double> known;  ///< objectives of feasible branches of relaxed points
-  std::optional<result::Termination> stopped;
-  std::string failure;         ///< why the last relaxed problem failed
-  bool is_diverging = false;   ///< it failed since its iterates grow without bounds
-  bool is_infeasible = false;  ///< a relaxed problem was infeasible
+  std::optional<result::Termination> stopped;             ///< not_converged: the objective falls without end
+  std::string failure;                                    ///< why the last relaxed problem failed
+  bool is_diverging = false;                              ///< it failed since its iterates grow without bounds
+  bool is_infeasible = false;                             ///< a relaxed problem was infeasible
 
  private:
   Stopwatch stopwatch_;
 };
 
+/// Returns the time limit of one linear program with complementarities.
+[[nodiscard]] double seconds_of_lpcc(const Run& run);
+/// Returns whether a ray from a point is feasible as far as numbers go, and the objective falls along it. Then the
+/// problem has no solution. Cost: one linear program.
+[[nodiscard]] bool falls_without_end(Run& run, const linalg::Vector& w);
 /// Returns the time limit of what begins after so many seconds.
 [[nodiscard]] std::optional<double> time_left(const SolveOptions& options, double seconds);
 /// Solves from one start, whatever SolveOptions::starts.

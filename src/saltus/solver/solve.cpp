@@ -138,7 +138,7 @@ void judge(Run& run) {
   if (has_small_residuals(of, tolerance) && of.b_stationary.value_or(false)) {
     solution.termination = Termination::completed;
     solution.message.clear();
-  } else if (run.stopped) {
+  } else if (run.stopped && run.stopped != Termination::not_converged) {
     solution.termination = *run.stopped;
     const double worst = std::max(of.primal_infeasibility, of.complementarity_residual);
     solution.message = fmt::format("stopped before it was solved; constraints are violated by {:.3g}", worst);

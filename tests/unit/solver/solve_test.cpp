@@ -147,7 +147,9 @@ TEST(Solve, NotStronglyButBStationary) {
   const Solution solution = solved(problem, linalg::Vector{0.0, 1.0, 0.0});
   EXPECT_EQ(solution.termination, Termination::completed) << log_of(solution);
   EXPECT_NEAR(solution.w.norm(), 0.0, 1e-10);
-  EXPECT_NE(solution.certificate.stationarity_type, StationarityType::S);
+  // Rows (3/4, 1/4) leave -2 and 0 to the sides of the pair: it is M, whichever multipliers were found.
+  EXPECT_EQ(solution.certificate.stationarity_type, StationarityType::M);
+  EXPECT_EQ(solution.certificate.unique_multipliers, false);
   EXPECT_EQ(solution.certificate.b_stationary, true);
   ASSERT_TRUE(solution.certificate.lpcc_decrease.has_value());
   EXPECT_NEAR(*solution.certificate.lpcc_decrease, 0.0, 1e-9);
@@ -161,6 +163,17 @@ TEST(Solve, Infeasible) {
   const Solution solution = solved(problem, linalg::Vector{1.0, 1.0});
   EXPECT_EQ(solution.termination, Termination::infeasible) << log_of(solution);
   EXPECT_NE(solution.message.find("G[0]"), std::string::npos) << solution.message;
+  EXPECT_EQ(solution.certificate.stationarity_type, std::nullopt);
+}
+
+/// The relaxed problems have no solution either, but iterates go to infinity so slowly that no solver says so.
+TEST(Solve, UnboundedAlongOneSideEndsAtOnce) {
+  mpcc::PolynomialProblem problem(small::statement(2, 1, {{{1.0, {1}}, {-1.0, {0, 1}}}}));
+  const Solution solution = solved(problem, linalg::Vector{0.1, 0.1});
+  EXPECT_EQ(solution.termination, Termination::not_converged) << log_of(solution);
+  EXPECT_TRUE(solution.is_unbounded);
+  EXPECT_NE(solution.message.find("unbounded"), std::string::npos) << solution.message;
+  EXPECT_LE(solution.iterations, 1000);
 }
 
 TEST(Solve, Unbounded) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 
 namespace saltus::solver::certificate {
 namespace {
@@ -52,9 +53,9 @@ bool MultiplierRange::is_unique() const {
 MultiplierSet::MultiplierSet(mpcc::Problem& problem, crossover::Branch& branch, ActiveConstraints active)
     : active_(std::move(active)) {
   const auto& reduction = branch.problem->reduction();
-  const RowMatrix jacobian = jacobian_matrix(problem, branch.problem->full(branch.point.w));
-  vectors_ = vectors_of(gradients_of(active_, reduction, jacobian));
-  find_slopes(problem, branch, jacobian);
+  jacobian_ = jacobian_matrix(problem, branch.problem->full(branch.point.w));
+  vectors_ = vectors_of(gradients_of(active_, reduction, jacobian_));
+  find_slopes(problem, branch, jacobian_);
   add_signs(reduction);
 }
 
@@ -95,7 +96,7 @@ void MultiplierSet::find_slopes(mpcc::Problem& problem, const crossover::Branch&
 }
 
 void MultiplierSet::add_signs(const crossover::Reduction& reduction) {
-  const auto add = [this](At at_bound, double value, const linalg::SparseRows& changes, int row) {
+  const auto add = [this](At at_bound, double value, const linalg::SparseRows& changes, int row, int owner) {
     if (at_bound != At::lower && at_bound != At::upper) return;
     const double sign = at_bound == At::upper ? 1.0 : -1.0;
     auto change = dense(changes, row, sign);
@@ -103,9 +104,10 @@ void MultiplierSet::add_signs(const crossover::Reduction& reduction) {
     signs_.push_back(std::move(change));
     // The point itself has the signs, but for rounding.
     least_.push_back(std::min(-sign * value, 0.0));
+    owners_.push_back(owner);
   };
   for (std::size_t j = 0; j < active_.rows.size(); ++j) {
-    add(active_.rows[j].at, active_.rows[j].multiplier, vectors_, static_cast<int>(j));
+    add(active_.rows[j].at, active_.rows[j].multiplier, vectors_, static_cast<int>(j), active_.rows[j].row);
   }
   // A positive slope is that of a lower bound.
   const linalg::SparseRows& changes = slope_change_;
@@ -113,7 +115,7 @@ void MultiplierSet::add_signs(const crossover::Reduction& reduction) {
     const int leader = reduction.leader[place];
     const At at_bound = active_.bounds[place];
     const At as_row = at_bound == At::lower ? At::upper : at_bound == At::upper ? At::lower : at_bound;
-    add(as_row, slope_[leader], changes, leader);
+    add(as_row, slope_[leader], changes, leader, ~leader);
   }
 }
 
@@ -152,6 +154,60 @@ MultiplierRange MultiplierSet::range(double value, const std::vector<double>& ch
   found.lower = value + least(1.0);
   found.upper = value - least(-1.0);
   return found;
+}
+
+std::optional<SideMultiplier> MultiplierSet::of_side(mpcc::Problem& problem, int row) const {
+  const auto side = at(row - problem.constraints());
+  if (problem.signs()[side] != mpcc::Sign::implied) {
+    for (std::size_t j = 0; j < active_.rows.size(); ++j) {
+      if (active_.rows[j].row != row) continue;
+      return SideMultiplier{-active_.rows[j].multiplier, dense(vectors_, static_cast<int>(j), -1.0), row};
+    }
+    return std::nullopt;
+  }
+  std::optional<linalg::Entry> own;
+  for (const linalg::Entry entry : jacobian_.along(row)) {
+    if (entry.value == 0.0) continue;
+    if (own) return std::nullopt;
+    own = entry;
+  }
+  if (!own) return std::nullopt;
+  const int leader = leader_[at(own->inner)];
+  int sides_with_it = 0;
+  for (int other = problem.constraints(); other < problem.rows(); ++other) {
+    for (const linalg::Entry entry : jacobian_.along(other)) {
+      sides_with_it += entry.value != 0.0 && leader_[at(entry.inner)] == leader ? 1 : 0;
+    }
+  }
+  if (sides_with_it != 1) return std::nullopt;
+  return SideMultiplier{slope_[leader] / own->value, dense(slope_change_, leader, 1.0 / own->value), ~leader};
+}
+
+bool MultiplierSet::can_have(const std::vector<MultiplierCondition>& conditions, const std::vector<int>& freed,
+                             LpccSolver& linear) const {
+  LpccProblem problem;
+  std::vector<double> entries, lower, upper;
+  const auto add = [&](const std::vector<double>& change, double from, double to) {
+    for (std::size_t k = 0; k < change.size(); ++k) {
+      if (change[k] == 0.0) continue;
+      problem.pattern.add(static_cast<int>(lower.size()), static_cast<int>(k));
+      entries.push_back(change[k]);
+    }
+    lower.push_back(from);
+    upper.push_back(to);
+  };
+  for (std::size_t i = 0; i < signs_.size(); ++i) {
+    if (!contains(freed, owners_[i])) add(signs_[i], least_[i], no_limit);
+  }
+  for (const auto& [multiplier, from, to] : conditions) {
+    add(multiplier->change, from - multiplier->value, to - multiplier->value);
+  }
+  const auto dimensions = vectors_.cols();
+  problem.cost = linalg::Vector::zero(dimensions);
+  problem.variables = {linalg::Vector::constant(dimensions, -no_limit), linalg::Vector::constant(dimensions, no_limit)};
+  problem.rows = {linalg::ConstView(lower), linalg::ConstView(upper)};
+  problem.entries = linalg::ConstView(entries);
+  return linear.solve(problem, linear_seconds).termination == result::Termination::completed;
 }
 
 MultiplierRange MultiplierSet::of_row(int row, LpccSolver& linear) const {

@@ -1,6 +1,7 @@
 // All multipliers of a branch problem at its solution, where there are more than one.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "saltus/linalg/sparse.hpp"
@@ -13,6 +14,19 @@ namespace saltus::solver::certificate {
 struct MultiplierRange {
   double lower = 0.0, upper = 0.0;
   [[nodiscard]] bool is_unique() const;
+};
+
+/// Holds a multiplier of every point of the set: value + change't.
+struct SideMultiplier {
+  double value = 0.0;
+  std::vector<double> change;
+  int owner = 0;  ///< of the sign that an active inequality gives it
+};
+
+/// States lower <= multiplier <= upper.
+struct MultiplierCondition {
+  const SideMultiplier* multiplier;
+  double lower, upper;
 };
 
 /// The multipliers y, z of grad f + J'y - z = 0 at a solution of a branch problem. Those of variables and rows at no
@@ -38,6 +52,13 @@ class MultiplierSet {
   [[nodiscard]] MultiplierRange of_row(int row, LpccSolver& linear) const;
   /// Of the bounds of a variable of the whole problem, upper - lower.
   [[nodiscard]] MultiplierRange of_bounds(int variable, LpccSolver& linear) const;
+  /// Of side `row` of (g, G, H) at a pair, >= 0 where it is an active inequality; nullopt if it has none of its own:
+  /// the bounds of several variables, or of one that other sides have, too.
+  [[nodiscard]] std::optional<SideMultiplier> of_side(mpcc::Problem& problem, int row) const;
+  /// Returns whether some multipliers fulfil the conditions. The signs of `freed` owners are not asked for.
+  /// Cost: one linear program.
+  [[nodiscard]] bool can_have(const std::vector<MultiplierCondition>& conditions, const std::vector<int>& freed,
+                              LpccSolver& linear) const;
 
  private:
   void find_slopes(mpcc::Problem& problem, const crossover::Branch& branch, const RowMatrix& jacobian);
@@ -51,6 +72,8 @@ class MultiplierSet {
   linalg::SparseRows slope_change_;         ///< J'V, likewise
   std::vector<std::vector<double>> signs_;  ///< signs_[i] t >= least_[i]
   std::vector<double> least_;
+  std::vector<int> owners_;  ///< of signs_: a row, or ~leader of variables
+  RowMatrix jacobian_;
 };
 
 }  // namespace saltus::solver::certificate
