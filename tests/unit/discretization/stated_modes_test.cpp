@@ -58,7 +58,7 @@ TEST(StatedModes, MultipliersHaveTimesOfTheClock) {
   const auto stated = stated_problem(landing_ball(terminal + stated_guess("modes")));
   const auto& problem = *stated.problem;
   const auto w = problem.start();
-  const auto& last = problem.read(w).elements.back().back();
+  const auto last = problem.read(w).elements.back().back();
   ASSERT_GT(last.t + last.h, 1.005);
   const auto found = problem.constraint_multipliers(w, linalg::Vector::zero(problem.constraints()), {});
   ASSERT_FALSE(found.empty());
