@@ -54,10 +54,10 @@ void Problem::hessian(mpcc::ConstVectorView w, double objective_factor, mpcc::Co
 
 linalg::Vector Problem::start() const {
   const auto& start = implementation_->statement.start;
-  return complete(linalg::ConstView(start.data(), file_variables()));
+  return completed(linalg::ConstView(start.data(), file_variables()));
 }
 
-linalg::Vector Problem::complete(mpcc::ConstVectorView x) const {
+linalg::Vector Problem::completed(mpcc::ConstVectorView x) const {
   auto& all = *implementation_;
   linalg::Vector w = linalg::Vector::zero(variables());
   w.head(file_variables()) = x;

@@ -46,7 +46,7 @@ class Problem final : public mpcc::Problem {
   /// Returns an objective in the file's own sense: a file may maximise, `objective` is always minimised.
   [[nodiscard]] double in_sense_of_file(double objective) const;
   /// Returns all variables from those of the file, moved onto their bounds.
-  [[nodiscard]] linalg::Vector complete(mpcc::ConstVectorView x) const;
+  [[nodiscard]] linalg::Vector completed(mpcc::ConstVectorView x) const;
   /// Returns what a person should know of how the file was read.
   [[nodiscard]] const std::vector<std::string>& notes() const;
 

@@ -95,7 +95,7 @@ struct ModeGroup {
 };
 
 struct TimeFreezing;  // time_freezing/time_freezing.hpp
-struct FrozenSystem;
+class FrozenSystem;
 struct Decisions;  // asked by find_stale (decisions.hpp)
 
 /// Holds xdot = f(t, x, u, p, alpha), alpha_j in step(psi_j), with the constants of cells as further symbols. With

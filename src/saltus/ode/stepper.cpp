@@ -69,8 +69,7 @@ int dense_degree(Method method) {
 }
 
 Stepper::Stepper(Method method, int n)
-    : method_(method),
-      pair_(method == Method::taylor ? Method::dop853 : method),
+    : pair_(method == Method::taylor ? Method::dop853 : method),
       n_(n),
       explicit_(explicit_method(method, static_cast<std::size_t>(n))) {
   SALTUS_ASSERT(n >= 0);

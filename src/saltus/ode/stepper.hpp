@@ -184,8 +184,7 @@ class Stepper {
   [[nodiscard]] ExplicitStep explicit_step() const;
   [[nodiscard]] Attempt attempt_series(RightHandSide f, const LinearField& linear, const Tolerances& tolerances);
 
-  Method method_;
-  Method pair_;  ///< method_, of taylor the one in its place
+  Method pair_;  ///< that takes the steps: of taylor the one in its place
   int n_;
   const ExplicitMethod* explicit_;  ///< null: Radau
   std::size_t slope_new_ = 0;       ///< its place in stages_

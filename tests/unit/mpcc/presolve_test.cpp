@@ -47,7 +47,8 @@ TEST(Presolve, NamesRowsThatContradictBounds) {
   const auto found = presolve(problem, far).infeasible;
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(found[0], "g[0]: 2 to 8 within the bounds of the variables, but -1 to 1 is asked for");
-  EXPECT_EQ(found[1], "G[0] and H[0]: both are positive within the bounds of the variables and of rows of one variable");
+  EXPECT_EQ(found[1],
+            "G[0] and H[0]: both are positive within the bounds of the variables and of rows of one variable");
 }
 
 // Files of discretised systems have sides like lambda + 5e-9: rounding of what they were made of.

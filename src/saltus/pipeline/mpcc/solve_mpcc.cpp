@@ -26,7 +26,7 @@ Expected<std::optional<solver::Start>> start_at(const foreign::Problem& problem,
                                 {},
                                 {}});
   }
-  return solver::Start{problem.complete(linalg::ConstView(x->data(), n)), {}};
+  return solver::Start{problem.completed(linalg::ConstView(x->data(), n)), {}};
 }
 
 std::vector<result::MpccMultipliers::Range> ranges_of(const foreign::Problem& problem, Presolved& presolved,
