@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "saltus/base/at.hpp"
@@ -95,6 +96,11 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
   }
   start.regions = RegionConstants(system, p, parameters);
   start.cells = CellFunctions(system, p, parameters);
+  first_activity = parameters.size();
+  p = SX::vertcat({p, SX::vec(system.contacts.activities)});
+  parameters.resize(first_activity + at(system.contacts.activities.numel()));
+  start.activities.resize(system.contacts.contacts.size());
+  for (std::size_t i = 0; i < start.activities.size(); ++i) start.set_activity(first_activity, i, {});
   places = SymbolPlaces(symbols());
   for (auto& end : start.cells.rows(system)) rows.push_back(std::move(end));
   phi = rows.empty() ? SX(0, 1) : with_inputs(SX::vertcat(rows));
@@ -116,17 +122,19 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
 /// Guards of contacts are numbers of order 1, in the units of their modes; a gap is a length.
 SX CompiledModel::sizes_of_contact_guards(const model::System& system) const {
   SX sizes = SX::zeros(phi.numel(), 1);
-  for (const auto& contact : system.contacts.contacts) {
-    const auto guards = static_cast<int>(system.jumps[at(contact.jump)].guards.numel());
+  const auto& [contacts, activities] = std::tie(system.contacts.contacts, system.contacts.activities);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const auto guards = static_cast<int>(system.jumps[at(contacts[i].jump)].guards.numel());
+    const SX closed = activities(model::Activity::closed, static_cast<casadi_int>(i));
     for (int g = 0; g < guards; ++g) {
-      sizes(functions.jumps.guard(contact.jump, g)) = contact.has_gap && g == 0 ? x(contact.closed) : SX(1.0);
+      sizes(functions.jumps.guard(contacts[i].jump, g)) = contacts[i].has_gap && g == 0 ? closed : SX(1.0);
     }
   }
   return sizes;
 }
 
-/// Of event functions that are not affine, over t and the first `moving` states; 0 for the others.
-ModelFunction CompiledModel::range_function(casadi_int moving) const {
+/// Of event functions that are not affine, over t and x; 0 for the others.
+ModelFunction CompiledModel::range_function() const {
   if (!functions.functions.program()) return {};
   const std::vector<SX> arguments{t, x, p, alpha};
   SX curved = SX::zeros(phi.numel(), 1);
@@ -138,7 +146,7 @@ ModelFunction CompiledModel::range_function(casadi_int moving) const {
   std::vector<std::vector<casadi::SXElem>> symbols;
   for (const SX& argument : arguments) symbols.push_back(argument.nonzeros());
   const auto found = model::ranges(casadi::Function("tape", arguments, {curved}), [&](casadi_int i, casadi_int k) {
-    const bool moves = i == 0 || (i == 1 && k < moving);
+    const bool moves = i <= 1;
     return model::Range{symbols[at(i)][at(k)], moves ? radius[at(i + k)] : casadi::SXElem(0.0)};
   });
   std::vector<casadi::SXElem> middle, width;
@@ -157,16 +165,13 @@ void CompiledModel::compile_functions(const model::System& system) {
   functions.output_function = ModelFunction("saltus_outputs", arguments, {outputs});
   functions.input_function = ModelFunction("saltus_inputs", arguments, {input});
   functions.jumps = JumpFunctions(system, arguments, input, first_jump_guard);
-  // Modes of contacts are exact: what has a rounding, and an error, are the states before them.
-  const casadi_int moved = system.contacts.empty() ? x.numel() : system.contacts.first_hidden;
-  const SX moving = x(casadi::Slice(0, moved));
   prepares(compiling, 5, compiled_parts);
-  const SX slope = SX::jacobian(phi, moving);
+  const SX slope = SX::jacobian(phi, x);
   const SX rate = SX::jacobian(phi, t);
-  const SX magnitude = SX::mtimes(fabs(slope), fabs(moving)) + fabs(rate * t) + sizes_of_contact_guards(system);
+  const SX magnitude = SX::mtimes(fabs(slope), fabs(x)) + fabs(rate * t) + sizes_of_contact_guards(system);
   functions.scales = ModelFunction("saltus_scales", arguments, {magnitude, SX::sum2(fabs(slope))});
   functions.affine_rows = AffineRowFunctions(phi, symbols(), affine);
-  if (contains(affine, false)) functions.ranges = range_function(moved);
+  if (contains(affine, false)) functions.ranges = range_function();
   functions.gradients.resize(at(phi.numel()));
   compile_conditions(system);
   start.cells.compile(arguments, system, input);

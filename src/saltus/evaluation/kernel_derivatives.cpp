@@ -249,8 +249,7 @@ const ode::LinearField* ModelKernel::linear_field(const double* alpha, ode::Line
   }
   if (!motion.linear->is_affine()) return nullptr;
   const double* p = self.parameters.data();
-  // Cells and references change constants among the parameters.
-  if (motion.linear->is_constant() && self.cells.size() == 0 && self.regions.groups().empty()) {
+  if (motion.linear->is_constant() && self.has_fixed_constants()) {
     motion.linear->fill(p, alpha, motion.linear_always.emplace());
     return &*motion.linear_always;
   }

@@ -2,6 +2,7 @@
 // their own, and the context of a run.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
@@ -74,7 +75,7 @@ struct Motion {
 struct KernelSymbols {
   explicit KernelSymbols(const model::System& system);
 
-  casadi::SX t, x, p, alpha;  ///< p: parameters, then constants, upper and lower ends of cells
+  casadi::SX t, x, p, alpha;  ///< p: parameters, then constants, upper and lower ends of cells, then activities
   casadi::SX phi, outputs, input;
   std::vector<bool> discrete;  ///< n_x
   int n_psi = 0;
@@ -89,6 +90,7 @@ struct KernelStructure {
   std::vector<std::vector<int>> inner;
   SymbolPlaces places;
   std::size_t fixed_parameters = 0;    ///< the first of `parameters`: changed by set_parameters() only
+  std::size_t first_activity = 0;      ///< among `parameters`: constants of the first contact
   bool by_values = false;              ///< expressions may depend on their values
   std::vector<HeldGuard> jump_guards;  ///< by event function, from first_jump_guard on
   int first_jump_guard = 0;
@@ -117,13 +119,24 @@ struct LimitedFunction {
 
 /// Says where a run begins beside t, x and alpha.
 struct KernelValues {
-  std::vector<double> parameters;     ///< values of p
-  RegionConstants regions;            ///< their references
-  CellFunctions cells;                ///< in which each argument is
-  std::vector<double> initial_state;  ///< x where a run begins
+  std::vector<double> parameters;           ///< values of p
+  RegionConstants regions;                  ///< their references
+  CellFunctions cells;                      ///< in which each argument is
+  std::vector<model::Activity> activities;  ///< of all contacts
+  std::vector<double> initial_state;        ///< x where a run begins
   std::shared_ptr<const model::System>
       system;  ///< stated with these values; copied and dropped under the symbolic lock
   std::shared_ptr<const model::Layout> layout;  ///< its own: names and times are no part of what is compiled
+
+  [[nodiscard]] bool has_fixed_constants() const {
+    return cells.size() == 0 && activities.empty() && regions.groups().empty();
+  }
+  /// @param first  place of the constants of contact 0
+  void set_activity(std::size_t first, std::size_t contact, const model::Activity& activity) {
+    activities[contact] = activity;
+    const auto values = activity.values();
+    std::copy(values.begin(), values.end(), parameters.begin() + index(first + contact * values.size()));
+  }
 };
 
 /// Holds a model as compiled functions, for kernels in any threads. Nothing of it changes but what is made when it is
@@ -157,7 +170,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   void compile_field(CompiledMotion& target, const std::string& name) const;
   [[nodiscard]] casadi::SX sizes_of_contact_guards(const model::System& system) const;
   void compile_functions(const model::System& system);
-  [[nodiscard]] ModelFunction range_function(casadi_int moving) const;
+  [[nodiscard]] ModelFunction range_function() const;
   void find_structure(const model::System& system);
   void find_layout(const model::System& system);
   [[nodiscard]] std::vector<std::vector<int>> normal_dependencies(const casadi::SX& f) const;

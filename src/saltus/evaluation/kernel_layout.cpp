@@ -85,6 +85,7 @@ bool ModelKernel::set_values(const model::System& system) {
   if (self.compiled->by_values || !self.limited.empty() || !self.regions.groups().empty()) return false;
   std::copy(values.begin(), values.end(), self.parameters.begin());
   for (int cell = 0; cell < self.cells.size(); ++cell) self.cells.move(cell, 0, self.parameters);
+  set_activities(std::vector<model::Activity>(self.activities.size()));
   self.constant_gradients.reset();
   self.free.linear_always.reset();
   for (auto& [functions, motion] : self.held) motion.linear_always.reset();

@@ -63,7 +63,7 @@ Expected<void> ModelKernel::Implementation::start_native() {
   const bool has_nesting =
       std::any_of(compiled->inner.begin(), compiled->inner.end(), [](const auto& list) { return !list.empty(); });
   // Otherwise the rows are made once.
-  if (cells.size() > 0 || !regions.groups().empty() || has_nesting) all.push_back(&affine_rows.function());
+  if (!has_fixed_constants() || has_nesting) all.push_back(&affine_rows.function());
   auto started = native.start(wanted, std::move(all), std::move(appended));
   if (started) take_native_field();
   return started;

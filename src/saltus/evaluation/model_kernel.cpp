@@ -142,6 +142,18 @@ void ModelKernel::contacts(double t, const double* x, const double* alpha, Conta
                              values.acceleration.data(), values.friction.data(), values.restitution.data()});
 }
 
+const std::vector<model::Activity>& ModelKernel::activities() const { return implementation_->activities; }
+
+void ModelKernel::set_activity(int contact, const model::Activity& activity) {
+  auto& self = *implementation_;
+  self.KernelValues::set_activity(self.compiled->first_activity, at(contact), activity);
+  self.constant_gradients.reset();
+}
+
+void ModelKernel::set_activities(const std::vector<model::Activity>& activities) {
+  for (std::size_t i = 0; i < activities.size(); ++i) set_activity(static_cast<int>(i), activities[i]);
+}
+
 const std::vector<RegionRange>& ModelKernel::region_groups() const { return implementation_->regions.groups(); }
 int ModelKernel::reference(std::size_t group) const { return implementation_->regions.reference(group); }
 
@@ -151,6 +163,7 @@ void ModelKernel::set_reference(std::size_t group, int function) {
   self.constant_gradients.reset();
 }
 
+bool ModelKernel::has_fixed_constants() const { return implementation_->has_fixed_constants(); }
 int ModelKernel::cells() const { return implementation_->cells.size(); }
 int ModelKernel::cell_function(int cell) const { return event_functions() - 2 * (cells() - cell); }
 const model::CellTable& ModelKernel::cell_table(int cell) const { return implementation_->cells.table(cell); }

@@ -12,6 +12,7 @@
 #include "saltus/ode/sparse/jacobian_pattern.hpp"
 
 namespace saltus::model {
+struct Activity;
 struct Layout;
 struct System;
 }  // namespace saltus::model
@@ -99,9 +100,9 @@ struct FieldConstants {
 /// All functions take t (model time), x (n_x), alpha (n_psi, in [0, 1]) and write to the caller's memory; values that
 /// are not finite mark points where the model is undefined. Controls are replaced by their inputs u(t).
 ///
-/// A kernel is a compiled model and the context of one run: parameters, cells, references of regions, what is held,
-/// work space. Who changes the context has a kernel that is not const. One kernel per thread; kernels of one compiled
-/// model (share) may run in several threads at a time.
+/// A kernel is a compiled model and the context of one run: parameters, cells, activities of contacts, references of
+/// regions, what is held, work space. Who changes the context has a kernel that is not const. One kernel per thread;
+/// kernels of one compiled model (share) may run in several threads at a time.
 class ModelKernel {
  public:
   /// Compiles the functions that every run needs; derivatives of single functions are compiled when first asked for.
@@ -217,6 +218,10 @@ class ModelKernel {
 
   /// Evaluates gaps, velocities and what moves them; only for systems with contacts.
   void contacts(double t, const double* x, const double* alpha, ContactValues& values) const;
+  /// Returns how contacts take part in the mode, which forces and guards depend on; all are open at first.
+  [[nodiscard]] const std::vector<model::Activity>& activities() const;
+  void set_activity(int contact, const model::Activity& activity);
+  void set_activities(const std::vector<model::Activity>& activities);
 
   /// Makes field(), lie_derivative() and depends() those of the held system
   ///   xdot = f + D mu,  d_k = (d set_k/dx - I) w_k,  w_k = d/dx (d g_k/dt) restricted to the continuous states that
@@ -254,6 +259,9 @@ class ModelKernel {
   /// always 0. Otherwise it is NaN.
   [[nodiscard]] bool root_is_continued(int surface) const;
 
+  /// Returns whether functions hold the same constants in all modes: no cells, activities of contacts or references of
+  /// regions change them.
+  [[nodiscard]] bool has_fixed_constants() const;
   [[nodiscard]] int cells() const;
   /// Returns the event function of a cell's upper end (argument - end, negative inside); that of the lower one follows
   /// it.

@@ -19,7 +19,6 @@ ContactPoint contacts_with(const evaluation::ModelKernel& kernel, const result::
                            const std::vector<double>& x, evaluation::ContactValues& values) {
   auto state = event.x;
   for (const int v : kernel.layout().velocities) state[at(v)] = x[at(v)];
-  state.resize(at(kernel.states()), 0.0);
   const std::vector<double> alpha(at(kernel.switching_functions()), 0.5);
   kernel.contacts(event.t, state.data(), alpha.data(), values);
   ContactPoint point;

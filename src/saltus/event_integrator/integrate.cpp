@@ -27,13 +27,13 @@ namespace {
 
 /// Rows and events of a part of a run.
 void expand(const model::Layout& layout, Recording recording, Integration& integration) {
-  // Contacts are shown by states that are left out of the rows.
   integration.final = recording.last(layout);
   integration.events = recording.events(layout);
   integration.trajectory = std::move(recording).trajectory(layout);
-  if (!layout.contacts.empty()) {
-    show_contacts(layout, integration.final, integration.events, integration.trajectory);
-  }
+  if (layout.contacts.empty()) return;
+  write_impulses(layout, integration.events, integration.trajectory);
+  const auto outputs = integration.trajectory.outputs.back();
+  integration.final.outputs = {outputs.begin(), outputs.end()};
 }
 
 }  // namespace

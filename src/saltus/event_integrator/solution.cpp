@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
-#include "saltus/event_integrator/contact/contact_results.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/field/mode_field.hpp"
 #include "saltus/event_integrator/jumps/holding.hpp"
@@ -45,6 +44,7 @@ bool Solution::Implementation::enter(std::size_t number) {
   const PieceMode& mode = pieces->modes[number];
   if (!holding.put(mode.held)) return false;
   for (std::size_t c = 0; c < mode.cells.size(); ++c) kernel.set_cell(static_cast<int>(c), mode.cells[c]);
+  kernel.set_activities(mode.state.activities);
   set_references(kernel, mode.state);
   ModeState state = mode.state;
   state.alpha = mode.start;
@@ -74,12 +74,9 @@ Solution::Solution(Solution&&) noexcept = default;
 Solution::~Solution() = default;
 
 result::Trajectory Solution::rows(const std::vector<double>& times) {
-  const auto& layout = implementation_->kernel.layout();
   Recorder recorder(implementation_->kernel);
   for (const double t : times) static_cast<void>(implementation_->write(t, recorder));
-  auto rows = recorder.take().trajectory(layout);
-  if (!layout.contacts.empty()) show_contacts(layout, rows);
-  return rows;
+  return recorder.take().trajectory(implementation_->kernel.layout());
 }
 
 }  // namespace saltus::event_integrator

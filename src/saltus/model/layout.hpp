@@ -76,7 +76,6 @@ struct Layout {
   std::vector<Group> groups;
   std::vector<Contact> contacts;
   std::vector<int> positions, velocities;  ///< states of bodies with contacts
-  int shown_states = 0;                    ///< states from here on are modes of contacts: in no column of a result
   Inclusion inclusion = Inclusion::filippov;
   bool multi_affine = true;          ///< System::multi_affine
   bool affine_in_selections = true;  ///< f is affine in each selection

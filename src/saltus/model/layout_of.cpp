@@ -60,7 +60,6 @@ Layout layout_of(const System& system) {
   layout.contacts = system.contacts.contacts;
   layout.positions = system.contacts.positions;
   layout.velocities = system.contacts.velocities;
-  layout.shown_states = system.contacts.empty() ? static_cast<int>(system.x.numel()) : system.contacts.first_hidden;
   layout.inclusion = system.inclusion;
   layout.multi_affine = system.multi_affine;
   layout.affine_in_selections = system.inclusion == Inclusion::filippov || system.multi_affine;

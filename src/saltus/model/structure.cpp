@@ -135,6 +135,7 @@ std::vector<std::uint64_t> structure(const System& system) {
     writer.symbols(group.reference);
   }
   for (const auto& cell : system.cells) writer.symbols(cell.symbols);
+  writer.symbols(SX::vec(system.contacts.activities));
   writer.write_all(system.discrete_states);
   for (const auto& function : system.switching) {
     writer.write(static_cast<std::uint64_t>(function.role));

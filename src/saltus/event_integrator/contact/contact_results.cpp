@@ -6,131 +6,103 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
 
 namespace saltus::event_integrator {
 namespace {
 
 using result::EventKind;
 
-class Shown {
- public:
-  explicit Shown(const model::Layout& layout) : layout_(layout) {}
-
-  [[nodiscard]] std::vector<result::ContactMode> modes(const std::vector<double>& x) const {
-    std::vector<result::ContactMode> result;
-    for (const auto& contact : layout_.contacts) {
-      const bool closed = x[at(contact.closed)] != 0.0;
-      const bool smooth = contact.friction_varies ? x[at(contact.smooth)] != 0.0 : !contact.has_friction;
-      result.push_back(!closed                      ? result::ContactMode::open
-                       : smooth                     ? result::ContactMode::closed
-                       : x[at(contact.slip)] != 0.0 ? result::ContactMode::slip
-                                                    : result::ContactMode::stick);
+/// Normal, then along tangents.
+std::vector<std::vector<double>> by_contact(const model::Layout& layout, std::span<const double> impulses) {
+  const std::size_t m = layout.contacts.size();
+  std::vector<std::vector<double>> found;
+  for (std::size_t i = 0; i < m; ++i) {
+    auto& own = found.emplace_back();
+    for (std::size_t k = 0; k <= at(layout.contacts[i].tangents()); ++k) {
+      own.push_back(k * m + i < impulses.size() ? impulses[k * m + i] : 0.0);
     }
-    return result;
   }
+  return found;
+}
 
-  [[nodiscard]] std::vector<std::vector<double>> impulses(const std::vector<double>& before,
-                                                          const std::vector<double>& x) const {
-    std::vector<std::vector<double>> result;
-    for (const auto& contact : layout_.contacts) {
-      result.emplace_back();
-      for (int k = contact.impulse; k <= contact.impulse + contact.tangents(); ++k) {
-        result.back().push_back(x[at(k)] - before[at(k)]);
-      }
-    }
-    return result;
+/// From the modes of the contacts that it is about.
+void name_event(const model::Layout& layout, result::Event& event) {
+  bool closes = false, opens = false, sticks = false;
+  for (std::size_t i = 0; i < layout.contacts.size(); ++i) {
+    if (!contains(event.surfaces, layout.contacts[i].name)) continue;
+    closes = closes || event.contact_modes_before[i] == result::ContactMode::open;
+    opens = opens || event.contact_modes_after[i] == result::ContactMode::open;
+    sticks = sticks || event.contact_modes_after[i] == result::ContactMode::stick;
   }
-
-  void cut(std::vector<double>& x) const {
-    if (x.size() > at(layout_.shown_states)) x.resize(at(layout_.shown_states));
-  }
-
-  [[nodiscard]] std::size_t states() const { return at(layout_.shown_states); }
-
-  [[nodiscard]] bool owns(const std::string& name) const {
-    return std::any_of(layout_.contacts.begin(), layout_.contacts.end(),
-                       [&](const auto& contact) { return contact.name == name; });
-  }
-
-  /// Whether a slip goes on in the other direction.
-  [[nodiscard]] static bool turns(const model::Contact& contact, const std::vector<double>& x,
-                                  const std::vector<double>& after) {
-    return contact.has_friction && !contact.in_plane && x[at(contact.slip)] != 0.0 && after[at(contact.slip)] != 0.0 &&
-           x[at(contact.share)] * after[at(contact.share)] < 0.0;
-  }
-
-  /// An event of contacts, from the modes on both sides and the impulses; false if there is nothing to tell.
-  bool tell(result::Event& event) const {
-    const auto before = modes(event.x), after = modes(event.x_after);
-    auto impulse = impulses(event.x, event.x_after);
-    event.surfaces.clear();
-    event.name.reset();
-    bool hit = false, closes = false, opens = false, sticks = false;
-    for (std::size_t i = 0; i < before.size(); ++i) {
-      const bool pushed =
-          std::any_of(impulse[i].begin(), impulse[i].end(), [](double component) { return component != 0.0; });
-      if (before[i] == after[i] && !pushed && !turns(layout_.contacts[i], event.x, event.x_after)) continue;
-      event.surfaces.push_back(layout_.contacts[i].name);
-      hit = hit || pushed;
-      closes = closes || before[i] == result::ContactMode::open;
-      opens = opens || after[i] == result::ContactMode::open;
-      sticks = sticks || after[i] == result::ContactMode::stick;
-    }
-    if (event.surfaces.empty()) return false;
-    const std::string open = event.unique == false ? "; " + event.reason : "";
-    event.kind = hit      ? EventKind::impact
-                 : closes ? EventKind::contact
-                 : opens  ? EventKind::lift_off
-                 : sticks ? EventKind::stick
-                          : EventKind::slip;
-    event.reason = hit      ? "bodies collide: the impulses end their approach"
-                   : closes ? "bodies touch without approaching"
-                   : opens  ? "the normal force ends"
-                   : sticks ? "friction holds what has come to rest"
-                            : "the tangential force reaches the edge of the friction cone, or the slip turns around";
-    event.reason += open;
-    if (hit) event.impulse = std::move(impulse);
-    return true;
-  }
-
- private:
-  const model::Layout& layout_;
-};
+  const std::string open = event.unique == false ? "; " + event.reason : "";
+  const auto name = [&](EventKind kind, const char* reason) {
+    event.kind = kind;
+    event.reason = reason + open;
+  };
+  if (event.impulse) return name(EventKind::impact, "bodies collide: the impulses end their approach");
+  if (closes) return name(EventKind::contact, "bodies touch without approaching");
+  if (opens) return name(EventKind::lift_off, "the normal force ends");
+  if (sticks) return name(EventKind::stick, "friction holds what has come to rest");
+  name(EventKind::slip, "the tangential force reaches the edge of the friction cone, or the slip turns around");
+}
 
 }  // namespace
 
-void show_contacts(const model::Layout& layout, result::Trajectory& trajectory) {
-  const Shown shown(layout);
-  for (const auto& x : trajectory.x) trajectory.contact_modes.push_back(shown.modes(x));
-  trajectory.x.narrow(shown.states());
+std::vector<result::ContactMode> contact_modes(const std::vector<int>& states) {
+  using State = model::Activity::State;
+  constexpr auto is_same = [](State a, result::ContactMode b) { return static_cast<int>(a) == static_cast<int>(b); };
+  static_assert(is_same(State::open, result::ContactMode::open) && is_same(State::closed, result::ContactMode::closed));
+  static_assert(is_same(State::stick, result::ContactMode::stick) && is_same(State::slip, result::ContactMode::slip));
+  std::vector<result::ContactMode> modes;
+  for (const int state : states) modes.push_back(static_cast<result::ContactMode>(state));
+  return modes;
 }
 
-void show_contacts(const model::Layout& layout, result::Final& final, result::Events& events,
-                   result::Trajectory& trajectory) {
-  const Shown shown(layout);
-  result::Events told;
-  for (result::Event event : events) {
-    const bool of_contact = event.kind == EventKind::jump && event.name && shown.owns(*event.name);
-    const bool empty = of_contact && !shown.tell(event);
-    if (empty && !told.empty() && told.t(told.size() - 1) == event.t && event.mode_after) {
-      // Several contacts may end at once; the first of their jumps has changed all.
-      result::Event first = told.back();
-      told.pop_back();
-      std::tie(first.mode_after, first.alpha_after) = std::tie(event.mode_after, event.alpha_after);
-      if (event.unique == false) first.unique = false;
-      told.push_back(std::move(first));
-    }
-    if (empty) continue;
-    event.contact_modes_before = shown.modes(event.x);
-    event.contact_modes_after = shown.modes(event.x_after);
-    shown.cut(event.x);
-    shown.cut(event.x_after);
-    told.push_back(std::move(event));
+bool tell_contacts(const model::Layout& layout, const ContactSide& before, const ContactSide& after,
+                   std::span<const double> impulses, result::Event& event) {
+  event.contact_modes_before = contact_modes(before.states);
+  event.contact_modes_after = contact_modes(after.states);
+  const auto is_own = [&](const auto& contact) { return contact.name == event.name; };
+  const auto& contacts = layout.contacts;
+  if (event.kind != EventKind::jump || std::none_of(contacts.begin(), contacts.end(), is_own)) return true;
+  const auto impulse = by_contact(layout, impulses);
+  event.surfaces.clear();
+  event.name.reset();
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const bool pushed = std::any_of(impulse[i].begin(), impulse[i].end(), [](double part) { return part != 0.0; });
+    const bool turns = before.slips[i] * after.slips[i] < 0.0;
+    if (pushed) event.impulse = impulse;
+    if (pushed || turns || before.states[i] != after.states[i]) event.surfaces.push_back(contacts[i].name);
   }
-  events = std::move(told);
-  show_contacts(layout, trajectory);
-  final.contact_modes = shown.modes(final.x);
-  shown.cut(final.x);
+  if (!event.surfaces.empty()) name_event(layout, event);
+  return !event.surfaces.empty();
+}
+
+void take_into_previous(result::Events& events) {
+  const result::Event empty = events.back();
+  events.pop_back();
+  if (events.empty() || events.t(events.size() - 1) != empty.t || !empty.mode_after) return;
+  result::Event first = events.back();
+  events.pop_back();
+  std::tie(first.mode_after, first.alpha_after) = std::tie(empty.mode_after, empty.alpha_after);
+  if (empty.unique == false) first.unique = false;
+  events.push_back(std::move(first));
+}
+
+void write_impulses(const model::Layout& layout, const result::Events& events, result::Trajectory& trajectory) {
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    if (events.kind(k) != EventKind::impact) continue;
+    const auto behind = std::upper_bound(trajectory.t.begin(), trajectory.t.end(), events.t(k)) - trajectory.t.begin();
+    if (behind == 0 || trajectory.t[at(behind - 1)] != events.t(k)) continue;
+    const auto row = trajectory.outputs.change(at(behind - 1));
+    const auto impulse = *events[k].impulse;
+    for (std::size_t i = 0; i < layout.contacts.size(); ++i) {
+      const auto& names = layout.output_names;
+      const auto place = std::find(names.begin(), names.end(), "impulse(" + layout.contacts[i].name + ")");
+      if (place != names.end()) row[at(place - names.begin())] += impulse[i][0];
+    }
+  }
 }
 
 }  // namespace saltus::event_integrator

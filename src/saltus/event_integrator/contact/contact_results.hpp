@@ -1,6 +1,7 @@
 // Contacts as a result shows them.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "saltus/model/layout.hpp"
@@ -8,12 +9,25 @@
 
 namespace saltus::event_integrator {
 
-/// Takes the discrete states that say the modes of contacts out of rows and events of a run; rows get `contact_modes`,
-/// and jumps of contacts become impacts, contacts, lift-offs, sticks and slips. Those that change nothing go.
-void show_contacts(const model::Layout& layout, result::Final& final, result::Events& events,
-                   result::Trajectory& trajectory);
+/// Holds model::Activity::State of all contacts, and of those that slip along a tangent the share of friction, else 0.
+struct ContactSide {
+  std::vector<int> states;
+  std::vector<double> slips;
+};
 
-/// Does this for rows.
-void show_contacts(const model::Layout& layout, result::Trajectory& trajectory);
+[[nodiscard]] std::vector<result::ContactMode> contact_modes(const std::vector<int>& states);
+
+/// Gives an event the modes of contacts on both sides. A jump of contacts becomes an impact, a contact, a lift-off, a
+/// stick or a slip; false where it changes nothing.
+/// @param impulses  Contacts::impulses()
+[[nodiscard]] bool tell_contacts(const model::Layout& layout, const ContactSide& before, const ContactSide& after,
+                                 std::span<const double> impulses, result::Event& event);
+
+/// Takes the last event, which changes nothing, into the one before it at the same time: several contacts may end at
+/// once, and the first of their jumps has changed all.
+void take_into_previous(result::Events& events);
+
+/// Writes the impulses of events into the outputs that have their names, in the rows behind them.
+void write_impulses(const model::Layout& layout, const result::Events& events, result::Trajectory& trajectory);
 
 }  // namespace saltus::event_integrator

@@ -1,6 +1,7 @@
 #include "saltus/event_integrator/contact/contacts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -20,9 +21,10 @@ constexpr double small_velocity =
 
 }  // namespace
 
-Contacts::Contacts(const evaluation::ModelKernel& kernel)
+Contacts::Contacts(evaluation::ModelKernel& kernel)
     : kernel_(kernel), layout_(kernel.layout()), contacts_(layout_.contacts) {
   if (contacts_.empty()) return;
+  kernel_.set_activities(Activities(contacts_.size()));
   contact_of_guard_.assign(at(kernel.event_functions()), -1);
   is_of_contact_.assign(layout_.jumps.size(), false);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -36,41 +38,35 @@ Contacts::Contacts(const evaluation::ModelKernel& kernel)
 /// Of the accelerations that the forces of closed contacts cancel, by the sizes of these forces in t and x.
 double Contacts::force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
                              const std::vector<double>& x) {
-  const auto presses = [&](const auto& contact) { return contact.has_gap && x[at(contact.active)] != 0.0; };
-  if (std::none_of(contacts_.begin(), contacts_.end(), presses)) return 0.0;
-  auto& [open, rate, magnitude, slope] = terms_;
+  const auto carries = [](const auto& activity) { return activity.carries; };
+  if (std::none_of(activities().begin(), activities().end(), carries)) return 0.0;
+  auto& [rate, magnitude, slope] = terms_;
   magnitude.resize(contact_of_guard_.size());
   slope.resize(contact_of_guard_.size());
   kernel_.scales(t, x.data(), alpha.data(), magnitude.data(), slope.data());
   double largest = 0.0;
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const auto& contact = contacts_[i];
-    if (!presses(contact)) continue;
-    const double force = magnitude[at(kernel_.jump_guard(contact.jump, 0))] * x[at(contact.force_unit)];
+    const auto& activity = activities()[i];
+    if (!contacts_[i].has_gap || !activity.carries) continue;
+    const double force = magnitude[at(kernel_.jump_guard(contacts_[i].jump, 0))] * activity.force_unit;
     const auto row = static_cast<linalg::Index>(i);
     if (std::isfinite(force)) largest = std::max(largest, force * point.influence(row, row));
   }
   return largest;
 }
 
-void Contacts::drop_forces(std::vector<double>& x) const {
-  for (const auto& contact : contacts_) {
-    std::fill(x.begin() + contact.active, x.begin() + contact.force_unit, 0.0);
-  }
-}
-
-std::vector<double> Contacts::without_forces(std::vector<double> x) const {
-  drop_forces(x);
-  return x;
+void Contacts::free_field(double t, const std::vector<double>& x, const std::vector<double>& alpha, double* f) {
+  const Activities own = activities();
+  kernel_.set_activities(Activities(own.size()));
+  kernel_.field(t, x.data(), alpha.data(), f);
+  kernel_.set_activities(own);
 }
 
 /// Along the motion without contact forces.
 double Contacts::acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x) {
-  auto& [open, rate, magnitude, slope] = terms_;
-  open = x;
-  drop_forces(open);
+  auto& rate = terms_.rate;
   rate.resize(x.size());
-  kernel_.field(t, open.data(), alpha.data(), rate.data());
+  free_field(t, x, alpha, rate.data());
   double largest = 0.0;
   for (linalg::Index row = 0; row < values_.acceleration.size(); ++row) {
     double terms = 0.0, along = 0.0;
@@ -107,19 +103,17 @@ void Contacts::read_motion(double t, const std::vector<double>& alpha, const std
   point.acceleration = values_.acceleration;
 }
 
-ContactMode Contacts::mode_of(int contact, const std::vector<double>& x) const {
-  const auto& entry = contacts_[at(contact)];
-  if (x[at(entry.closed)] == 0.0) return ContactMode::open;
-  if (!entry.has_friction || (entry.friction_varies && x[at(entry.smooth)] != 0.0)) return ContactMode::closed;
-  if (x[at(entry.slip)] == 0.0) return ContactMode::stick;
-  if (entry.in_plane) return ContactMode::slip;
-  return x[at(entry.share)] > 0.0 ? ContactMode::slip_up : ContactMode::slip_down;
+ContactMode Contacts::mode_of(int contact) const {
+  constexpr std::array modes{ContactMode::open, ContactMode::closed, ContactMode::stick, ContactMode::slip};
+  const auto state = activity(contact).state;
+  const bool along = state == model::Activity::State::slip && !contacts_[at(contact)].in_plane;
+  if (!along) return modes[static_cast<std::size_t>(state)];
+  return activity(contact).share[0] > 0.0 ? ContactMode::slip_up : ContactMode::slip_down;
 }
 
 /// Whether the gap is 0: by the mode, by the event, or to the rounding of its terms.
 bool Contacts::touches(int contact, const std::vector<double>& x, const std::vector<int>& ended) const {
-  const auto& entry = contacts_[at(contact)];
-  if (!entry.has_gap || x[at(entry.closed)] != 0.0 || contains(ended, contact)) return true;
+  if (!contacts_[at(contact)].has_gap || activity(contact).is_closed() || contains(ended, contact)) return true;
   return std::abs(values_.gap(contact)) <= no_gap(contact, x);
 }
 
@@ -129,7 +123,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
   const int m = point.contacts();
   const double small = small_velocity * fastest(moment, point, x), end = none_below * slowest(moment, point, x);
   const auto is_over = [&](int i) {
-    return slips(mode_of(i, x)) && point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
+    return slips(mode_of(i)) && point.along(point.velocity, i).norm() <= (point.in_plane(i) ? end : small);
   };
   // Below the slowest speed none has a direction: slips that come to rest together do so at one time.
   const bool in_plane = std::any_of(ended.begin(), ended.end(), [&](int i) { return point.in_plane(i) && is_over(i); });
@@ -139,7 +133,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
   }
   for (int row = 0; row < static_cast<int>(point.velocity.size()); ++row) {
     const int contact = row % m;
-    const auto mode = mode_of(contact, x);
+    const auto mode = mode_of(contact);
     const bool slip_ends = slip_has_ended[at(contact)];
     const bool held = row < m ? mode != ContactMode::open : mode == ContactMode::stick || slip_ends;
     const auto rounding = [&] { return 16.0 * rounding_unit * terms_of(values_.rows, row, layout_.velocities, x); };
@@ -150,6 +144,7 @@ void Contacts::clean(const ContactMoment& moment, ContactPoint& point, const std
 std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const std::vector<int>& ended,
                                              std::vector<double>& x) {
   why_open_.clear();
+  impulses_.resize(0);
   ContactPoint point = point_at(moment.t, moment.alpha, x);
   last_bounces_.clear();
   if (!ended.empty() &&
@@ -187,11 +182,10 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
       x = x_before;
       point = before;
       kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
-      why_open_.clear();
       for (const int i : touching) point.velocity(i) = std::max(point.velocity(i), 0.0);
     }
-    if (touch_only) {
-      copy_impulses(x_before, x);
+    if (!ends || touch_only) {
+      impulses_.resize(0);
       why_open_.clear();
     }
     excluded.assign(contacts_.size(), {});
@@ -214,13 +208,14 @@ std::vector<int> Contacts::without_slip(const ContactMoment& moment, const std::
 std::optional<std::string> Contacts::settle(const ContactMoment& moment, const Bounces& bounces,
                                             std::vector<double>& x) {
   why_open_.clear();
+  impulses_.resize(0);
   std::vector<int> touching;
   const ContactPoint limit = point_at(moment.t, moment.alpha, x);
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const bool closed = x[at(contacts_[i].closed)] != 0.0, rests = closed || contains(bounces.jumps, contacts_[i].jump);
+    const bool closed = activities()[i].is_closed(), rests = closed || contains(bounces.jumps, contacts_[i].jump);
     if (!rests && !comes_to_rest(moment, static_cast<int>(i), limit, x)) continue;
     touching.push_back(static_cast<int>(i));
-    if (!closed) x[at(contacts_[i].active)] = 1.0;
+    if (!closed) change_activity(static_cast<int>(i), [](auto& activity) { activity.carries = true; });
   }
   // What is left of velocities into the gaps is more than rounding: to keep a slip would be work on it.
   static_cast<void>(project(moment.t, moment.alpha, x, {}, Slips::free));
@@ -260,42 +255,41 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const B
   const ContactPoint behind = point_at(moment.t, moment.alpha, x);
   const double slow = std::max(none, 1e-6 * fastest(moment, behind, x));
   const auto moves = [&](int i) {
-    return mode_of(i, x) != ContactMode::open && std::abs(behind.normal_velocity(i)) > slow;
+    return mode_of(i) != ContactMode::open && std::abs(behind.normal_velocity(i)) > slow;
   };
   if (std::none_of(touching.begin(), touching.end(), moves)) return std::nullopt;
   return fmt::format("the gaps of {} close at t = {:.17g} and cannot stay closed together: bodies jam", names(touching),
                      moment.t);
 }
 
-/// The discrete states of these modes. Of rows that depend on each other some hold; the others follow, and a tangential
+/// The activities of these modes. Of rows that depend on each other some hold; the others follow, and a tangential
 /// force that does keeps its share of the friction cone.
 void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
                      const ContactForces& found, std::vector<double>& x) {
+  using State = model::Activity::State;
   const int m = point.contacts();
   RowBasis basis(values_.rows);
+  Activities next(at(m));
   for (int i = 0; i < m; ++i) {
-    const auto& contact = contacts_[at(i)];
     const bool closed = found.faces[at(i)] != ContactMode::open;
-    x[at(contact.closed)] = closed ? 1.0 : 0.0;
-    x[at(contact.active)] = closed && !contains(found.idle, i) && basis.takes(i) ? 1.0 : 0.0;
-    std::fill(x.begin() + contact.active + 1, x.begin() + contact.force_unit, 0.0);
-    if (contact.friction_varies) x[at(contact.smooth)] = closed && point.tangents[at(i)] == 0 ? 1.0 : 0.0;
-    set_units(moment, point, i, x);
+    next[at(i)].state = !closed ? State::open : point.tangents[at(i)] == 0 ? State::closed : State::stick;
+    next[at(i)].carries = closed && !contains(found.idle, i) && basis.takes(i);
+    set_units(moment, point, i, x, next[at(i)]);
   }
   const auto following = rows_that_follow(point, resting, found);
   for (int i = 0; i < m; ++i) {
-    const auto& contact = contacts_[at(i)];
     const double limit = point.friction[at(i)] * found.z(i);
     const bool holds = found.faces[at(i)] == ContactMode::stick && !contains(found.idle, i);
-    for (int k = 0; holds && k < contact.tangents(); ++k) {
+    for (int k = 0; holds && k < contacts_[at(i)].tangents(); ++k) {
       const int row = point.tangent_row(i, k);
       if (!contains(following, row) && basis.takes(row)) {
-        x[at(contact.stick + k)] = 1.0;
+        next[at(i)].holds[at(k)] = true;
       } else if (limit > 0.0) {
-        x[at(contact.share + k)] = std::clamp(-found.z(row) / limit, -1.0, 1.0);
+        next[at(i)].share[at(k)] = std::clamp(-found.z(row) / limit, -1.0, 1.0);
       }
     }
   }
+  kernel_.set_activities(next);
   for (int i = 0; i < m; ++i) {
     if (!slips(found.faces[at(i)])) continue;
     bool is_free = false;
@@ -305,16 +299,16 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
 }
 
 /// Of forces the one that the contact alone would need for the largest acceleration, of speeds the fastest one.
-void Contacts::set_units(const ContactMoment& moment, const ContactPoint& point, int i, std::vector<double>& x) const {
+void Contacts::set_units(const ContactMoment& moment, const ContactPoint& point, int i, const std::vector<double>& x,
+                         model::Activity& activity) const {
   double response = point.influence(i, i);
   for (int k = 0; k < point.tangents[at(i)]; ++k) {
     const int row = point.tangent_row(i, k);
     response = std::max(response, point.influence(row, row));
   }
-  const auto& contact = contacts_[at(i)];
   const double force = response > 0.0 ? point.free_terms / response : 0.0, speed = fastest(moment, point, x);
-  x[at(contact.force_unit)] = force > 0.0 && std::isfinite(force) ? force : 1.0;
-  if (contact.has_friction) x[at(contact.speed_unit)] = speed > 0.0 && std::isfinite(speed) ? speed : 1.0;
+  activity.force_unit = force > 0.0 && std::isfinite(force) ? force : 1.0;
+  activity.speed_unit = speed > 0.0 && std::isfinite(speed) ? speed : 1.0;
 }
 
 /// What others hold at rest is at the edge of its cone, and does not slip.
@@ -324,19 +318,21 @@ void Contacts::enter_slip(const ContactMoment& moment, const ContactPoint& point
   const auto& contact = contacts_[at(i)];
   const bool is_still = point.along(point.velocity, i).is_zero();
   const bool moves = is_free || !is_still || point.along(found.y, i).norm() > 1e-9 * point.terms;
-  for (int k = 0; k < contact.tangents() && !(moves && contact.in_plane); ++k) {
-    x[at(contact.share + k)] = found.directions[at(i)](k);
-  }
+  change_activity(i, [&](auto& activity) {
+    for (int k = 0; k < contact.tangents() && !(moves && contact.in_plane); ++k) {
+      activity.share[at(k)] = found.directions[at(i)](k);
+    }
+  });
   if (!moves) return;
   // Before: without a speed the force of a slip has no size either.
   if (contact.in_plane && is_still) start_slip(moment, i, found.directions[at(i)], x);
-  x[at(contact.slip)] = 1.0;
+  change_activity(i, [](auto& activity) { activity.state = model::Activity::State::slip; });
 }
 
-Contacts::Modes Contacts::modes_at(const std::vector<double>& x) const {
+Contacts::Modes Contacts::modes_here() const {
   Modes found;
   for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
-    found.modes.push_back(mode_of(i, x));
+    found.modes.push_back(mode_of(i));
     if (found.modes.back() != ContactMode::open) found.closed.push_back(i);
   }
   return found;
@@ -345,7 +341,7 @@ Contacts::Modes Contacts::modes_at(const std::vector<double>& x) const {
 std::optional<std::string> Contacts::jam(const ContactMoment& moment, const std::vector<double>& x) {
   if (none()) return std::nullopt;
   const ContactPoint point = point_at(moment.t, moment.alpha, x);
-  auto [modes, closed] = modes_at(x);
+  auto [modes, closed] = modes_here();
   ContactForces forces;
   if (closed.empty() || !forces_in(point, closed, modes, forces)) return std::nullopt;
   constexpr double without_bound = 1e4;
@@ -360,22 +356,12 @@ std::optional<std::string> Contacts::jam(const ContactMoment& moment, const std:
       names(closed), moment.t);
 }
 
-void Contacts::forget_impulses(std::vector<double>& x) const {
-  for (const auto& contact : contacts_) {
-    std::fill_n(x.begin() + contact.impulse, 1 + contact.tangents(), 0.0);
-  }
-}
-
-std::optional<int> Contacts::jump_to_tell(const std::vector<double>& x) const {
-  for (const auto& contact : contacts_) {
-    if (x[at(contact.impulse)] != 0.0 || (!why_open_.text.empty() && x[at(contact.closed)] != 0.0)) return contact.jump;
+std::optional<int> Contacts::jump_to_tell() const {
+  for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
+    const bool pushed = impulses_.size() > 0 && impulses_(i) != 0.0;
+    if (pushed || (!why_open_.text.empty() && activity(i).is_closed())) return contacts_[at(i)].jump;
   }
   return std::nullopt;
-}
-
-void Contacts::copy_modes(const std::vector<double>& from, std::vector<double>& x) const {
-  const auto first = static_cast<std::ptrdiff_t>(layout_.shown_states);
-  if (!none()) std::copy(from.begin() + first, from.end(), x.begin() + first);
 }
 
 std::string Contacts::names(const std::vector<int>& contacts) const {

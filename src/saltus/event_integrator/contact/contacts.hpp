@@ -25,13 +25,18 @@ struct ContactMoment {
   ode::Tolerances tolerances{};
 };
 
-/// Changes the discrete states that say the modes of contacts, and velocities at impacts. Everything else of a contact
-/// (its forces, when a mode ends) is an expression of the system (model::ContactSystem).
+using Activities = std::vector<model::Activity>;
+
+/// Changes the activities that the kernel has, and velocities at impacts. Everything else of a contact (its forces,
+/// when a mode ends) is an expression of the system (model::ContactSystem).
 class Contacts {
  public:
-  explicit Contacts(const evaluation::ModelKernel& kernel);
+  /// Opens all contacts.
+  explicit Contacts(evaluation::ModelKernel& kernel);
 
   [[nodiscard]] bool none() const { return contacts_.empty(); }
+  /// Returns how contacts take part in the mode that the kernel is in.
+  [[nodiscard]] const Activities& activities() const { return kernel_.activities(); }
   /// Returns whether a jump is that of a contact.
   [[nodiscard]] bool owns(int jump) const { return !is_of_contact_.empty() && is_of_contact_[at(jump)]; }
   /// Returns whether an event function is a guard of such a jump.
@@ -40,7 +45,8 @@ class Contacts {
   }
   /// Returns how far a guard may be on the wrong side where a mode begins: the gap of a contact that has just opened is
   /// 0 to the rounding of bodies whose positions may all be 0.
-  [[nodiscard]] double tolerated(int function, const std::vector<double>& x) const;
+  [[nodiscard]] double tolerated(int function, const Activities& activities) const;
+  [[nodiscard]] double tolerated(int function) const { return tolerated(function, activities()); }
   struct GapMotion {
     double size, rate, terms, bend;  ///< sizes of the terms of the gap, and of its rate; the guard's derivatives
   };
@@ -50,11 +56,11 @@ class Contacts {
     std::vector<double> x, slope, ahead;
     evaluation::ContactValues here, later;
   };
-  /// Returns how a guard that is the gap of an open contact moves along a slope; nothing of other ones. The second
-  /// derivative is a difference.
+  /// Returns how a guard that is the gap of a contact that is open in `activities` moves along a slope; nothing of
+  /// other ones. The second derivative is a difference.
   [[nodiscard]] std::optional<GapMotion> gap_motion(int function, const ContactMoment& moment,
-                                                    const std::vector<double>& x, const std::vector<double>& slope,
-                                                    Along& along) const;
+                                                    const Activities& activities, const std::vector<double>& x,
+                                                    const std::vector<double>& slope, Along& along) const;
   /// Returns those whose jumps are in a list, or for which a condition on their jumps holds.
   template <class Condition>
   [[nodiscard]] std::vector<int> with_jumps(Condition condition) const {
@@ -65,9 +71,9 @@ class Contacts {
     return result;
   }
   /// Returns the jump of the first contact with an impulse, or of the first closed one if more than one motion follows.
-  [[nodiscard]] std::optional<int> jump_to_tell(const std::vector<double>& x) const;
-  /// Gives the modes of another state.
-  void copy_modes(const std::vector<double>& from, std::vector<double>& x) const;
+  [[nodiscard]] std::optional<int> jump_to_tell() const;
+  /// Returns the impulses of what was last resolved: r, in the order of ContactPoint; empty without an impact.
+  [[nodiscard]] const linalg::Vector& impulses() const { return impulses_; }
 
   /// Returns whether positions or velocities differ.
   [[nodiscard]] bool are_moved(const std::vector<double>& x, const std::vector<double>& x_after) const;
@@ -97,16 +103,16 @@ class Contacts {
   /// Says what is wrong where steps become ever smaller as a contact slips under a force that grows without bound.
   [[nodiscard]] std::optional<std::string> jam(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns whether a gap or a velocity is held at 0.
-  [[nodiscard]] bool hold(const std::vector<double>& x);
-  /// Returns the state with modes that have no forces.
-  [[nodiscard]] std::vector<double> without_forces(std::vector<double> x) const;
+  [[nodiscard]] bool hold();
+  /// Evaluates the right-hand side without contact forces (n_x).
+  void free_field(double t, const std::vector<double>& x, const std::vector<double>& alpha, double* f);
   enum class Slips { kept, free };
   /// Puts x on the gaps, rates and tangential velocities that are held at 0; returns whether it changed.
   /// @param slips  in a plane: kept as they are, or as free as all that is not held
   bool project(double t, const std::vector<double>& alpha, std::vector<double>& x,
                const std::vector<int>& touching = {}, Slips slips = Slips::kept);
-  /// Returns whether a jump of a contact has only bounded the speed of a slip in a plane anew.
-  [[nodiscard]] bool slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const;
+  /// Returns whether of activities only the bounds of the speed of a slip in a plane differ.
+  [[nodiscard]] bool slip_goes_on(const Activities& before, Activities after) const;
   /// Returns whether friction of a slip in a plane turns so fast that explicit steps would be short, and many.
   [[nodiscard]] bool turns_fast(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns the parts of the tolerances that slips in a plane bear, down to the speed at which they are looked at
@@ -114,8 +120,6 @@ class Contacts {
   [[nodiscard]] ode::Tolerances bearable(const ContactMoment& moment, const std::vector<double>& x);
   /// Returns their names, for messages.
   [[nodiscard]] std::string names(const std::vector<int>& contacts) const;
-  /// Forgets impulses, which belong to one instant.
-  void forget_impulses(std::vector<double>& x) const;
 
  private:
   /// Of the speed at which a slip in a plane is looked at again: small speeds are located to the rounding of t.
@@ -136,21 +140,28 @@ class Contacts {
   [[nodiscard]] double force_terms(const ContactPoint& point, double t, const std::vector<double>& alpha,
                                    const std::vector<double>& x);
   [[nodiscard]] double acceleration_terms(double t, const std::vector<double>& alpha, const std::vector<double>& x);
-  void drop_forces(std::vector<double>& x) const;
-  [[nodiscard]] ContactMode mode_of(int contact, const std::vector<double>& x) const;
+  [[nodiscard]] const model::Activity& activity(int contact) const { return kernel_.activities()[at(contact)]; }
+  /// Lets change(activity) change that of a contact.
+  template <class Change>
+  void change_activity(int contact, Change change) {
+    model::Activity changed = activity(contact);
+    change(changed);
+    kernel_.set_activity(contact, changed);
+  }
+  [[nodiscard]] ContactMode mode_of(int contact) const;
   struct Modes {
     std::vector<ContactMode> modes;  ///< of all contacts
     std::vector<int> closed;         ///< those that are not open
   };
-  [[nodiscard]] Modes modes_at(const std::vector<double>& x) const;
+  [[nodiscard]] Modes modes_here() const;
   [[nodiscard]] double fastest(const ContactMoment& moment, const ContactPoint& point,
                                const std::vector<double>& x) const;
   [[nodiscard]] double slowest(const ContactMoment& moment, const ContactPoint& point,
                                const std::vector<double>& x) const;
   [[nodiscard]] bool reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
                                      const std::vector<double>& x) const;
-  void bound_speeds(const ContactMoment& moment, std::vector<double>& x);
-  [[nodiscard]] std::optional<int> open_with_gap(int function, const std::vector<double>& x) const;
+  void bound_speeds(const ContactMoment& moment, const std::vector<double>& x);
+  [[nodiscard]] std::optional<int> open_with_gap(int function, const Activities& activities) const;
   [[nodiscard]] std::vector<int> without_normal(const ContactMoment& moment, const std::vector<int>& touching,
                                                 const std::vector<double>& x) const;
   [[nodiscard]] double no_gap(int contact, const std::vector<double>& x) const;
@@ -171,7 +182,6 @@ class Contacts {
                                    const std::vector<double>& x) const;
   void set_slip(const ContactPoint& point, int contact, const linalg::Vector& velocity, std::vector<double>& x);
   void start_slip(const ContactMoment& moment, int contact, const linalg::Vector& direction, std::vector<double>& x);
-  void copy_impulses(const std::vector<double>& from, std::vector<double>& x) const;
   void clean(const ContactMoment& moment, ContactPoint& point, const std::vector<double>& x,
              const std::vector<int>& ended) const;
   [[nodiscard]] std::vector<std::vector<ContactMode>> modes_that_end(const ContactMoment& moment,
@@ -199,7 +209,8 @@ class Contacts {
                                        const std::vector<double>& x);
   void enter(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
              const ContactForces& found, std::vector<double>& x);
-  void set_units(const ContactMoment& moment, const ContactPoint& point, int i, std::vector<double>& x) const;
+  void set_units(const ContactMoment& moment, const ContactPoint& point, int i, const std::vector<double>& x,
+                 model::Activity& activity) const;
   void enter_slip(const ContactMoment& moment, const ContactPoint& point, const ContactForces& found, int i,
                   bool is_free, std::vector<double>& x);
   [[nodiscard]] const linalg::Vector& least_change(const std::vector<int>& rows, const linalg::Vector& change);
@@ -209,10 +220,9 @@ class Contacts {
   void put_at_rest(const ContactPoint& point, const std::vector<int>& resting, std::vector<double>& x);
   void drop_own_roundings(const std::vector<int>& rows, const std::vector<double>& before,
                           std::vector<double>& x) const;
-  void keep_slips(const std::vector<double>& x, std::vector<int>& rows) const;
-  void find_held_rows(const std::vector<double>& x);
+  void keep_slips(std::vector<int>& rows) const;
 
-  const evaluation::ModelKernel& kernel_;
+  evaluation::ModelKernel& kernel_;
   const model::Layout& layout_;
   const std::vector<model::Contact>& contacts_;
   std::vector<int> contact_of_guard_;  ///< by event function, -1: of none; empty without contacts
@@ -232,11 +242,12 @@ class Contacts {
   };
   Projection projection_;  ///< work space: steps allocate nothing
   struct Terms {
-    std::vector<double> open, rate;  ///< a state without forces
+    std::vector<double> rate;  ///< without forces
     std::vector<double> magnitude, slope;
   };
   Terms terms_;  ///< likewise
   OpenMotion why_open_;
+  linalg::Vector impulses_;
   std::vector<int> last_bounces_;
 };
 

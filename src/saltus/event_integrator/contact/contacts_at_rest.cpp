@@ -103,7 +103,7 @@ void Contacts::note_last_bounces(const ContactMoment& moment, const std::vector<
   const double none = 64.0 * rounding_unit * before.velocity.max_abs();
   for (const int i : touching) {
     double& speed = before.velocity(i);
-    if (!(speed < 0.0) || before.restitution[at(i)] == 0.0 || mode_of(i, x) == ContactMode::open) continue;
+    if (!(speed < 0.0) || before.restitution[at(i)] == 0.0 || mode_of(i) == ContactMode::open) continue;
     speed *= -before.restitution[at(i)];
     if (speed <= none || rises_by_nothing(moment, i, before, x)) last_bounces_.push_back(contacts_[at(i)].jump);
   }
@@ -131,21 +131,19 @@ bool Contacts::have_jumped(const ContactMoment& moment, const std::vector<double
   for (int i = 0; i < point.contacts(); ++i) {
     const auto& contact = contacts_[at(i)];
     const double gap = values_.gap(i), none = no_gap(i, x);
-    if (contact.has_gap && (gap < -none || (x[at(contact.closed)] != 0.0 && gap > none))) return true;
+    if (contact.has_gap && (gap < -none || (activity(i).is_closed() && gap > none))) return true;
     const double speed = contact.has_friction ? point.along(point.velocity, i).norm() : 0.0;
-    const auto mode = mode_of(i, x);
+    const auto mode = mode_of(i);
     if (mode == ContactMode::stick && speed > still) return true;
     if (mode != ContactMode::slip) continue;
-    if (speed * speed < x[at(contact.speeds)] || speed * speed > x[at(contact.speeds) + 1]) return true;
+    const auto& [least, largest] = activity(i).speeds;
+    if (speed * speed < least || speed * speed > largest) return true;
   }
   return false;
 }
 
 std::optional<std::string> Contacts::begin_anew(const ContactMoment& moment, std::vector<double>& x) {
-  for (const auto& contact : contacts_) {
-    std::fill(x.begin() + contact.closed, x.begin() + contact.force_unit, 0.0);
-  }
-  forget_impulses(x);
+  kernel_.set_activities(Activities(contacts_.size()));
   kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
   for (int i = 0; i < static_cast<int>(contacts_.size()); ++i) {
     if (!contacts_[at(i)].has_gap || values_.gap(i) >= -no_gap(i, x)) continue;
@@ -156,21 +154,22 @@ std::optional<std::string> Contacts::begin_anew(const ContactMoment& moment, std
 }
 
 /// The contact that is open, and whose gap this event function is.
-std::optional<int> Contacts::open_with_gap(int function, const std::vector<double>& x) const {
+std::optional<int> Contacts::open_with_gap(int function, const Activities& activities) const {
   if (!guards(function)) return std::nullopt;
   const int i = contact_of_guard_[at(function)];
   const auto& contact = contacts_[at(i)];
-  const bool is_open = contact.has_gap && x[at(contact.closed)] == 0.0;
+  const bool is_open = contact.has_gap && !activities[at(i)].is_closed();
   return is_open && kernel_.jump_guard(contact.jump, 0) == function ? std::optional(i) : std::nullopt;
 }
 
-double Contacts::tolerated(int function, const std::vector<double>& x) const {
-  return open_with_gap(function, x) ? none_at_start : 0.0;
+double Contacts::tolerated(int function, const Activities& activities) const {
+  return open_with_gap(function, activities) ? none_at_start : 0.0;
 }
 
-auto Contacts::gap_motion(int function, const ContactMoment& moment, const std::vector<double>& x,
-                          const std::vector<double>& slope, Along& along) const -> std::optional<GapMotion> {
-  const auto contact = open_with_gap(function, x);
+auto Contacts::gap_motion(int function, const ContactMoment& moment, const Activities& activities,
+                          const std::vector<double>& x, const std::vector<double>& slope, Along& along) const
+    -> std::optional<GapMotion> {
+  const auto contact = open_with_gap(function, activities);
   if (!contact) return std::nullopt;
   auto& [known, at_x, along_slope, ahead, here, later] = along;
   const double h = ahead_by * moment.time_scale;

@@ -15,7 +15,7 @@ std::vector<std::vector<ContactMode>> Contacts::modes_that_end(const ContactMome
                                                                const std::vector<int>& ended,
                                                                const std::vector<double>& x) const {
   std::vector<std::vector<ContactMode>> result(contacts_.size());
-  const auto [modes, closed] = modes_at(x);
+  const auto [modes, closed] = modes_here();
   const auto is_at_rest = [&](int i) { return contains(closed, i) && !slips(modes[at(i)]); };
   if (std::all_of(ended.begin(), ended.end(), is_at_rest)) {
     constexpr double clear = 1e-6;
@@ -25,12 +25,12 @@ std::vector<std::vector<ContactMode>> Contacts::modes_that_end(const ContactMome
   const auto is_shared = [&](int contact) {
     RowBasis others(values_.rows);
     for (int i = 0; i < point.contacts(); ++i) {
-      if (i != contact && mode_of(i, x) != ContactMode::open) others.takes(i);
+      if (i != contact && mode_of(i) != ContactMode::open) others.takes(i);
     }
     return others.holds(contact);
   };
   for (int i = 0; i < point.contacts(); ++i) {
-    const auto mode = mode_of(i, x);
+    const auto mode = mode_of(i);
     const bool slowly = mode == ContactMode::slip && point.along(point.velocity, i).is_zero(),
                ends = contains(ended, i);
     if (ends && !slowly && !is_shared(i) && !reaches_a_speed(moment, i, point, x)) result[at(i)].push_back(mode);
@@ -43,10 +43,10 @@ std::vector<std::vector<ContactMode>> Contacts::modes_that_end(const ContactMome
 std::optional<ContactMode> Contacts::way_back(const ContactMoment& moment, int contact, bool ends,
                                               const std::vector<double>& x) const {
   const auto& entry = contacts_[at(contact)];
-  if (mode_of(contact, x) != ContactMode::stick || entry.in_plane) return std::nullopt;
-  const double share = x[at(entry.share)];
+  if (mode_of(contact) != ContactMode::stick || entry.in_plane) return std::nullopt;
+  const double share = activity(contact).share[0];
   double friction = std::abs(share) == 1.0 ? -share : 0.0;
-  if (ends && x[at(entry.stick)] != 0.0) {
+  if (ends && activity(contact).holds[0]) {
     std::vector<double> values(contact_of_guard_.size());
     kernel_.functions(moment.t, x.data(), moment.alpha.data(), values.data());
     // They are negative inside of the cone.

@@ -58,16 +58,11 @@ std::optional<Vector> Contacts::push(const ContactMoment& moment, const std::vec
                                      std::optional<int> pushed, ContactPoint& point, std::vector<double>& x) {
   auto impulses = impact(point, touching, pushed);
   if (!impulses) return impulses;
-  const int m = point.contacts();
   const Vector change = values_.responses * *impulses;
   for (std::size_t k = 0; k < layout_.velocities.size(); ++k) {
     x[at(layout_.velocities[k])] += change(static_cast<linalg::Index>(k));
   }
-  for (int i = 0; i < m; ++i) {
-    const auto& contact = contacts_[at(i)];
-    x[at(contact.impulse)] += (*impulses)(i);
-    for (int k = 0; k < point.tangents[at(i)]; ++k) x[at(contact.impulse) + 1 + at(k)] += (*impulses)(m * (1 + k) + i);
-  }
+  impulses_ = impulses_.size() > 0 ? Vector(impulses_ + *impulses) : *impulses;
   const double size = point.velocity.max_abs();
   read_point(moment.t, moment.alpha, x, point);
   drop_roundings(size, point);
@@ -90,10 +85,12 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
                        ContactPoint& point, std::vector<double>& x) {
   const double fastest = point.velocity.max_abs();
   const auto x_before = x;
+  const Vector impulses_before = impulses_;
   auto before = point;
   for (bool again = true; again;) {
     x = x_before;
     point = before;
+    impulses_ = impulses_before;
     const auto impulses = push(moment, touching, pushed, point, x);
     if (!impulses) return false;
     again = false;
@@ -126,12 +123,6 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
   }
   end_turning_slips(fastest, point);
   return true;
-}
-
-void Contacts::copy_impulses(const std::vector<double>& from, std::vector<double>& x) const {
-  for (const auto& contact : contacts_) {
-    std::copy_n(from.begin() + contact.impulse, 1 + contact.tangents(), x.begin() + contact.impulse);
-  }
 }
 
 }  // namespace saltus::event_integrator

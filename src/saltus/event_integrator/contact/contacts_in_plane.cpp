@@ -28,12 +28,12 @@ double Contacts::slowest(const ContactMoment& moment, const ContactPoint& point,
 /// Whether what ends at a point is not a slip in a plane, but the range of speeds in which it is followed.
 bool Contacts::reaches_a_speed(const ContactMoment& moment, int contact, const ContactPoint& point,
                                const std::vector<double>& x) const {
-  if (mode_of(contact, x) != ContactMode::slip) return false;
+  if (mode_of(contact) != ContactMode::slip) return false;
   const double speed = point.along(point.velocity, contact).norm();
-  const auto bounds = at(contacts_[at(contact)].speeds);
-  const bool at_bound = speed <= ends_below * std::sqrt(x[bounds]) || ends_below * speed >= std::sqrt(x[bounds + 1]);
+  const auto& [least, largest] = activity(contact).speeds;
+  const bool at_bound = speed <= ends_below * std::sqrt(least) || ends_below * speed >= std::sqrt(largest);
   if (!at_bound || speed <= none_below * slowest(moment, point, x)) return false;
-  const auto [modes, closed] = modes_at(x);
+  const auto [modes, closed] = modes_here();
   ContactForces forces;
   constexpr double holds = 1e-9;
   return forces_in(point, closed, modes, forces) && forces.margin > holds;
@@ -41,18 +41,18 @@ bool Contacts::reaches_a_speed(const ContactMoment& moment, int contact, const C
 
 /// Of slips in a plane. Where the velocity vanishes the force has no direction, and two functions would have to be 0 at
 /// once: so steps end at ever smaller speeds, down to one that is none.
-void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x) {
+void Contacts::bound_speeds(const ContactMoment& moment, const std::vector<double>& x) {
   if (std::none_of(contacts_.begin(), contacts_.end(), [&](const auto& contact) { return contact.in_plane; })) return;
   const ContactPoint point = point_at(moment.t, moment.alpha, x);
   constexpr double apart = 10.0;
   for (int i = 0; i < point.contacts(); ++i) {
-    const auto& contact = contacts_[at(i)];
-    if (!contact.in_plane) continue;
-    const bool slipping = x[at(contact.slip)] != 0.0;
+    if (!contacts_[at(i)].in_plane) continue;
     const double speed = point.along(point.velocity, i).norm();
     const double least = std::max(speed / apart, slowest(moment, point, x)), largest = apart * speed;
-    x[at(contact.speeds)] = slipping ? least * least : 1.0;
-    x[at(contact.speeds) + 1] = slipping ? largest * largest : 1.0;
+    change_activity(i, [&](auto& activity) {
+      const bool slips = activity.state == model::Activity::State::slip;
+      activity.speeds = {slips ? least * least : 1.0, slips ? largest * largest : 1.0};
+    });
   }
 }
 
@@ -60,7 +60,7 @@ void Contacts::bound_speeds(const ContactMoment& moment, std::vector<double>& x)
 /// breaks a contact away the speed grows like t^2: each time it doubles takes as many of them as 1/t. The last step may
 /// be as short as that limit already.
 bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>& x) {
-  const auto [modes, closed] = modes_at(x);
+  const auto [modes, closed] = modes_here();
   if (!contains(modes, ContactMode::slip)) return false;
   const ContactPoint point = point_at(moment.t, moment.alpha, x);
   ContactForces forces;
@@ -82,12 +82,12 @@ bool Contacts::turns_fast(const ContactMoment& moment, const std::vector<double>
 ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vector<double>& x) {
   constexpr double part_of_slip = 0.1;
   ode::Tolerances parts{1.0, 1.0};
-  const auto modes = modes_at(x).modes;
+  const auto modes = modes_here().modes;
   if (!contains(modes, ContactMode::slip)) return parts;
   const ContactPoint point = point_at(moment.t, moment.alpha, x);
   for (int i = 0; i < point.contacts(); ++i) {
     if (modes[at(i)] != ContactMode::slip) continue;
-    const double wanted = std::sqrt(x[at(contacts_[at(i)].speeds)]);
+    const double wanted = std::sqrt(activity(i).speeds[0]);
     for (int k = 0; k < 2; ++k) {
       const int row = point.tangent_row(i, k);
       const double terms = terms_of(values_.rows, row, layout_.velocities, x), slope = values_.rows.row(row).sum_abs();
@@ -102,7 +102,7 @@ ode::Tolerances Contacts::bearable(const ContactMoment& moment, const std::vecto
 void Contacts::set_slip(const ContactPoint& point, int contact, const Vector& velocity, std::vector<double>& x) {
   std::vector<int> rows{point.tangent_row(contact, 0), point.tangent_row(contact, 1)};
   Vector change = velocity;
-  if (x[at(contacts_[at(contact)].active)] != 0.0) {
+  if (activity(contact).carries) {
     rows.push_back(contact);
     change.resize_and_keep(3);
     change(2) = 0.0;
@@ -119,7 +119,7 @@ void Contacts::start_slip(const ContactMoment& moment, int contact, const Vector
   double speed = clear * slowest(moment, point, x);
   for (int tried = 0; tried < most_speeds; ++tried) {
     set_slip(point, contact, speed * direction, x);
-    x[at(contacts_[at(contact)].slip)] = 1.0;
+    change_activity(contact, [](auto& activity) { activity.state = model::Activity::State::slip; });
     point = point_at(moment.t, moment.alpha, x);
     const double needed = clear * slowest(moment, point, x);
     if (needed <= 2.0 * speed) break;
@@ -127,13 +127,10 @@ void Contacts::start_slip(const ContactMoment& moment, int contact, const Vector
   }
 }
 
-bool Contacts::slip_goes_on(const std::vector<double>& x, const std::vector<double>& x_after) const {
-  if (none()) return false;
-  auto expected = x;
-  for (const auto& contact : contacts_) {
-    if (contact.in_plane) std::copy_n(x_after.begin() + contact.speeds, 2, expected.begin() + contact.speeds);
-  }
-  return expected == x_after && x != x_after;
+bool Contacts::slip_goes_on(const Activities& before, Activities after) const {
+  if (before == after) return false;
+  for (std::size_t i = 0; i < after.size(); ++i) after[i].speeds = before[i].speeds;
+  return before == after;
 }
 
 }  // namespace saltus::event_integrator

@@ -21,7 +21,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
     resting.clear();
     std::copy_if(touching.begin(), touching.end(), std::back_inserter(resting),
                  [&](int i) { return point.normal_velocity(i) == 0.0; });
-    found = switching::solve_point(problem_of(point, resting), {without, modes_at(x).modes});
+    found = switching::solve_point(problem_of(point, resting), {without, modes_here().modes});
     return !found.all.empty();
   };
   const std::vector<std::vector<ContactMode>> none(contacts_.size());
@@ -64,16 +64,18 @@ void Contacts::move_ahead(const ContactMoment& moment, double h, std::vector<dou
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * rate[i];
 }
 
-/// The point a little later in the motion of these modes. Values are those at x, and stay so.
+/// The point a little later in the motion of these modes. Values and activities are those at x, and stay so.
 void Contacts::read_ahead(const ContactMoment& moment, const ContactPoint& point, const std::vector<int>& resting,
                           const ContactForces& found, const std::vector<double>& x, ContactPoint& later) {
   const double h = ahead_by * moment.time_scale;
+  const Activities own = activities();
   const evaluation::ContactValues values = values_;
   ContactPoint here = point;
   here.velocity = values_.velocity;
   auto ahead = x;
   enter(moment, here, resting, found, ahead);
   move_ahead(moment, h, ahead);
+  kernel_.set_activities(own);
   read_motion(moment.t + h, moment.alpha, ahead, later);
   values_ = values;
   later.terms = point.terms;

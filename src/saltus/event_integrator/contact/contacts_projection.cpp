@@ -34,24 +34,19 @@ const Vector& Contacts::least_change(const std::vector<int>& rows, const Vector&
   return work.least;
 }
 
-void Contacts::find_held_rows(const std::vector<double>& x) {
+bool Contacts::hold() {
   auto& rows = projection_.start.held;
   rows.clear();
   const auto m = static_cast<int>(contacts_.size());
   for (int i = 0; i < m; ++i) {
-    if (x[at(contacts_[at(i)].active)] != 0.0) rows.push_back(i);
+    if (activity(i).carries) rows.push_back(i);
   }
   for (int i = 0; i < m; ++i) {
-    const auto& contact = contacts_[at(i)];
-    for (int k = 0; contact.has_friction && k < contact.tangents(); ++k) {
-      if (x[at(contact.stick + k)] != 0.0) rows.push_back(m * (1 + k) + i);
+    for (int k = 0; k < 2; ++k) {
+      if (activity(i).holds[at(k)]) rows.push_back(m * (1 + k) + i);
     }
   }
-}
-
-bool Contacts::hold(const std::vector<double>& x) {
-  find_held_rows(x);
-  return !projection_.start.held.empty();
+  return !rows.empty();
 }
 
 /// @param touching  what opens there does not begin below its gap: the correction of another one would leave it there,
@@ -99,7 +94,7 @@ void Contacts::correct_velocities(Slips slips, std::vector<double>& x) {
   rows = held;
   const bool at_rest = std::all_of(rows.begin(), rows.end(), [&](int row) { return values_.velocity(row) == 0.0; });
   if (at_rest && values_.velocity == velocity) return;
-  if (slips == Slips::kept) keep_slips(x, rows);
+  if (slips == Slips::kept) keep_slips(rows);
   change.resize(index(rows.size()));
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const double wanted = r < held.size() ? 0.0 : velocity(rows[r]);
@@ -141,12 +136,11 @@ void Contacts::put_at_rest(const ContactPoint& point, const std::vector<int>& re
 }
 
 /// Adds the tangential rows of slips in a plane that do not depend on the ones that are there.
-void Contacts::keep_slips(const std::vector<double>& x, std::vector<int>& rows) const {
+void Contacts::keep_slips(std::vector<int>& rows) const {
   const auto m = static_cast<int>(contacts_.size());
   std::optional<RowBasis> basis;
   for (int i = 0; i < m; ++i) {
-    const auto& contact = contacts_[at(i)];
-    if (!contact.in_plane || x[at(contact.slip)] == 0.0) continue;
+    if (mode_of(i) != ContactMode::slip) continue;
     if (!basis) {
       basis.emplace(values_.rows);
       for (const int row : rows) basis->takes(row);
@@ -159,7 +153,7 @@ void Contacts::keep_slips(const std::vector<double>& x, std::vector<int>& rows) 
 
 bool Contacts::project(double t, const std::vector<double>& alpha, std::vector<double>& x,
                        const std::vector<int>& touching, Slips slips) {
-  if (!hold(x)) return false;
+  if (!hold()) return false;
   projection_.start.x = x;
   // The gap of a step is within its tolerances: two corrections leave rounding.
   for (int iteration = 0; iteration < 3; ++iteration) {

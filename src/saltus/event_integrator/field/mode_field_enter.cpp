@@ -26,7 +26,7 @@ void ModeField::enter(const ModeState& state) {
     return;
   }
   // Cells may change a gradient that is constant in each.
-  const bool same_rows = same_single && rows_.is_constant.front() && kernel_.cells() == 0;
+  const bool same_rows = same_single && rows_.is_constant.front() && keeps_rows();
   if (!same_rows) resize_rows();
   if (same_single) {
     solve_ = SlidingSolve::decoupled;

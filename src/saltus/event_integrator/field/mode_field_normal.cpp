@@ -8,7 +8,7 @@
 namespace saltus::event_integrator {
 
 /// Whether the rows of the sliding surfaces are kept from mode to mode. Cells and references change them.
-bool ModeField::keeps_rows() const { return kernel_.cells() == 0 && kernel_.region_groups().empty(); }
+bool ModeField::keeps_rows() const { return kernel_.has_fixed_constants(); }
 
 /// The gradient in f_[0].
 void ModeField::take_row(std::size_t row) {

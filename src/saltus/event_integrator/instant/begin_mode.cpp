@@ -61,7 +61,7 @@ Resolver::Stage Resolver::begin_mode() {
   const Transition& transition = *entering_.transition;
   Position& here = run_.here;
   const ModeChange change = transition.from(out_.before);
-  here.change_mode(change);
+  here.change_mode(change, run_.contacts.activities());
   set_references(run_.kernel, here.state);
   run_.tolerances.begin_mode(run_.kernel, run_.options.layers, here);
   run_.tolerances.lift(StepTolerances::Reason::local);
@@ -148,7 +148,7 @@ bool Resolver::start() {
 /// The start is an event where jumps are due, or something listed is at zero.
 void Resolver::record_start(std::vector<int> listed) {
   const Position& here = run_.here;
-  if (!cascade_.executed().empty()) cascade_.executed().back().x_after = here.x;
+  cascade_.end_execution();
   cascade_.transition().state = here.state;
   run_.row(here.t, here.x);
   for (const auto& [surface, mode] : run_.options.initial_mode) {

@@ -15,8 +15,9 @@ using result::Termination;
 
 bool only_slips_on(const InstantContext& c) {
   const auto executed = c.cascade.executed().items();
-  return std::all_of(executed.begin(), executed.end(),
-                     [&](const auto& one) { return c.run.contacts.slip_goes_on(one.x, one.x_after); });
+  return std::all_of(executed.begin(), executed.end(), [&](const auto& one) {
+    return one.x == one.x_after && c.run.contacts.slip_goes_on(one.activities, one.activities_after);
+  });
 }
 
 void limit_beside_rest(RunState& run) {
@@ -31,17 +32,15 @@ bool begin_contacts(const InstantContext& c) {
   Position& here = run.here;
   if (run.contacts.none()) return true;
   const auto before = here.x;
+  const Activities activities = run.contacts.activities();
   if (auto problem = run.contacts.resolve(run.contact_moment(), {}, here.x)) {
     run.end(Termination::outside_class, std::move(*problem));
     return false;
   }
   limit_beside_rest(c.run);
-  if (const auto jump = run.contacts.jump_to_tell(here.x)) {
-    ExecutedJump& executed = cascade.executed().append();
-    executed.x = before;
-    executed.jump = *jump;
-    executed.x_after = here.x;
-    executed.why_open = run.contacts.why_open();
+  if (const auto jump = run.contacts.jump_to_tell()) {
+    cascade.begin_execution(*jump, before, activities);
+    cascade.end_execution_of_contacts();
   }
   return true;
 }
@@ -54,7 +53,7 @@ bool begin_contacts_anew(const InstantContext& c) {
   }
   const auto jumps = cascade.executed().size();
   if (!begin_contacts(c)) return false;
-  if (jumps > 0 && cascade.executed().size() == jumps) cascade.executed().back().x_after = run.here.x;
+  if (cascade.executed().size() == jumps) cascade.end_execution();
   return true;
 }
 
@@ -63,13 +62,11 @@ bool contacts_jump(const InstantContext& c) {
   Position& here = run.here;
   if (!run.contacts.have_jumped(run.contact_moment(), here.x)) return false;
   const auto x_before = here.x;
+  const Activities activities = run.contacts.activities();
   if (!begin_contacts_anew(c)) return true;
   if (cascade.executed().empty()) {
-    ExecutedJump& executed = cascade.executed().append();
-    executed.x = x_before;
-    executed.jump = run.switching.layout.contacts.front().jump;
-    executed.x_after = here.x;
-    executed.why_open = run.contacts.why_open();
+    cascade.begin_execution(run.switching.layout.contacts.front().jump, x_before, activities);
+    cascade.end_execution_of_contacts();
   }
   cascade.read_user_signs(JumpCascade::Gaps::begun);
   return true;
@@ -110,7 +107,7 @@ bool contact_modes_hold(const InstantContext& c) {
   const bool hold = std::none_of(values.begin(), values.end(), [&](const double& value) {
     const auto function = static_cast<int>(&value - values.data());
     return run.contacts.guards(function) &&
-           value > std::max(clear * magnitude[at(function)], run.contacts.tolerated(function, here.x));
+           value > std::max(clear * magnitude[at(function)], run.contacts.tolerated(function));
   });
   if (hold) return true;
   run.end(Termination::outside_class, fmt::format("the mode of {} that follows at t = {:.17g} ends where it begins",

@@ -19,12 +19,11 @@ bool selections_jumped(const RunState& run, const ModeState& before) {
 /// Rows before an event or a restart: at requested times that are this time to rounding, and here.
 void rows_before(const InstantContext& c) {
   auto& [run, cascade, out] = c;
-  const auto cells_behind = run.cells.indices();
-  run.cells.put(out.cells_before);
   const auto write = [&](double t) { run.recorder.row_before(t, out.x_before, out.before, out.events_before); };
-  run.rows.each_before(any_time, run.here.t, write);
-  write(run.here.t);
-  run.cells.put(cells_behind);
+  in_mode_before(c, [&] {
+    run.rows.each_before(any_time, run.here.t, write);
+    write(run.here.t);
+  });
 }
 
 /// The row behind an event: the field of the mode behind it was evaluated here, unless something jumps.
@@ -36,6 +35,17 @@ void row_behind(const InstantContext& c) {
 }
 
 }  // namespace
+
+void in_mode_before(const InstantContext& c, FunctionRef<void()> write) {
+  auto& [run, cascade, out] = c;
+  const auto cells_behind = run.cells.indices();
+  const auto activities_behind = run.contacts.activities();
+  run.cells.put(out.cells_before);
+  run.kernel.set_activities(out.before.activities);
+  write();
+  run.cells.put(cells_behind);
+  run.kernel.set_activities(activities_behind);
+}
 
 void arrive(const InstantContext& c, bool row_is_written) {
   auto& [run, cascade, out] = c;

@@ -13,13 +13,13 @@
 namespace saltus::event_integrator {
 namespace {
 
-/// How far the gap of a contact may be from 0 that was closed before one of these jumps, and is open at x; 0 for other
+/// How far the gap of a contact may be from 0 that was closed before one of these jumps, and is open now; 0 for other
 /// functions.
-double left_by_opening(const Contacts& contacts, int function, std::span<const ExecutedJump> executed,
-                       const std::vector<double>& x) {
-  const bool was_closed = std::any_of(executed.begin(), executed.end(),
-                                      [&](const auto& one) { return contacts.tolerated(function, one.x) == 0.0; });
-  return was_closed ? contacts.tolerated(function, x) : 0.0;
+double left_by_opening(const Contacts& contacts, int function, std::span<const ExecutedJump> executed) {
+  const bool was_closed = std::any_of(executed.begin(), executed.end(), [&](const auto& one) {
+    return contacts.tolerated(function, one.activities) == 0.0;
+  });
+  return was_closed ? contacts.tolerated(function) : 0.0;
 }
 
 }  // namespace
@@ -48,6 +48,28 @@ void JumpCascade::begin() {
   held_before_ = holding_.held().all();
   resting_.clear();
   if (kernel_.switching_functions() > 0) transition_ = {};
+}
+
+ExecutedJump& JumpCascade::begin_execution(int jump, const std::vector<double>& x, const Activities& activities) {
+  ExecutedJump& executed = executed_.append();
+  executed.jump = jump;
+  executed.x = x;
+  executed.activities = activities;
+  executed.impulses.resize(0);
+  executed.why_open.clear();
+  return executed;
+}
+
+void JumpCascade::end_execution() {
+  if (executed_.empty()) return;
+  executed_.back().x_after = here_.x;
+  executed_.back().activities_after = contacts_.activities();
+}
+
+void JumpCascade::end_execution_of_contacts() {
+  end_execution();
+  executed_.back().impulses = contacts_.impulses();
+  executed_.back().why_open = contacts_.why_open();
 }
 
 void JumpCascade::begin(const Located& located) {
@@ -117,8 +139,8 @@ void JumpCascade::read_user_signs(Gaps gaps) {
     const int function = user_of(user);
     const double value = values_.value[at(function)];
     const bool unchanged = is_unchanged(function);
-    const double of_gap = gaps == Gaps::begun ? contacts_.tolerated(function, here_.x)
-                                              : left_by_opening(contacts_, function, executed_.items(), here_.x);
+    const double of_gap =
+        gaps == Gaps::begun ? contacts_.tolerated(function) : left_by_opening(contacts_, function, executed_.items());
     const double rounding =
         std::max(unchanged ? rounding_of(values_.magnitude[at(function)]) : resolution(function), of_gap);
     const bool held = holding_.holds(function);
@@ -160,8 +182,8 @@ Motion JumpCascade::find_motion(int function) {
   // What is left where terms cancel (two bodies that move together, jumps one after the other) is their rounding: less
   // than sign_tolerance / 1000 of them.
   constexpr double cancelled = 1e-3;
-  const auto gap =
-      contacts_.gap_motion(function, {here_.t, here_.state.alpha, here_.time_scale}, here_.x, here_.slope, along_);
+  const auto gap = contacts_.gap_motion(function, {here_.t, here_.state.alpha, here_.time_scale},
+                                        contacts_.activities(), here_.x, here_.slope, along_);
   const Rate rate = gap ? Rate{gap->rate, gap->terms} : rates_.here(function);
   const Rate& here = largest_rates_[at(function)];
   // What kept its rate at 0 has just let go: errors are left of it, unless a jump changes it.
@@ -199,7 +221,7 @@ void JumpCascade::give_directions() {
     if (contacts_.guards(function)) {
       // Its mode holds from here on, whatever the roundings of its derivatives say. A gap opens as its force comes to
       // 0, with an acceleration of 0: it goes like t^3, and its first derivatives are what the steps leave of them.
-      const bool opens = left_by_opening(contacts_, function, executed_.items(), here_.x) > 0.0;
+      const bool opens = left_by_opening(contacts_, function, executed_.items()) > 0.0;
       ledger_.put(function, -1, opens ? 3 : side < 0 ? std::clamp(motion.order, 1, 2) : 2);
       continue;
     }
@@ -294,7 +316,7 @@ JumpCascade::RestingGuards JumpCascade::pressed_guards() {
 /// Whether a guard is the gap of an open contact, 0 to its rounding. It is open until its own jump, whatever that
 /// rounding says.
 bool JumpCascade::is_open_at_zero(int function) {
-  const double rounding = contacts_.tolerated(function, here_.x);
+  const double rounding = contacts_.tolerated(function);
   if (rounding == 0.0) return false;
   find_values();
   return std::abs(values_.value[at(function)]) <= rounding;

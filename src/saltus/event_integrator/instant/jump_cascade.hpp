@@ -45,6 +45,12 @@ class JumpCascade {
 
   [[nodiscard]] ReusedList<ExecutedJump>& executed() { return executed_; }
   [[nodiscard]] const ReusedList<ExecutedJump>& executed() const { return executed_; }
+  /// Appends an execution, from this state and these activities.
+  ExecutedJump& begin_execution(int jump, const std::vector<double>& x, const Activities& activities);
+  /// Notes in the last execution, if there is one, that it leads here.
+  void end_execution();
+  /// Does this for a jump of contacts, with what they have resolved.
+  void end_execution_of_contacts();
   [[nodiscard]] const std::vector<HeldGuard>& held_before() const { return held_before_; }
   /// Returns the jumps whose guards stay at zero from here on.
   [[nodiscard]] std::vector<int>& resting() { return resting_; }

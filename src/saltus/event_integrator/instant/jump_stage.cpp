@@ -42,15 +42,14 @@ void end_by_rounds(const InstantContext& c) {
 
 /// What contacts do behind an execution: those whose modes it ends, or all where it has moved bodies. Returns whether
 /// they began anew; nullopt where the run ends.
-std::optional<JumpCascade::Gaps> follow_contacts(const InstantContext& c, ExecutedJump& executed) {
+std::optional<JumpCascade::Gaps> follow_contacts(const InstantContext& c, const ExecutedJump& executed) {
   auto& [run, cascade, out] = c;
   if (!run.contacts.owns(executed.jump)) {
     if (!run.contacts.are_moved(executed.x, run.here.x)) return JumpCascade::Gaps::kept;
     return begin_contacts_anew(c) ? std::optional(JumpCascade::Gaps::begun) : std::nullopt;
   }
   if (!move_contacts(c)) return std::nullopt;
-  executed.x_after = run.here.x;
-  executed.why_open = run.contacts.why_open();
+  cascade.end_execution_of_contacts();
   return JumpCascade::Gaps::kept;
 }
 
@@ -77,11 +76,9 @@ bool execute_jump(const InstantContext& c) {
     return false;
   }
   cascade.note_guards();
-  ExecutedJump& executed = cascade.executed().append();
-  executed.x = run.here.x;
+  ExecutedJump& executed = cascade.begin_execution(-1, run.here.x, run.contacts.activities());
   executed.jump = run.jumps.execute(c.jump_point(), run.here.x);
-  executed.x_after = run.here.x;
-  executed.why_open.clear();
+  cascade.end_execution();
   const auto gaps = follow_contacts(c, executed);
   if (!gaps) return false;
   auto& alpha = run.here.state.alpha;

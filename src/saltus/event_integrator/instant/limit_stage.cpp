@@ -8,6 +8,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/instant/contact_stage.hpp"
+#include "saltus/event_integrator/instant/instant_rows.hpp"
 #include "saltus/event_integrator/instant/jump_stage.hpp"
 #include "saltus/event_integrator/instant/rest_stage.hpp"
 #include "saltus/event_integrator/mode/field_rates.hpp"
@@ -81,7 +82,6 @@ void rows_to_limit(RunState& run, double t_last, const std::vector<double>& x_la
   run.rows.each_before(t_last, t_limit, [&](double t) {
     auto x = x_limit;
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += (t_limit - t) / (t_limit - t_last) * (x_last[i] - x[i]);
-    run.contacts.forget_impulses(x);
     run.recorder.row(t, x, before, before.alpha);
   });
   run.rows.skip_here();
@@ -124,8 +124,6 @@ bool settle_contacts(const InstantContext& c, const SeriesLimit& limit, const Mo
   const Contacts::Bounces bounces{limit.events, limit.t - t_last,
                                   run.contacts.without_slip(run.contact_moment(), x_last)};
   here.move_to(limit.t, limit.x.data());
-  run.contacts.copy_modes(x_last, here.x);
-  run.contacts.forget_impulses(here.x);
   cascade.begin();
   const auto slid_on = slid_on_between_bounces(run.kernel, before_last.sliding, here, x_last);
   // What holds it opens a contact.
@@ -134,9 +132,7 @@ bool settle_contacts(const InstantContext& c, const SeriesLimit& limit, const Mo
   if (problem) run.end(Termination::outside_class, std::move(*problem));
   limit_beside_rest(run);
   out.x_before = here.x;
-  run.contacts.copy_modes(x_last, out.x_before);
-  run.contacts.forget_impulses(out.x_before);
-  rows_to_limit(run, t_last, x_last, out.x_before, out.before);
+  in_mode_before(c, [&] { rows_to_limit(run, t_last, x_last, out.x_before, out.before); });
   if (!run.running) return false;
   cascade.drop_zeros();
   for (const int j : slid_on) run.ledger.add(j);

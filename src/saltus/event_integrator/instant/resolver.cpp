@@ -207,7 +207,7 @@ Resolver::Stage Resolver::give_sides() {
 
 /// Rules 5 and 6: the jumps as events, with those of the user that they cause.
 void Resolver::record_jumps() {
-  if (!cascade_.executed().empty()) cascade_.executed().back().x_after = run_.here.x;
+  cascade_.end_execution();
   if (!only_slips_on(context())) {
     cascade_.transition().state = run_.here.state;
     run_.recorder.jumped(run_.here.t, cascade_.executed().items(), &jumping_.before, cascade_.transition());

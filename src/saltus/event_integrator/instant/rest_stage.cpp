@@ -19,8 +19,7 @@ bool find_resting(const InstantContext& c, RestingSurfaces& resting) {
   auto& [run, cascade, out] = c;
   Position& here = run.here;
   resting = find_resting_surfaces(run.switching, run.holding, here.t, here.state.alpha, here.x);
-  if (run.contacts.hold(here.x))
-    add_kept_by_contacts(run.switching, run.contacts, here.t, here.state.alpha, here.x, resting);
+  if (run.contacts.hold()) add_kept_by_contacts(run.switching, run.contacts, here.t, here.state.alpha, here.x, resting);
   if (resting.problem.empty()) return true;
   run.end(Termination::outside_class, fmt::format("at t = {:.17g} {}", here.t, resting.problem));
   return false;

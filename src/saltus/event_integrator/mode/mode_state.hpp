@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "saltus/model/layout.hpp"
+
 namespace saltus::event_integrator {
 
 struct HigherOrderSet;
@@ -27,6 +29,10 @@ struct ModeState {
   /// Surfaces that guards of jumps at rest keep at zero (RestingSurfaces), ascending: k_j = 0, but nothing slides on
   /// them, and their selections mean nothing.
   std::vector<int> resting = {};
+
+  /// How contacts take part in it. While an instant is resolved they are those of the kernel, which the mode takes over
+  /// as it begins.
+  std::vector<model::Activity> activities = {};
 };
 
 /// Sets mode, alpha and sliding of one surface.

@@ -32,6 +32,10 @@ struct Position {
   }
   void change_mode(const ModeState& next) { state = next; }
   void change_mode(const ModeChange& change) { apply(change, state); }
+  void change_mode(const ModeChange& change, const std::vector<model::Activity>& activities) {
+    apply(change, state);
+    state.activities = activities;
+  }
 
   /// Returns the smallest step that is still seen in t.
   [[nodiscard]] double smallest_step() const {

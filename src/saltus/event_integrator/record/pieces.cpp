@@ -17,8 +17,8 @@ bool equal(const std::vector<HeldGuard>& a, const std::vector<HeldGuard>& b) {
 bool equal(const PieceMode& a, const PieceMode& b) {
   return a.state.mode == b.state.mode && a.state.alpha == b.state.alpha && a.state.sliding == b.state.sliding &&
          (a.state.sliding.size() != 1 || a.state.corner_alpha == b.state.corner_alpha) &&
-         a.state.higher == b.state.higher && a.state.resting == b.state.resting && a.start == b.start &&
-         a.cells == b.cells && equal(a.held, b.held);
+         a.state.higher == b.state.higher && a.state.resting == b.state.resting &&
+         a.state.activities == b.state.activities && a.start == b.start && a.cells == b.cells && equal(a.held, b.held);
 }
 
 }  // namespace

@@ -102,6 +102,7 @@ void Recorder::append_row(double t, const std::vector<double>& x, const std::vec
     kernel_.outputs(t, x.data(), alpha.data(), extend(recording_.row_outputs, recording_.n_y));
   }
   recording_.row_modes.push_back(mode);
+  if (!layout_.contacts.empty()) recording_.row_contacts.push_back(number(kernel_.activities()));
   if (ranges_ != nullptr) widen_ranges(x, alpha);
 }
 
@@ -131,12 +132,28 @@ std::size_t Recorder::number(const ModeState& state, const std::vector<double>& 
   return recording_.modes.append(state.mode, determined_);
 }
 
-Recording::Event& Recorder::begin(double t, result::EventKind kind) {
+/// In the log of contacts: their states, and the directions of slips along a tangent.
+std::size_t Recorder::number(const Activities& activities) {
+  contact_states_.clear();
+  contact_slips_.clear();
+  for (const auto& activity : activities) {
+    contact_states_.push_back(static_cast<int>(activity.state));
+    contact_slips_.push_back(activity.state == model::Activity::State::slip ? activity.share[0] : 0.0);
+  }
+  return recording_.contacts.append(contact_states_, contact_slips_);
+}
+
+Recording::Event& Recorder::begin(double t, result::EventKind kind, const Activities& before, const Activities& after) {
   auto& event = recording_.event_list.emplace_back();
   event.t = t;
   event.kind = kind;
+  if (!layout_.contacts.empty()) {
+    event.contacts = number(before);
+    event.contacts_after = number(after);
+  }
   const auto empty_at = [](std::size_t place) { return Recording::Range{place, place}; };
   event.surfaces = empty_at(recording_.surfaces.size());
+  event.impulses = empty_at(recording_.impulses.size());
   event.alternatives = empty_at(recording_.alternatives.size());
   event.reason = empty_at(recording_.text.size());
   return event;
@@ -326,7 +343,7 @@ bool Recorder::started(double t, const std::vector<double>& x, const Transition&
 }
 
 void Recorder::user(double t, const Passage& passage, int event) {
-  auto& entry = begin(t, result::EventKind::user);
+  auto& entry = begin(t, result::EventKind::user, passage.before.activities, kernel_.activities());
   entry.entry = at(event);
   set_passage(entry, passage);
   const bool condition = layout_.events[at(event)].is_condition();
@@ -339,7 +356,9 @@ void Recorder::user(double t, const Passage& passage, int event) {
 void Recorder::jumped(double t, std::span<const ExecutedJump> jumps, const ModeState* before,
                       const Transition& transition) {
   for (std::size_t k = 0; k < jumps.size(); ++k) {
-    auto& entry = begin(t, result::EventKind::jump);
+    auto& entry = begin(t, result::EventKind::jump, jumps[k].activities, jumps[k].activities_after);
+    recording_.impulses.insert(recording_.impulses.end(), jumps[k].impulses.begin(), jumps[k].impulses.end());
+    entry.impulses.end = recording_.impulses.size();
     entry.entry = at(jumps[k].jump);
     entry.of_jumps = true;
     add_surface(entry, entry.entry);
@@ -354,7 +373,7 @@ void Recorder::jumped(double t, std::span<const ExecutedJump> jumps, const ModeS
 }
 
 void Recorder::accumulated(double t, const std::vector<int>& jumps, const Passage& passage, std::string_view reason) {
-  auto& entry = begin(t, result::EventKind::accumulation);
+  auto& entry = begin(t, result::EventKind::accumulation, passage.before.activities, kernel_.activities());
   entry.of_jumps = true;
   for (const int jump : jumps) add_surface(entry, at(jump));
   set_passage(entry, passage);
@@ -386,6 +405,8 @@ Recording Recorder::hand_over() {
   rest.n_y = recording_.n_y;
   rest.modes = recording_.modes;
   rest.modes.restart();
+  rest.contacts = recording_.contacts;
+  rest.contacts.restart();
   return std::exchange(recording_, std::move(rest));
 }
 
@@ -406,7 +427,7 @@ bool Recorder::switched_lately(int function, long events) const {
 
 void Recorder::spiralled(double t, const std::vector<int>& surfaces, const Passage& passage,
                          const Transition& transition, std::string_view why) {
-  auto& entry = begin(t, result::EventKind::accumulation);
+  auto& entry = begin(t, result::EventKind::accumulation, passage.before.activities, kernel_.activities());
   for (std::size_t c = 0; c < layout_.columns.size(); ++c) {
     const int function = layout_.columns[c].function;
     const bool takes_part = contains(surfaces, function);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "saltus/base/contracts.hpp"
+#include "saltus/event_integrator/contact/contact_results.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -144,6 +145,7 @@ void Recording::drop(std::size_t events, std::size_t rows) {
   drop_from(row_inputs, rows * n_u);
   drop_from(row_outputs, rows * n_y);
   drop_from(row_modes, rows);
+  if (!row_contacts.empty()) drop_from(row_contacts, rows);
   if (event_list.empty()) return;
   const double begin = event_list.front().t;
   std::erase_if(families, [&](const Family& family) {
@@ -159,6 +161,7 @@ void Recording::drop(std::size_t events, std::size_t rows) {
 result::Events Recording::events(const model::Layout& layout) const {
   ColumnsInTime columns(layout, modes);
   Columns of_alternatives(layout);
+  ModeLog::Reader contact_states(contacts);
   result::Events named;
   for (const Event& event : event_list) {
     result::Event entry;
@@ -194,7 +197,17 @@ result::Events Recording::events(const model::Layout& layout) const {
     add_side(event.mode_after, entry.regions_after);
     if (event.meeting != none)
       entry.intersection = intersection(layout, meetings[event.meeting], columns.functions().alpha());
+    bool is_told = true;
+    if (event.contacts != none) {
+      contact_states.seek(event.contacts);
+      ContactSide before{contact_states.mode(), contact_states.alpha()};
+      contact_states.seek(event.contacts_after);
+      const auto [begin, end] = event.impulses;
+      is_told = tell_contacts(layout, before, {contact_states.mode(), contact_states.alpha()},
+                              part(impulses, begin, end - begin), entry);
+    }
     named.push_back(std::move(entry), part(states, event.x, n_x), part(states, event.x_after, n_x));
+    if (!is_told) take_into_previous(named);
   }
   return named;
 }
@@ -222,6 +235,7 @@ std::vector<result::Family> Recording::listed_families(const model::Layout& layo
 
 result::Trajectory Recording::trajectory(const model::Layout& layout) && {
   ColumnsInTime columns(layout, modes);
+  ModeLog::Reader contact_states(contacts);
   result::Trajectory rows;
   const std::size_t count = row_times.size();
   rows.t = std::move(row_times);
@@ -230,6 +244,10 @@ result::Trajectory Recording::trajectory(const model::Layout& layout) && {
   rows.outputs = {count, n_y, std::move(row_outputs)};
   const bool has_regions =
       std::any_of(layout.groups.begin(), layout.groups.end(), [](const auto& group) { return group.first >= 0; });
+  for (const std::size_t number : row_contacts) {
+    contact_states.seek(number);
+    rows.contact_modes.push_back(contact_modes(contact_states.mode()));
+  }
   for (std::size_t k = 0; k < count; ++k) {
     if (k > 0 && row_modes[k] == row_modes[k - 1]) {
       rows.alpha.repeat();
@@ -258,13 +276,18 @@ result::Final Recording::last(const model::Layout& layout) const {
   columns.set(reader.mode(), reader.alpha());
   const auto x = part(row_states, row_states.size() - n_x, n_x);
   const auto outputs = part(row_outputs, row_outputs.size() - n_y, n_y);
-  return {row_times.back(),
-          {x.begin(), x.end()},
-          columns.mode(),
-          columns.alpha(),
-          {outputs.begin(), outputs.end()},
-          active_regions(layout, reader.mode()),
-          region_weights(layout, reader.mode(), reader.alpha())};
+  result::Final last{row_times.back(),
+                     {x.begin(), x.end()},
+                     columns.mode(),
+                     columns.alpha(),
+                     {outputs.begin(), outputs.end()},
+                     active_regions(layout, reader.mode()),
+                     region_weights(layout, reader.mode(), reader.alpha())};
+  if (row_contacts.empty()) return last;
+  ModeLog::Reader contact_states(contacts);
+  contact_states.seek(row_contacts.back());
+  last.contact_modes = contact_modes(contact_states.mode());
+  return last;
 }
 
 }  // namespace saltus::event_integrator

@@ -64,7 +64,7 @@ CompactIntegration Run::to_end(const StepObserver& observer, const TakeRecording
 }
 
 bool Run::observes(const StepObserver& observer) const {
-  return observer({run_.here.t, static_cast<long>(statistics_.steps), run_.recorder.events(), shown_state()}) ==
+  return observer({run_.here.t, static_cast<long>(statistics_.steps), run_.recorder.events(), run_.here.x}) ==
          Continue::yes;
 }
 
@@ -73,7 +73,6 @@ void Run::take_steps(const StepObserver& observer, const TakeRecording& take) {
   const Position& here = run_.here;
   bool goes_on = begin();
   while (goes_on && run_.running && here.t < run_.options.until) {
-    run_.contacts.forget_impulses(run_.here.x);
     if (statistics_.steps + statistics_.rejected >= run_.options.max_steps) {
       run_.end(Termination::iteration_limit,
                fmt::format("max_steps = {} reached at {}{}", run_.options.max_steps, run_.where(), advice_on_steps()));

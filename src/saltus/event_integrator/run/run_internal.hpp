@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -143,10 +142,6 @@ class Run : private ResolverClient {
   /// For the steps of the mode behind an event. While cycles contract no step is like one before.
   void restart_control() {
     steps_.restart_control(switches_.empty() ? StepAttempt::Steps::may_repeat : StepAttempt::Steps::are_new);
-  }
-  /// Returns the states without those that only hold the modes of contacts.
-  [[nodiscard]] std::span<const double> shown_state() const {
-    return std::span<const double>(run_.here.x).first(at(run_.switching.layout.shown_states));
   }
   [[nodiscard]] Outcome& event() { return resolver_.outcome(); }
   [[nodiscard]] const Outcome& event() const { return resolver_.outcome(); }

@@ -56,8 +56,7 @@ void EventSearch::turn(std::size_t surface, const ModeState& state, int zero_ord
 /// Whether each surface, and each exit, has its place among the functions of a mode whose field was entered.
 bool EventSearch::is_plain(const ModeState& state) const {
   const bool selections_are_plain = state.sliding.empty() || field_.solve() == SlidingSolve::decoupled;
-  return !any_nesting_ && selections_are_plain && !state.higher && held_.empty() && kernel_.cells() == 0 &&
-         kernel_.region_groups().empty();
+  return !any_nesting_ && selections_are_plain && !state.higher && held_.empty() && kernel_.has_fixed_constants();
 }
 
 /// From one plain mode to another one: surfaces that were crossed, met or left, and exits that know of that, are
@@ -302,8 +301,7 @@ void EventSearch::enter(const ModeState& state, const std::vector<int>& zero_ord
   }
   read_start(t, x);
   sort_functions();
-  only_signs_change_ = state.sliding.empty() && !state.higher && held_.empty() && kernel_.cells() == 0 &&
-                       kernel_.region_groups().empty();
+  only_signs_change_ = state.sliding.empty() && !state.higher && held_.empty() && kernel_.has_fixed_constants();
 }
 
 /// Whether a mode is the one that was entered last, with functions that do not depend on the point it begins at.
@@ -348,7 +346,7 @@ void EventSearch::enter_cells() {
 /// The functions that are affine in the mode. Selections of a mode are constants, so a function that holds some is
 /// affine if it is for each value of theirs.
 void EventSearch::load_rows() {
-  if (rows_.start.empty() || any_nesting_ || kernel_.cells() > 0 || !kernel_.region_groups().empty()) {
+  if (rows_.start.empty() || any_nesting_ || !kernel_.has_fixed_constants()) {
     kernel_.affine_rows(mode_.state.alpha.data(), rows_);
     mode_.forms.load(rows_);
   }

@@ -49,12 +49,10 @@ void JumpAccumulation::note(const JumpCascade& cascade, const Jumps& jumps) {
 void JumpAccumulation::note_bounces(const JumpCascade& cascade) {
   for (const auto& executed : cascade.executed().items()) {
     if (!cascade.contacts().owns(executed.jump)) continue;
-    field_.resize(executed.x.size());
-    kernel_.field(here_.t, executed.x.data(), here_.state.alpha.data(), field_.data());
-    along_.known = false;
-    const auto gap =
-        cascade.contacts().gap_motion(kernel_.jump_guard(executed.jump, 0),
-                                      {here_.t, here_.state.alpha, here_.time_scale}, executed.x, field_, along_);
+    Contacts::Along along;
+    const auto gap = cascade.contacts().gap_motion(kernel_.jump_guard(executed.jump, 0),
+                                                   {here_.t, here_.state.alpha, here_.time_scale}, executed.activities,
+                                                   executed.x, here_.slope, along);
     if (!gap) continue;
     shortest_cycle_[at(executed.jump)] = gap->rate != 0.0 ? unresolved * gap->size / std::abs(gap->rate) : 0.0;
   }

@@ -39,8 +39,6 @@ class JumpAccumulation {
   std::vector<double> shortest_cycle_;  ///< shorter ones are not resolved, for the rounding of the guard
   std::vector<int> executed_;           ///< jumps, in their order
   std::vector<double> magnitude_, slope_;
-  std::vector<double> field_;  ///< before an impact
-  Contacts::Along along_;      ///< likewise
 };
 
 }  // namespace saltus::event_integrator

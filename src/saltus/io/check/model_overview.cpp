@@ -73,7 +73,7 @@ std::string remark_of(const model::Layout& layout, std::size_t state) {
 
 void take_quantities(const model::Summary& system, const result::Captions& captions, ModelOverview& overview) {
   const auto& layout = system.layout;
-  for (std::size_t i = 0; i < at(layout.shown_states); ++i) {
+  for (std::size_t i = 0; i < layout.state_names.size(); ++i) {
     overview.states.push_back({layout.state_names[i], system.initial_state[i], system.state_lower[i],
                                system.state_upper[i], caption_of(captions, layout.state_names[i]),
                                remark_of(layout, i)});

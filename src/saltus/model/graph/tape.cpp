@@ -278,6 +278,7 @@ Point blank_point(const Tape& tape) {
       case VariableKind::discrete:
       case VariableKind::control:
       case VariableKind::sampled_control:
+      case VariableKind::activity:
         point.push_back(0.0);
         break;
     }

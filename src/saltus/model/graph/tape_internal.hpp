@@ -22,7 +22,8 @@ enum class VariableKind {
   sampled_control,  ///< piecewise constant in time
   parameter,
   alpha,
-  cell,  ///< a constant of a cell; in a set of kinds: of one that jumps
+  cell,      ///< a constant of a cell; in a set of kinds: of one that jumps
+  activity,  ///< a constant of the mode of a contact
 };
 
 /// Set of variable kinds, one bit each.
@@ -32,10 +33,11 @@ using KindSet = unsigned;
 /// What changes during a simulation.
 inline constexpr KindSet changing_kinds = kind_bit(VariableKind::time) | kind_bit(VariableKind::state) |
                                           kind_bit(VariableKind::discrete) | kind_bit(VariableKind::control) |
-                                          kind_bit(VariableKind::sampled_control) | kind_bit(VariableKind::cell);
+                                          kind_bit(VariableKind::sampled_control) | kind_bit(VariableKind::cell) |
+                                          kind_bit(VariableKind::activity);
 /// What changes by jumps only.
-inline constexpr KindSet jumping_kinds =
-    kind_bit(VariableKind::discrete) | kind_bit(VariableKind::sampled_control) | kind_bit(VariableKind::cell);
+inline constexpr KindSet jumping_kinds = kind_bit(VariableKind::discrete) | kind_bit(VariableKind::sampled_control) |
+                                         kind_bit(VariableKind::cell) | kind_bit(VariableKind::activity);
 /// What changes between jumps.
 inline constexpr KindSet moving_kinds = changing_kinds & ~jumping_kinds;
 

@@ -23,8 +23,7 @@ class ContactBuild {
         m_(static_cast<casadi_int>(system_.contacts.size())) {}
 
   [[nodiscard]] SX run() {
-    system_.first_hidden = static_cast<int>(statement_.states.size());
-    for (auto& contact : system_.contacts) declare(contact);
+    declare_activities();
     set_forces();
     for (std::size_t i = 0; i < system_.contacts.size(); ++i) {
       add_jump(i);
@@ -36,48 +35,19 @@ class ContactBuild {
   }
 
  private:
-  int declare_state(const std::string& name) {
-    const auto index = static_cast<int>(statement_.states.size());
-    const SXElem symbol = recognition_.graph.symbol(name, {.kind = VariableKind::discrete, .index = index});
-    statement_.states.push_back({.name = name, .symbol = symbol, .dynamics = SXElem(0.0)});
-    return index;
-  }
-
-  /// A name of a hidden state has a point in it, which no name of a user has. Those that friction needs are missing
-  /// without it: every step pays for each of them.
-  void declare(Contact& contact) {
-    contact.closed = declare_state(contact.name + ".closed");
-    contact.active = declare_state(contact.name + ".active");
-    if (contact.has_friction) {
-      contact.stick = declare_along(contact, ".stick");
-      contact.slip = declare_state(contact.name + ".slip");
-      contact.share = declare_along(contact, ".share");
-      if (contact.friction_varies) contact.smooth = declare_state(contact.name + ".smooth");
+  /// A name of such a constant has a point in it, which no name of a user has.
+  void declare_activities() {
+    system_.activities = SX::zeros(Activity::constants, m_);
+    for (casadi_int i = 0; i < m_; ++i) {
+      for (int k = 0; k < Activity::constants; ++k) {
+        system_.activities(k, i) =
+            recognition_.graph.symbol(fmt::format("{}.{}", system_.contacts[at_(i)].name, k),
+                                      {.kind = VariableKind::activity, .index = static_cast<int>(i)});
+      }
     }
-    if (contact.in_plane) {
-      contact.speeds = declare_unit(contact.name + ".least_speed");
-      static_cast<void>(declare_unit(contact.name + ".largest_speed"));
-    }
-    contact.force_unit = declare_unit(contact.name + ".force_unit");
-    if (contact.has_friction) contact.speed_unit = declare_unit(contact.name + ".speed_unit");
-    contact.impulse = declare_state(contact.name + ".impulse");
-    declare_along(contact, ".impulse_t");
   }
 
-  int declare_unit(const std::string& name) {
-    const int index = declare_state(name);
-    statement_.states[at(index)].initial = 1.0;
-    return index;
-  }
-
-  /// One state per tangent; returns the first one.
-  int declare_along(const Contact& contact, const std::string& name) {
-    const int first = declare_state(contact.name + name);
-    if (contact.in_plane) declare_state(contact.name + name + "2");
-    return first;
-  }
-
-  SX state(int index) const { return SX(statement_.states[at(index)].symbol); }
+  [[nodiscard]] SX constant(casadi_int i, casadi_int which) const { return system_.activities(which, i); }
 
   /// Every contact has two equations that its mode blends: the acceleration is 0, or the force is given.
   void set_forces() {
@@ -97,15 +67,15 @@ class ContactBuild {
       const casadi_int i = order[at_(r)] % m, tangent = order[at_(r)] / m - 1;
       const bool tangential = tangent >= 0;
       const auto& contact = system_.contacts[at_(i)];
-      const SX held = tangential        ? state(contact.stick + static_cast<int>(tangent))
-                      : contact.has_gap ? state(contact.active)
+      const SX held = tangential        ? constant(i, Activity::holding + tangent)
+                      : contact.has_gap ? constant(i, Activity::carrying)
                                         : SX(0.0);
       right(r) = -held * system_.acceleration(order[at_(r)]);
       if (!tangential && !contact.has_gap) right(r) = 1.0;
       for (casadi_int c = 0; c < n; ++c) {
         SX entry = held * influence(order[at_(r)], order[at_(c)]);
         // Without friction what is not held has no force: its column is 0, as its row is.
-        if (c != r && symmetry == Symmetry::symmetric) entry *= state(system_.contacts[at_(order[at_(c)])].active);
+        if (c != r && symmetry == Symmetry::symmetric) entry *= constant(order[at_(c)], Activity::carrying);
         if (c == r) entry += 1.0 - held;
         if (tangential && order[at_(c)] == i) entry += (1.0 - held) * system_.friction(i) * share(i, tangent);
         matrix(r, c) = entry;
@@ -139,9 +109,9 @@ class ContactBuild {
   /// Of the edge of the friction cone, along a tangent.
   [[nodiscard]] SX share(casadi_int i, casadi_int tangent) const {
     const auto& contact = system_.contacts[at_(i)];
-    const SX own = state(contact.share + static_cast<int>(tangent));
+    const SX own = constant(i, Activity::sharing + tangent);
     if (!contact.in_plane) return own;
-    const SX slip = state(contact.slip), speed = norm(tangential_velocity(i, 0), tangential_velocity(i, 1));
+    const SX slip = constant(i, Activity::slipping), speed = norm(tangential_velocity(i, 0), tangential_velocity(i, 1));
     return slip * tangential_velocity(i, tangent) / speed + (1.0 - slip) * own;
   }
 
@@ -154,41 +124,42 @@ class ContactBuild {
   [[nodiscard]] std::vector<SX> guards(std::size_t k) const {
     const auto i = static_cast<casadi_int>(k);
     const auto& contact = system_.contacts[k];
-    const SX closed = state(contact.closed), active = state(contact.active);
+    const SX closed = constant(i, Activity::closed), active = constant(i, Activity::carrying);
     std::vector<SX> result;
     if (contact.has_gap) {
       result.push_back((1.0 - closed) * system_.gap(i) +
-                       closed * (active * system_.normal_force(i) / state(contact.force_unit) + (1.0 - active)));
+                       closed *
+                           (active * system_.normal_force(i) / constant(i, Activity::unit_of_forces) + (1.0 - active)));
     }
     if (contact.in_plane) add_guards_in_plane(i, result);
     if (contact.has_friction && !contact.in_plane) add_guards_along(i, result);
     if (!contact.friction_varies) return result;
-    const SX smooth = state(contact.smooth);
+    const SX smooth = constant(i, Activity::smooth);
     result.push_back(smooth * (2.0 * no_friction - system_.friction(i)) + (1.0 - smooth));
     result.push_back(closed * (system_.friction(i) + 2.0 * no_friction) + (1.0 - closed));
     return result;
   }
 
   void add_guards_along(casadi_int i, std::vector<SX>& guards) const {
-    const auto& contact = system_.contacts[at_(i)];
-    const SX stick = state(contact.stick), slip = state(contact.slip);
-    const SX unit = state(contact.force_unit), speed = system_.velocity(m_ + i) / state(contact.speed_unit);
+    const SX stick = constant(i, Activity::holding), slip = constant(i, Activity::slipping);
+    const SX unit = constant(i, Activity::unit_of_forces),
+             speed = system_.velocity(m_ + i) / constant(i, Activity::unit_of_speeds);
     const SX limit = system_.friction(i) * system_.normal_force(i) / unit,
              friction = system_.tangential_force(i) / unit;
-    guards.push_back(stick * (limit - friction) + slip * state(contact.share) * speed + (1.0 - stick - slip));
+    guards.push_back(stick * (limit - friction) + slip * constant(i, Activity::sharing) * speed + (1.0 - stick - slip));
     guards.push_back(stick * (limit + friction) + (1.0 - stick));
   }
 
   /// What is left of the cone, and the bounds of the speed of slip.
   void add_guards_in_plane(casadi_int i, std::vector<SX>& guards) const {
-    const auto& contact = system_.contacts[at_(i)];
-    const SX first = state(contact.stick), second = state(contact.stick + 1), slip = state(contact.slip);
+    const SX first = constant(i, Activity::holding), second = constant(i, Activity::holding + 1);
+    const SX slip = constant(i, Activity::slipping);
     const SX sticks = first + second - first * second, limit = system_.friction(i) * system_.normal_force(i);
     const SX along = system_.tangential_force(i), across = system_.tangential_force(m_ + i);
-    guards.push_back(sticks * (limit - norm(along, across)) / state(contact.force_unit) + (1.0 - sticks));
+    guards.push_back(sticks * (limit - norm(along, across)) / constant(i, Activity::unit_of_forces) + (1.0 - sticks));
     // Quotients: speeds may be smaller than the rounding of 1.
-    guards.push_back(slip * (speed_squared(i) / state(contact.speeds) - 1.0) + (1.0 - slip));
-    guards.push_back(slip * (1.0 - speed_squared(i) / state(contact.speeds + 1)) + (1.0 - slip));
+    guards.push_back(slip * (speed_squared(i) / constant(i, Activity::least_speed) - 1.0) + (1.0 - slip));
+    guards.push_back(slip * (1.0 - speed_squared(i) / constant(i, Activity::largest_speed)) + (1.0 - slip));
   }
 
   /// The engine finds the new mode, and the velocities behind an impact; the values here only say what changes.
@@ -200,9 +171,9 @@ class ContactBuild {
     Condition leaves = Condition::never();
     for (const SX& guard : guards(k)) leaves = leaves || less(SX::densify(guard), 0.0);
     jump.condition = leaves;
-    const auto set = [&](int index) { jump.set.push_back({index, statement_.states[at(index)].symbol, location}); };
-    for (const int velocity : system_.velocities) set(velocity);
-    for (int index = system_.first_hidden; index < static_cast<int>(statement_.states.size()); ++index) set(index);
+    for (const int velocity : system_.velocities) {
+      jump.set.push_back({velocity, statement_.states[at(velocity)].symbol, location});
+    }
     jump.persistent = false;
     jump.evaluated = JumpValues::at_execution;
     jump.location = jump.when_location = jump.delay_location = location;
@@ -224,7 +195,7 @@ class ContactBuild {
     } else if (contact.has_friction) {
       add("friction", system_.tangential_force(i));
     }
-    add("impulse", state(contact.impulse));
+    add("impulse", SX(0.0));  // of an event, which gives it to its row
   }
 
   Recognition& recognition_;

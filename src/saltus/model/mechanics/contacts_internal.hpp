@@ -24,13 +24,12 @@ struct MotionWithoutContacts {
   const casadi::SX& force;  ///< n: everything but contact forces
 };
 
-/// Appends modes, jumps and outputs of contacts, of which the motion is known, to the statement and fills
-/// statement.contacts.
+/// Appends jumps and outputs of contacts, of which the motion is known, to the statement and fills statement.contacts.
 /// @return their forces, r x 1
 [[nodiscard]] casadi::SX state_contact_modes(Recognition& recognition, Statement& statement, ContactSystem system,
                                              std::vector<SourceLocation> locations);
 
-/// Appends modes, jumps and outputs of the contacts to the statement and fills statement.contacts.
+/// Appends jumps and outputs of the contacts to the statement and fills statement.contacts.
 /// @return the total force with those of the contacts, n x 1; or the mistake: a gap of more than positions, parameters
 ///         and time, one that is negative at the start or has no position; friction or restitution out of range,
 ///         friction without a tangent

@@ -19,7 +19,7 @@ namespace saltus::model {
   for (std::size_t i = 0; i < point.size(); ++i) {
     const auto& variable = tape.variables()[i];
     const bool is_state = variable.kind == VariableKind::state || variable.kind == VariableKind::discrete;
-    // The tape of a Builder that is built again has states of contacts that this statement has not made yet.
+    // The tape may have states that this statement has not made yet.
     const bool is_stated = is_state && at(variable.index) < statement.states.size();
     if (!is_stated) continue;
     const double start = statement.states[at(variable.index)].initial;

@@ -22,7 +22,7 @@ class Gaps {
   [[nodiscard]] double depth(const result::Trajectory& trajectory);
 
  private:
-  std::vector<double> parameters_, x_, gaps_;
+  std::vector<double> parameters_, gaps_;
   model::ModelFunction function_;
 };
 

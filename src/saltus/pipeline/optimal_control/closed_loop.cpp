@@ -133,8 +133,6 @@ Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, cons
       rows.x.push_back(run.trajectory.x[i]);
     }
     x = run.final.x;
-    // Modes of contacts are not in a result: the engine takes them from gaps and velocities.
-    x.resize(system.state_names.size(), 0.0);
     whole.run.final = std::move(run.final);
     whole.run.status = std::move(run.status);
     const bool is_at_end = whole.run.status.time_reached >= until &&

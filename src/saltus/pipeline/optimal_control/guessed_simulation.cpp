@@ -111,7 +111,7 @@ Expected<GuessedSimulation> simulate_guess(const model::System& system, PointVal
                                            const std::vector<double>& times, const model::System* frozen) {
   const auto restated = [&](const std::vector<double>& x, double t) {
     if (frozen == nullptr) return x;
-    std::vector<double> all(x.begin(), x.begin() + frozen->freezing->first_hidden);
+    std::vector<double> all = x;
     all.resize(frozen->state_names.size(), 0.0);
     all[at(frozen->freezing->clock)] = t;
     return all;

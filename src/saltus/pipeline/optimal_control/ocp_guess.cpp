@@ -211,7 +211,6 @@ class Guess {
       auto& initial = system.initial_state;
       initial = start_.initial_state;
       if (ocp_.physical) initial.resize(at(ocp_.system.freezing->first_hidden));
-      initial.resize(system.state_names.size(), 0.0);
       auto run = simulate_guess(system, values_, starts_, start_.controls, until(), times_,
                                 ocp_.physical ? &ocp_.system : nullptr);
       if (!run) return tl::unexpected(run.error());

@@ -205,9 +205,7 @@ Resimulation::Segment Resimulation::from_node(std::size_t k, const IntegrationOp
     kernel_.set_initial_state(last.start);
     Integration there = run(until_there, is_interrupted);
     if (!is_complete(there, until_there)) continue;
-    auto start = there.final.x;
-    start.resize(system_.state_names.size(), 0.0);
-    Piece next = piece(std::move(start), part_of(options, event.t, options.until), event.mode_after, is_interrupted);
+    Piece next = piece(there.final.x, part_of(options, event.t, options.until), event.mode_after, is_interrupted);
     if (!next.segment.is_complete || !starts_in(next.segment.run, *event.mode_after)) continue;
     before = before ? joined(std::move(*before), std::move(there)) : std::move(there);
     last = std::move(next);
@@ -233,7 +231,6 @@ linalg::Vector Resimulation::end_of(std::size_t k, std::vector<double> start,
   if (ended.status.termination == Termination::stopped_by_user || !(ended.status.time_reached >= until)) {
     return linalg::Vector::constant(index(ended.final.x.size()), std::numeric_limits<double>::quiet_NaN());
   }
-  // Behind the states of the result are modes of contacts.
   return linalg::ConstView(ended.final.x);
 }
 

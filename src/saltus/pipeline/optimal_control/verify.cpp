@@ -32,17 +32,10 @@ constexpr double end_tolerance = 1e-3;
 /// Rows of the open loop that are kept.
 constexpr std::size_t most_kept_rows = 2000;
 
-/// Behind them are modes of contacts.
-std::size_t shown_states(const Ocp& ocp) {
-  const auto& system = ocp.system;
-  return system.contacts.empty() ? system.state_names.size() : at(system.contacts.first_hidden);
-}
-
-/// Those of the states that a result shows.
 std::vector<StateBounds> state_bounds(const Ocp& ocp) {
   const auto& system = ocp.system;
   std::vector<StateBounds> bounds;
-  for (std::size_t i = 0; i < shown_states(ocp); ++i) {
+  for (std::size_t i = 0; i < system.state_names.size(); ++i) {
     bounds.push_back({system.state_names[i], system.state_lower[i], system.state_upper[i]});
   }
   return bounds;
@@ -193,7 +186,7 @@ class IntervalChecks {
   [[nodiscard]] std::pair<double, std::size_t> largest_difference(const std::vector<double>& a,
                                                                   const std::vector<double>& b) const {
     std::pair<double, std::size_t> worst{-1.0, 0};
-    for (std::size_t i = 0; i < shown_states(ocp_); ++i) {
+    for (std::size_t i = 0; i < a.size(); ++i) {
       const double difference = std::abs(a[i] - b[i]) / scales_.of(i);
       if (difference > worst.first || std::isnan(difference)) worst = {difference, i};
     }
@@ -232,7 +225,7 @@ result::OpenLoop open_loop_of(const Ocp& ocp, const OptimizedPath& path, const S
   open_loop.end_state_error = open_loop.terminal_violation = not_known;
   if (segment.is_complete) {
     open_loop.end_state_error = 0.0;
-    for (std::size_t i = 0; i < shown_states(ocp); ++i) {
+    for (std::size_t i = 0; i < run.final.x.size(); ++i) {
       const double error = std::abs(run.final.x[i] - path.nodes.back()[i]) / scales.of(i);
       open_loop.end_state_error = worse(open_loop.end_state_error, error);
     }
@@ -276,9 +269,7 @@ Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, const V
   }
   checks.compare();
   verification.open_loop = open_loop_of(ocp, path, checks.scales(), resimulation->open_loop(is_interrupted));
-  auto scales = checks.scales().all();
-  scales.resize(shown_states(ocp));
-  verification.open_loop.amplification = resimulation->amplification(scales, is_interrupted);
+  verification.open_loop.amplification = resimulation->amplification(checks.scales().all(), is_interrupted);
   if (wanted.gains.empty()) return verification;
   auto closed_loop = simulate_closed_loop(ocp, path, wanted.gains, is_interrupted);
   if (!closed_loop) return tl::unexpected(closed_loop.error());

@@ -119,7 +119,6 @@ result::Result begin_result(const model::System& system, std::string_view method
   result.model.description = system.description;
   result.method = method;
   result.states = system.state_names;
-  if (!system.contacts.empty()) result.states.resize(at(system.contacts.first_hidden));
   for (const auto& contact : system.contacts.contacts) result.contacts.push_back(contact.name);
   result.controls = system.control_names;
   result.outputs = system.output_names;

@@ -30,10 +30,7 @@ void add_impulses(PhysicalBodies& bodies, result::Result& run) {
   result::Events events;
   for (result::Event event : run.events) {
     if (event.kind == result::EventKind::impact) {
-      auto x = event.x, x_after = event.x_after;
-      x.resize(system.state_names.size(), 0.0);
-      x_after.resize(x.size(), 0.0);
-      event.impulse = bodies.touching().impulses(event.t, x, x_after);
+      event.impulse = bodies.touching().impulses(event.t, event.x, event.x_after);
       double largest = 0.0;
       for (const auto& one : *event.impulse) largest = std::max(largest, std::abs(one.front()));
       event.surfaces.clear();
@@ -50,7 +47,6 @@ void add_impulses(PhysicalBodies& bodies, result::Result& run) {
 OptimizedPath physical_path(const model::Ocp& ocp, PhysicalBodies& bodies, const OptimizedPath& path,
                             const result::Result& run) {
   const auto& system = bodies.system();
-  const std::size_t shown = at(ocp.system.freezing->first_hidden), n = system.state_names.size();
   OptimizedPath physical = path;
   physical.parameters = system.parameter_values;
   const std::size_t intervals = path.controls.size();
@@ -64,8 +60,6 @@ OptimizedPath physical_path(const model::Ocp& ocp, PhysicalBodies& bodies, const
     const auto behind = std::upper_bound(rows.t.begin(), rows.t.end(), t + rounding) - rows.t.begin();
     const auto row = at(std::max<std::ptrdiff_t>(behind, 1) - 1);
     std::vector<double> node = rows.x[row], end = rows.x[std::min(at(first), row)];
-    node.resize(n, 0.0);
-    end.resize(n, 0.0);
     if (k < intervals && !rows.contact_modes.empty()) bodies.touching().project(t, rows.contact_modes[row], node);
     if (k > 0) physical.ends.push_back(std::move(end));
     physical.times[k] = t;
@@ -75,10 +69,7 @@ OptimizedPath physical_path(const model::Ocp& ocp, PhysicalBodies& bodies, const
     start.t = start.x[at(ocp.system.freezing->clock)];
     start.x = shown_states(*ocp.system.freezing, start.x);
   }
-  for (auto* range : {&physical.state_max, &physical.state_min}) {
-    range->resize(shown);
-    range->resize(n, 0.0);
-  }
+  for (auto* range : {&physical.state_max, &physical.state_min}) range->resize(system.state_names.size());
   physical.events = run.events;
   // Modes of a result are those of functions that freezing has left.
   for (auto& event : physical.events) {

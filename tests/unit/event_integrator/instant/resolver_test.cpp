@@ -169,7 +169,7 @@ TEST(Resolver, ABodyComesToRest) {
   EXPECT_EQ(at.x()[0], 0.0);
   EXPECT_EQ(at.x()[1], 0.0);
   EXPECT_EQ(at.run.here.slope[1], 0.0);  // the ground carries it
-  EXPECT_TRUE(at.run.contacts.hold(at.x()));
+  EXPECT_TRUE(at.run.contacts.hold());
 }
 
 /// A field that is undefined behind its switch ends the run with the state.

@@ -92,7 +92,7 @@ TEST(ContactStage, AGapThatJumpsBeginsContactsAnew) {
   EXPECT_FALSE(contacts_jump(at.context()));
   at.run.here.x[0] = 1.0;
   EXPECT_TRUE(contacts_jump(at.context()));
-  EXPECT_FALSE(at.run.contacts.hold(at.x()));
+  EXPECT_FALSE(at.run.contacts.hold());
 }
 
 TEST(RestStage, ContactsWithoutFrictionKeepNoSurfaceAtZero) {

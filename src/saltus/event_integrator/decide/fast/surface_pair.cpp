@@ -83,8 +83,7 @@ bool SurfacePair::project(const std::vector<double>& f, std::array<double, 2>& v
 bool SurfacePair::find_table(const SwitchingPoint& switching_point, const KnownFields& known) {
   scales_ = {0.0, 0.0};
   const auto& kernel = switching_context_.kernel;
-  // Constants of fields hold those of cells.
-  const bool same_constants = kernel.cells() == 0;
+  const bool same_constants = kernel.has_fixed_constants();
   const std::size_t pair = at(switching_point.at_zero[0]) * alpha_.size() + at(switching_point.at_zero[1]);
   for (std::size_t corner = 0; corner < 4; ++corner) {
     for (std::size_t k = 0; k < 2; ++k) alpha_[at(switching_point.at_zero[k])] = (corner >> k & 1U) != 0 ? 1.0 : 0.0;

@@ -218,7 +218,7 @@ void add_kept_by_contacts(const SwitchingContext& s, Contacts& contacts, double 
   };
   const auto free_field = [&](const NearPoint& point, const std::vector<double>& own) {
     std::vector<double> f(point.x.size());
-    s.kernel.field(point.t, contacts.without_forces(point.x).data(), own.data(), f.data());
+    contacts.free_field(point.t, point.x, own, f.data());
     return f;
   };
   const SizedValues here = sized_values(s, t, x, alpha);
