@@ -1,6 +1,7 @@
 #include "saltus/event_integrator/contact/contact_results.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -49,20 +50,20 @@ void name_event(const model::Layout& layout, result::Event& event) {
 
 }  // namespace
 
-std::vector<result::ContactMode> contact_modes(const std::vector<int>& states) {
+std::vector<result::ContactMode> contact_modes(std::span<const int> states) {
   using State = model::Activity::State;
   constexpr auto is_same = [](State a, result::ContactMode b) { return static_cast<int>(a) == static_cast<int>(b); };
   static_assert(is_same(State::open, result::ContactMode::open) && is_same(State::closed, result::ContactMode::closed));
   static_assert(is_same(State::stick, result::ContactMode::stick) && is_same(State::slip, result::ContactMode::slip));
   std::vector<result::ContactMode> modes;
-  for (const int state : states) modes.push_back(static_cast<result::ContactMode>(state));
+  for (const int state : states) modes.push_back(static_cast<result::ContactMode>(std::abs(state)));
   return modes;
 }
 
-bool tell_contacts(const model::Layout& layout, const ContactSide& before, const ContactSide& after,
+bool tell_contacts(const model::Layout& layout, std::span<const int> before, std::span<const int> after,
                    std::span<const double> impulses, result::Event& event) {
-  event.contact_modes_before = contact_modes(before.states);
-  event.contact_modes_after = contact_modes(after.states);
+  event.contact_modes_before = contact_modes(before);
+  event.contact_modes_after = contact_modes(after);
   const auto is_own = [&](const auto& contact) { return contact.name == event.name; };
   const auto& contacts = layout.contacts;
   if (event.kind != EventKind::jump || std::none_of(contacts.begin(), contacts.end(), is_own)) return true;
@@ -71,9 +72,8 @@ bool tell_contacts(const model::Layout& layout, const ContactSide& before, const
   event.name.reset();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const bool pushed = std::any_of(impulse[i].begin(), impulse[i].end(), [](double part) { return part != 0.0; });
-    const bool turns = before.slips[i] * after.slips[i] < 0.0;
     if (pushed) event.impulse = impulse;
-    if (pushed || turns || before.states[i] != after.states[i]) event.surfaces.push_back(contacts[i].name);
+    if (pushed || before[i] != after[i]) event.surfaces.push_back(contacts[i].name);
   }
   if (!event.surfaces.empty()) name_event(layout, event);
   return !event.surfaces.empty();

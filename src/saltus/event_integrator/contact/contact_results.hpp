@@ -9,18 +9,13 @@
 
 namespace saltus::event_integrator {
 
-/// Holds model::Activity::State of all contacts, and of those that slip along a tangent the share of friction, else 0.
-struct ContactSide {
-  std::vector<int> states;
-  std::vector<double> slips;
-};
-
-[[nodiscard]] std::vector<result::ContactMode> contact_modes(const std::vector<int>& states);
+/// Returns the modes of contacts in these states (Recording::contact_states).
+[[nodiscard]] std::vector<result::ContactMode> contact_modes(std::span<const int> states);
 
 /// Gives an event the modes of contacts on both sides. A jump of contacts becomes an impact, a contact, a lift-off, a
 /// stick or a slip; false where it changes nothing.
 /// @param impulses  Contacts::impulses()
-[[nodiscard]] bool tell_contacts(const model::Layout& layout, const ContactSide& before, const ContactSide& after,
+[[nodiscard]] bool tell_contacts(const model::Layout& layout, std::span<const int> before, std::span<const int> after,
                                  std::span<const double> impulses, result::Event& event);
 
 /// Takes the last event, which changes nothing, into the one before it at the same time: several contacts may end at

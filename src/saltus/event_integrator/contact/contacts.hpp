@@ -10,6 +10,7 @@
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/contact/contact_forces.hpp"
 #include "saltus/event_integrator/contact/open_motion.hpp"
+#include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/linalg/factors.hpp"
 #include "saltus/linalg/matrix.hpp"
 #include "saltus/model/layout.hpp"
@@ -24,8 +25,6 @@ struct ContactMoment {
   double time_scale = 0.0;  ///< over which the fields change little
   ode::Tolerances tolerances{};
 };
-
-using Activities = std::vector<model::Activity>;
 
 /// Changes the activities that the kernel has, and velocities at impacts. Everything else of a contact (its forces,
 /// when a mode ends) is an expression of the system (model::ContactSystem).

@@ -11,6 +11,7 @@
 namespace saltus::event_integrator {
 
 struct HigherOrderSet;
+using Activities = std::vector<model::Activity>;
 
 /// Holds k in {-1, 0, 1}^n_psi with its selections. "On the surface" is part of the mode, never a floating-point
 /// accident.
@@ -32,7 +33,7 @@ struct ModeState {
 
   /// How contacts take part in it. While an instant is resolved they are those of the kernel, which the mode takes over
   /// as it begins.
-  std::vector<model::Activity> activities = {};
+  Activities activities = {};
 };
 
 /// Sets mode, alpha and sliding of one surface.

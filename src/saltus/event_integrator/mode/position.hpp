@@ -32,7 +32,7 @@ struct Position {
   }
   void change_mode(const ModeState& next) { state = next; }
   void change_mode(const ModeChange& change) { apply(change, state); }
-  void change_mode(const ModeChange& change, const std::vector<model::Activity>& activities) {
+  void change_mode(const ModeChange& change, const Activities& activities) {
     apply(change, state);
     state.activities = activities;
   }

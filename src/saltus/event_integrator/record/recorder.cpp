@@ -38,6 +38,14 @@ void append(std::vector<double>& list, const std::vector<double>& values) {
   }
 }
 
+/// As Recording::contact_states.
+void append(std::vector<int>& list, const Activities& activities) {
+  for (const auto& activity : activities) {
+    const auto state = static_cast<int>(activity.state);
+    list.push_back(activity.state == model::Activity::State::slip && activity.share[0] < 0.0 ? -state : state);
+  }
+}
+
 /// Room for so many more; returns where it begins.
 double* extend(std::vector<double>& list, std::size_t count) {
   if (count > few) {
@@ -61,6 +69,7 @@ Recorder::Recorder(const evaluation::ModelKernel& kernel)
   recording_.n_x = at(kernel.states());
   recording_.n_u = at(kernel.controls());
   recording_.n_y = at(kernel.outputs());
+  recording_.n_c = layout_.contacts.size();
   // Lists that start empty are moved at every second of the first events.
   constexpr std::size_t first_events = 64;
   recording_.event_list.reserve(first_events);
@@ -102,7 +111,7 @@ void Recorder::append_row(double t, const std::vector<double>& x, const std::vec
     kernel_.outputs(t, x.data(), alpha.data(), extend(recording_.row_outputs, recording_.n_y));
   }
   recording_.row_modes.push_back(mode);
-  if (!layout_.contacts.empty()) recording_.row_contacts.push_back(number(kernel_.activities()));
+  append(recording_.row_contacts, kernel_.activities());
   if (ranges_ != nullptr) widen_ranges(x, alpha);
 }
 
@@ -132,25 +141,13 @@ std::size_t Recorder::number(const ModeState& state, const std::vector<double>& 
   return recording_.modes.append(state.mode, determined_);
 }
 
-/// In the log of contacts: their states, and the directions of slips along a tangent.
-std::size_t Recorder::number(const Activities& activities) {
-  contact_states_.clear();
-  contact_slips_.clear();
-  for (const auto& activity : activities) {
-    contact_states_.push_back(static_cast<int>(activity.state));
-    contact_slips_.push_back(activity.state == model::Activity::State::slip ? activity.share[0] : 0.0);
-  }
-  return recording_.contacts.append(contact_states_, contact_slips_);
-}
-
 Recording::Event& Recorder::begin(double t, result::EventKind kind, const Activities& before, const Activities& after) {
   auto& event = recording_.event_list.emplace_back();
   event.t = t;
   event.kind = kind;
-  if (!layout_.contacts.empty()) {
-    event.contacts = number(before);
-    event.contacts_after = number(after);
-  }
+  event.contacts = recording_.contact_states.size();
+  append(recording_.contact_states, before);
+  append(recording_.contact_states, after);
   const auto empty_at = [](std::size_t place) { return Recording::Range{place, place}; };
   event.surfaces = empty_at(recording_.surfaces.size());
   event.impulses = empty_at(recording_.impulses.size());
@@ -403,10 +400,9 @@ Recording Recorder::hand_over() {
   rest.n_x = recording_.n_x;
   rest.n_u = recording_.n_u;
   rest.n_y = recording_.n_y;
+  rest.n_c = recording_.n_c;
   rest.modes = recording_.modes;
   rest.modes.restart();
-  rest.contacts = recording_.contacts;
-  rest.contacts.restart();
   return std::exchange(recording_, std::move(rest));
 }
 

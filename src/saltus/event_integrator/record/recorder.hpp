@@ -35,8 +35,8 @@ struct Passage {
 struct ExecutedJump {
   int jump = 0;
   std::vector<double> x, x_after;
-  std::vector<model::Activity> activities, activities_after;  ///< of contacts, as are
-  linalg::Vector impulses;                                    ///< Contacts::impulses()
+  Activities activities, activities_after;
+  linalg::Vector impulses;  ///< Contacts::impulses()
   OpenMotion why_open;
 };
 
@@ -106,13 +106,11 @@ class Recorder {
   [[nodiscard]] std::size_t rows() const { return past_.rows + recording_.row_times.size(); }
 
  private:
-  using Activities = std::vector<model::Activity>;
   /// A new event, with the activities of contacts on both sides; the reference is valid until the next one.
   Recording::Event& begin(double t, result::EventKind kind, const Activities& before, const Activities& after);
   Recording::Event& begin(double t, result::EventKind kind) {
     return begin(t, kind, kernel_.activities(), kernel_.activities());
   }
-  [[nodiscard]] std::size_t number(const Activities& activities);
   void append_row(double t, const std::vector<double>& x, const std::vector<double>& alpha, std::size_t mode);
   void widen_ranges(const std::vector<double>& x, const std::vector<double>& alpha);
   [[nodiscard]] std::size_t keep(const std::vector<double>& x);
@@ -169,8 +167,6 @@ class Recorder {
   std::vector<int> listed_before_, listed_after_;
   BeforeSwitch before_switch_;
   std::vector<double> determined_;  ///< selections, NaN where nothing determines them
-  std::vector<int> contact_states_;
-  std::vector<double> contact_slips_;
 };
 
 }  // namespace saltus::event_integrator

@@ -103,7 +103,8 @@ std::vector<double> region_weights(const model::Layout& layout, const std::vecto
 }
 
 /// `count` numbers of a list from `begin` on.
-std::span<const double> part(const std::vector<double>& list, std::size_t begin, std::size_t count) {
+template <class Number>
+std::span<const Number> part(const std::vector<Number>& list, std::size_t begin, std::size_t count) {
   return std::span(list).subspan(begin, count);
 }
 
@@ -145,7 +146,7 @@ void Recording::drop(std::size_t events, std::size_t rows) {
   drop_from(row_inputs, rows * n_u);
   drop_from(row_outputs, rows * n_y);
   drop_from(row_modes, rows);
-  if (!row_contacts.empty()) drop_from(row_contacts, rows);
+  drop_from(row_contacts, rows * n_c);
   if (event_list.empty()) return;
   const double begin = event_list.front().t;
   std::erase_if(families, [&](const Family& family) {
@@ -161,7 +162,6 @@ void Recording::drop(std::size_t events, std::size_t rows) {
 result::Events Recording::events(const model::Layout& layout) const {
   ColumnsInTime columns(layout, modes);
   Columns of_alternatives(layout);
-  ModeLog::Reader contact_states(contacts);
   result::Events named;
   for (const Event& event : event_list) {
     result::Event entry;
@@ -197,15 +197,10 @@ result::Events Recording::events(const model::Layout& layout) const {
     add_side(event.mode_after, entry.regions_after);
     if (event.meeting != none)
       entry.intersection = intersection(layout, meetings[event.meeting], columns.functions().alpha());
-    bool is_told = true;
-    if (event.contacts != none) {
-      contact_states.seek(event.contacts);
-      ContactSide before{contact_states.mode(), contact_states.alpha()};
-      contact_states.seek(event.contacts_after);
-      const auto [begin, end] = event.impulses;
-      is_told = tell_contacts(layout, before, {contact_states.mode(), contact_states.alpha()},
-                              part(impulses, begin, end - begin), entry);
-    }
+    const auto before = part(contact_states, event.contacts, n_c),
+               after = part(contact_states, event.contacts + n_c, n_c);
+    const auto [begin, end] = event.impulses;
+    const bool is_told = tell_contacts(layout, before, after, part(impulses, begin, end - begin), entry);
     named.push_back(std::move(entry), part(states, event.x, n_x), part(states, event.x_after, n_x));
     if (!is_told) take_into_previous(named);
   }
@@ -235,7 +230,6 @@ std::vector<result::Family> Recording::listed_families(const model::Layout& layo
 
 result::Trajectory Recording::trajectory(const model::Layout& layout) && {
   ColumnsInTime columns(layout, modes);
-  ModeLog::Reader contact_states(contacts);
   result::Trajectory rows;
   const std::size_t count = row_times.size();
   rows.t = std::move(row_times);
@@ -244,9 +238,8 @@ result::Trajectory Recording::trajectory(const model::Layout& layout) && {
   rows.outputs = {count, n_y, std::move(row_outputs)};
   const bool has_regions =
       std::any_of(layout.groups.begin(), layout.groups.end(), [](const auto& group) { return group.first >= 0; });
-  for (const std::size_t number : row_contacts) {
-    contact_states.seek(number);
-    rows.contact_modes.push_back(contact_modes(contact_states.mode()));
+  for (std::size_t k = 0; k < row_contacts.size(); k += n_c) {
+    rows.contact_modes.push_back(contact_modes(part(row_contacts, k, n_c)));
   }
   for (std::size_t k = 0; k < count; ++k) {
     if (k > 0 && row_modes[k] == row_modes[k - 1]) {
@@ -276,18 +269,14 @@ result::Final Recording::last(const model::Layout& layout) const {
   columns.set(reader.mode(), reader.alpha());
   const auto x = part(row_states, row_states.size() - n_x, n_x);
   const auto outputs = part(row_outputs, row_outputs.size() - n_y, n_y);
-  result::Final last{row_times.back(),
-                     {x.begin(), x.end()},
-                     columns.mode(),
-                     columns.alpha(),
-                     {outputs.begin(), outputs.end()},
-                     active_regions(layout, reader.mode()),
-                     region_weights(layout, reader.mode(), reader.alpha())};
-  if (row_contacts.empty()) return last;
-  ModeLog::Reader contact_states(contacts);
-  contact_states.seek(row_contacts.back());
-  last.contact_modes = contact_modes(contact_states.mode());
-  return last;
+  return {row_times.back(),
+          {x.begin(), x.end()},
+          columns.mode(),
+          columns.alpha(),
+          {outputs.begin(), outputs.end()},
+          active_regions(layout, reader.mode()),
+          region_weights(layout, reader.mode(), reader.alpha()),
+          contact_modes(part(row_contacts, row_contacts.size() - n_c, n_c))};
 }
 
 }  // namespace saltus::event_integrator

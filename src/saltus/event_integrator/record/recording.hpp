@@ -34,9 +34,8 @@ struct Recording {
     std::size_t x_after = 0;   ///< behind the event; the same as `x` where the state does not jump
     std::size_t mode = none;   ///< number in `modes`
     std::size_t mode_after = none;
-    std::size_t contacts = none;  ///< number in `contacts`
-    std::size_t contacts_after = none;
-    Range impulses;  ///< in `impulses`
+    std::size_t contacts = 0;  ///< place of 2 n_c numbers in `contact_states`: before and after
+    Range impulses;            ///< in `impulses`
     std::optional<bool> unique = true;
     Range surfaces;  ///< in `surfaces`: columns of the result, behind them switching functions of regions; or jumps
     bool of_jumps = false;
@@ -61,13 +60,13 @@ struct Recording {
     long number = 0;  ///< in the run, when events have been dropped
   };
 
-  std::size_t n_x = 0, n_u = 0, n_y = 0;
+  std::size_t n_x = 0, n_u = 0, n_y = 0, n_c = 0;
   ModeLog modes;
-  ModeLog contacts;  ///< model::Activity::State, and the share of friction along the tangent of a slip
 
   std::vector<Event> event_list;
-  std::vector<double> states;    ///< at events
-  std::vector<double> impulses;  ///< Contacts::impulses()
+  std::vector<double> states;       ///< at events
+  std::vector<int> contact_states;  ///< model::Activity::State at events; negative while a slip goes down its tangent
+  std::vector<double> impulses;     ///< Contacts::impulses()
   std::vector<std::size_t> surfaces;
   std::vector<Alternative> alternatives;
   std::vector<BranchPoint> branch_points;
@@ -78,7 +77,7 @@ struct Recording {
   std::vector<double> row_times;
   std::vector<double> row_states, row_inputs, row_outputs;  ///< n_x, n_u, n_y a row
   std::vector<std::size_t> row_modes;                       ///< numbers in `modes`
-  std::vector<std::size_t> row_contacts;                    ///< numbers in `contacts`; without contacts empty
+  std::vector<int> row_contacts;                            ///< n_c a row, as `contact_states`
 
   /// Takes away the first events and rows; families that are left belong to the first event that is.
   void drop(std::size_t events, std::size_t rows);
