@@ -61,9 +61,9 @@ TEST(NlReader, ARowComplementsBothBounds) {
   // body = p - n; (x - l) _|_ p, (u - x) _|_ n
   EXPECT_EQ(functions_at(*problem, point({1.0, 2.0, 5.0, 1.0})), point({4.0 - 5.0 + 1.0, 5.0, 1.0, 3.0, 6.0}));
   for (const auto sign : problem->signs()) EXPECT_EQ(sign, Sign::implied);
-  EXPECT_EQ(problem->complete(point({-2.0, 3.0})), point({-2.0, 3.0, 3.0, 0.0}));
-  EXPECT_EQ(problem->complete(point({9.0, -5.0})), point({7.0, -5.0, 0.0, 4.0})) << "moved onto the bounds first";
-  EXPECT_EQ(mpcc::residuals(*problem, problem->complete(point({-2.0, 3.0}))).infeasibility(), 0.0);
+  EXPECT_EQ(problem->completed(point({-2.0, 3.0})), point({-2.0, 3.0, 3.0, 0.0}));
+  EXPECT_EQ(problem->completed(point({9.0, -5.0})), point({7.0, -5.0, 0.0, 4.0})) << "moved onto the bounds first";
+  EXPECT_EQ(mpcc::residuals(*problem, problem->completed(point({-2.0, 3.0}))).infeasibility(), 0.0);
 }
 
 TEST(NlReader, TheComplementOfAFreeVariableIsZero) {
