@@ -47,6 +47,36 @@ TEST(NormalRows, AreSolvedAsTheWholeMatrixIs) {
 }
 
 /// Rows of a chain share a column with the next one: many of them are solved by a sparse factorisation.
+// x + y = 3 and y - 2 z = 1 are affine: one step is there, by the shortest way.
+TEST(NormalRows, ACorrectionIsAStepOfNewton) {
+  NormalRows rows;
+  rows.resize(2, 3);
+  rows.set(0, {1.0, 1.0, 0.0});
+  rows.set(1, {0.0, 1.0, -2.0});
+  std::vector<double> x{1.0, 1.0, 1.0};
+  linalg::Vector residual = linalg::Vector::zero(2);
+  residual[0] = x[0] + x[1] - 3.0;
+  residual[1] = x[1] - 2.0 * x[2] - 1.0;
+  EXPECT_TRUE(rows.correct(residual, x.data()));
+  EXPECT_NEAR(x[0] + x[1], 3.0, 1e-15);
+  EXPECT_NEAR(x[1] - 2.0 * x[2], 1.0, 1e-15);
+  EXPECT_NEAR(2.0 * (x[0] - 1.0) - 2.0 * (x[1] - 1.0) - (x[2] - 1.0), 0.0, 1e-15);  // nothing along the line
+  residual.set_zero();
+  EXPECT_FALSE(rows.correct(residual, x.data()));
+}
+
+TEST(NormalRows, WithoutASolutionNothingIsCorrected) {
+  NormalRows rows;
+  rows.resize(2, 2);
+  rows.set(0, {1.0, 1.0});
+  rows.set(1, {2.0, 2.0});
+  std::vector<double> x{1.0, 2.0};
+  linalg::Vector residual = linalg::Vector::zero(2);
+  residual[0] = 1.0;
+  EXPECT_FALSE(rows.correct(residual, x.data()));
+  EXPECT_EQ(x, (std::vector<double>{1.0, 2.0}));
+}
+
 TEST(NormalRows, ManyInAChainAreSolvedAsTheWholeMatrixIs) {
   constexpr std::size_t n = 40;
   const auto solve = [&](double coupling, linalg::Vector& residual) {

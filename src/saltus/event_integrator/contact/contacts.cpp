@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
-#include "saltus/event_integrator/contact/row_basis_internal.hpp"
 #include "saltus/event_integrator/contact/shared_friction.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
@@ -223,11 +222,11 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const B
   clean(moment, point, x, {});
   // The limit is extrapolated, to the tolerances. Along the ground it goes on: impulses that vanish have no friction.
   const double none = rests_below * slowest(moment, point, x);
-  RowBasis at_rest(values_.rows);
+  linalg::RowBasis at_rest = no_rows();
   std::vector<int> still;
   const auto stop = [&](int row) {
     point.velocity(row) = 0.0;
-    if (at_rest.takes(row)) still.push_back(row);
+    if (at_rest.takes(values_.rows.row(row))) still.push_back(row);
   };
   const auto stop_slips = [&](auto condition) {
     for (const int i : touching) {
@@ -246,7 +245,8 @@ std::optional<std::string> Contacts::settle(const ContactMoment& moment, const B
   kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
   stop_slips([&](int i) {
     bool follows = point.along(values_.velocity, i).norm() <= small;
-    for (int k = 0; k < point.tangents[at(i)]; ++k) follows = follows && at_rest.holds(point.tangent_row(i, k));
+    for (int k = 0; k < point.tangents[at(i)]; ++k)
+      follows = follows && at_rest.spans(values_.rows.row(point.tangent_row(i, k)));
     return follows;
   });
   if (auto problem = find_modes(moment, touching, std::vector<std::vector<ContactMode>>(contacts_.size()), point, x))
@@ -268,12 +268,12 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
                      const ContactForces& found, std::vector<double>& x) {
   using State = model::Activity::State;
   const int m = point.contacts();
-  RowBasis basis(values_.rows);
+  linalg::RowBasis basis = no_rows();
   Activities next(at(m));
   for (int i = 0; i < m; ++i) {
     const bool closed = found.faces[at(i)] != ContactMode::open;
     next[at(i)].state = !closed ? State::open : point.tangents[at(i)] == 0 ? State::closed : State::stick;
-    next[at(i)].carries = closed && !contains(found.idle, i) && basis.takes(i);
+    next[at(i)].carries = closed && !contains(found.idle, i) && basis.takes(values_.rows.row(i));
     set_units(moment, point, i, x, next[at(i)]);
   }
   const auto following = rows_that_follow(point, resting, found);
@@ -282,7 +282,7 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
     const bool holds = found.faces[at(i)] == ContactMode::stick && !contains(found.idle, i);
     for (int k = 0; holds && k < contacts_[at(i)].tangents(); ++k) {
       const int row = point.tangent_row(i, k);
-      if (!contains(following, row) && basis.takes(row)) {
+      if (!contains(following, row) && basis.takes(values_.rows.row(row))) {
         next[at(i)].holds[at(k)] = true;
       } else if (limit > 0.0) {
         next[at(i)].share[at(k)] = std::clamp(-found.z(row) / limit, -1.0, 1.0);
@@ -293,7 +293,8 @@ void Contacts::enter(const ContactMoment& moment, const ContactPoint& point, con
   for (int i = 0; i < m; ++i) {
     if (!slips(found.faces[at(i)])) continue;
     bool is_free = false;
-    for (int k = 0; k < contacts_[at(i)].tangents(); ++k) is_free = is_free || !basis.holds(point.tangent_row(i, k));
+    for (int k = 0; k < contacts_[at(i)].tangents(); ++k)
+      is_free = is_free || !basis.spans(values_.rows.row(point.tangent_row(i, k)));
     enter_slip(moment, point, found, i, is_free, x);
   }
 }

@@ -13,6 +13,7 @@
 #include "saltus/event_integrator/mode/mode_state.hpp"
 #include "saltus/linalg/factors.hpp"
 #include "saltus/linalg/matrix.hpp"
+#include "saltus/linalg/row_basis.hpp"
 #include "saltus/model/layout.hpp"
 #include "saltus/ode/stepper.hpp"
 
@@ -148,6 +149,11 @@ class Contacts {
     kernel_.set_activity(contact, changed);
   }
   [[nodiscard]] ContactMode mode_of(int contact) const;
+  /// For rows of the values that may be held at once.
+  [[nodiscard]] linalg::RowBasis no_rows() const {
+    constexpr double dependent = 1e-9;
+    return {values_.rows.cols(), values_.rows.cols(), dependent};
+  }
   struct Modes {
     std::vector<ContactMode> modes;  ///< of all contacts
     std::vector<int> closed;         ///< those that are not open

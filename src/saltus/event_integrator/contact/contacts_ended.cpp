@@ -4,7 +4,6 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
-#include "saltus/event_integrator/contact/row_basis_internal.hpp"
 #include "saltus/event_integrator/mode/small_internal.hpp"
 
 namespace saltus::event_integrator {
@@ -23,11 +22,11 @@ std::vector<std::vector<ContactMode>> Contacts::modes_that_end(const ContactMome
     if (forces_in(point, closed, modes, others) && others.is_open && others.margin > clear) return result;
   }
   const auto is_shared = [&](int contact) {
-    RowBasis others(values_.rows);
+    linalg::RowBasis others = no_rows();
     for (int i = 0; i < point.contacts(); ++i) {
-      if (i != contact && mode_of(i) != ContactMode::open) others.takes(i);
+      if (i != contact && mode_of(i) != ContactMode::open) others.takes(values_.rows.row(i));
     }
-    return others.holds(contact);
+    return others.spans(values_.rows.row(contact));
   };
   for (int i = 0; i < point.contacts(); ++i) {
     const auto mode = mode_of(i);

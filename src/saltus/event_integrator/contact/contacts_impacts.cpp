@@ -10,7 +10,6 @@
 #include "saltus/event_integrator/contact/contacts.hpp"
 #include "saltus/event_integrator/contact/impact.hpp"
 #include "saltus/event_integrator/contact/impact_orders.hpp"
-#include "saltus/event_integrator/contact/row_basis_internal.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -104,16 +103,16 @@ bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touc
   }
   // Without restitution it rises by what the others do to it, and their speeds are that small, too.
   std::vector<int> still;
-  RowBasis basis(values_.rows);
+  linalg::RowBasis basis = no_rows();
   for (const int i : touching) {
     if (point.velocity(i) == 0.0 || !rises_by_nothing(moment, i, point, x)) continue;
-    if (basis.takes(i)) still.push_back(i);
+    if (basis.takes(values_.rows.row(i))) still.push_back(i);
   }
   if (!still.empty()) {
     // What is at rest, along the ground, too, stays so.
     for (const int i : touching) {
       for (int row = i; row < static_cast<int>(point.velocity.size()); row += point.contacts()) {
-        if (point.velocity(row) == 0.0 && basis.takes(row)) still.push_back(row);
+        if (point.velocity(row) == 0.0 && basis.takes(values_.rows.row(row))) still.push_back(row);
       }
     }
     change_velocities(still, -values_.velocity.selected_rows(still), x);

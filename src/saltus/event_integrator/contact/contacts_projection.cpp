@@ -6,7 +6,6 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/rounding_unit.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
-#include "saltus/event_integrator/contact/row_basis_internal.hpp"
 #include "saltus/linalg/factors.hpp"
 
 namespace saltus::event_integrator {
@@ -59,10 +58,10 @@ bool Contacts::correct_positions(const std::vector<int>& touching, std::vector<d
     if (row < static_cast<int>(contacts_.size())) rows.push_back(row);
   }
   if (!touching.empty()) {
-    RowBasis basis(values_.rows);
-    for (const int row : rows) basis.takes(row);
+    linalg::RowBasis basis = no_rows();
+    for (const int row : rows) basis.takes(values_.rows.row(row));
     std::copy_if(touching.begin(), touching.end(), std::back_inserter(rows),
-                 [&](int row) { return values_.gap(row) < 0.0 && basis.takes(row); });
+                 [&](int row) { return values_.gap(row) < 0.0 && basis.takes(values_.rows.row(row)); });
   }
   if (std::all_of(rows.begin(), rows.end(), [&](int row) { return values_.gap(row) == 0.0; })) return false;
   projection_.change.resize(index(rows.size()));
@@ -122,11 +121,11 @@ void Contacts::drop_own_roundings(const std::vector<int>& rows, const std::vecto
 /// Values are those at x.
 void Contacts::put_at_rest(const ContactPoint& point, const std::vector<int>& resting, std::vector<double>& x) {
   std::vector<int> rows;
-  RowBasis basis(values_.rows);
+  linalg::RowBasis basis = no_rows();
   for (const int i : resting) {
     for (int row = i; row <= i + point.contacts(); row += point.contacts()) {
       const bool counts = row == i || point.tangents[at(i)] == 1;
-      if (counts && point.velocity(row) == 0.0 && basis.takes(row)) rows.push_back(row);
+      if (counts && point.velocity(row) == 0.0 && basis.takes(values_.rows.row(row))) rows.push_back(row);
     }
   }
   if (values_.velocity.selected_rows(rows).is_zero()) return;
@@ -138,15 +137,15 @@ void Contacts::put_at_rest(const ContactPoint& point, const std::vector<int>& re
 /// Adds the tangential rows of slips in a plane that do not depend on the ones that are there.
 void Contacts::keep_slips(std::vector<int>& rows) const {
   const auto m = static_cast<int>(contacts_.size());
-  std::optional<RowBasis> basis;
+  std::optional<linalg::RowBasis> basis;
   for (int i = 0; i < m; ++i) {
     if (mode_of(i) != ContactMode::slip) continue;
     if (!basis) {
-      basis.emplace(values_.rows);
-      for (const int row : rows) basis->takes(row);
+      basis.emplace(no_rows());
+      for (const int row : rows) basis->takes(values_.rows.row(row));
     }
     for (int k = 0; k < 2; ++k) {
-      if (basis->takes(m * (1 + k) + i)) rows.push_back(m * (1 + k) + i);
+      if (basis->takes(values_.rows.row(m * (1 + k) + i))) rows.push_back(m * (1 + k) + i);
     }
   }
 }

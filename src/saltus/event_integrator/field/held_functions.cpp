@@ -17,17 +17,6 @@ using linalg::Index;
 /// Width of central differences, a power of two relative to 1 + |x|: truncation and rounding are both about 1e-11.
 double width_at(double x) { return std::ldexp(std::exp2(std::ceil(std::log2(std::abs(x) + 1.0))), -17); }
 
-/// The column of the one entry that is not zero; -1 where there is none or another one.
-Index only_nonzero(linalg::ConstView row) {
-  Index only = -1;
-  for (Index j = 0; j < row.size(); ++j) {
-    if (row[j] == 0.0) continue;
-    if (only >= 0) return -1;
-    only = j;
-  }
-  return only;
-}
-
 }  // namespace
 
 HeldFunctions::HeldFunctions(const evaluation::ModelKernel& kernel)
@@ -47,20 +36,14 @@ void HeldFunctions::set(std::vector<HeldFunction> functions, std::vector<double>
   basis_.set_zero(kernel_.states(), m);
   rates_.set_zero(m);
   parts_.set_zero(m);
-  step_.set_zero(kernel_.states());
   const auto of_order_zero = std::count_if(functions_.begin(), functions_.end(),
                                            [](const HeldFunction& function) { return function.order == 0; });
   rooted_ = std::any_of(functions_.begin(), functions_.end(),
                         [&](const HeldFunction& function) { return kernel_.has_root(function.surface); });
   find_forms();
-  normals_[0].count = static_cast<Index>(of_order_zero);
-  normals_[1].count = m;
-  for (auto& normal : normals_) {
-    normal.matrix.set_zero(normal.count, normal.count);
-    normal.residual.set_zero(normal.count);
-    // Allocates, and leaves nothing undefined that a copy would read.
-    normal.cholesky.compute(linalg::Matrix::identity(normal.count, normal.count));
-  }
+  onto_[0].residual.set_zero(static_cast<Index>(of_order_zero));
+  onto_[1].residual.set_zero(m);
+  for (auto& part : onto_) part.gradients.resize(static_cast<std::size_t>(part.residual.size()), row_.size());
 }
 
 void HeldFunctions::find_forms() {
@@ -191,27 +174,26 @@ double HeldFunctions::velocity_terms(std::size_t i, const std::vector<double>& f
   return sum;
 }
 
-bool HeldFunctions::Normal::solve(const linalg::Matrix& rows) {
-  const linalg::ConstView held = rows.top_rows(count);
-  linalg::multiply(held, held.transpose(), matrix);
-  cholesky.compute(matrix);
-  if (!cholesky.is_positive()) return false;
-  cholesky.solve_in_place(residual);
-  return true;
+/// The gradients of its functions, behind differentiate().
+NormalRows& HeldFunctions::gradients_of(Part& part) {
+  for (Index r = 0; r < part.residual.size(); ++r) {
+    for (std::size_t k = 0; k < row_.size(); ++k) row_[k] = rows_(r, index(k));
+    part.gradients.set(static_cast<std::size_t>(r), row_);
+  }
+  return part.gradients;
 }
 
 void HeldFunctions::remove_normal_part(std::vector<double>& f) {
-  auto& normal = normals_[1];
-  for (std::size_t i = 0; i < functions_.size(); ++i) normal.residual[index(i)] = velocity(i, f);
-  if (!normal.solve(rows_)) {
+  auto& [gradients, residual] = onto_[1];
+  for (std::size_t i = 0; i < functions_.size(); ++i) residual[index(i)] = velocity(i, f);
+  if (!gradients_of(onto_[1]).solve(residual)) {
     std::fill(f.begin(), f.end(), std::numeric_limits<double>::quiet_NaN());
     return;
   }
-  linalg::multiply(rows_.transpose(), normal.residual, step_);
-  for (std::size_t k = 0; k < f.size(); ++k) f[k] -= step_[index(k)];
+  gradients.subtract_transposed(residual, f.data());
   // A function of one state fixes its rate: a coordinate stays exactly where it is.
-  for (Index r = 0; r < rows_.rows(); ++r) {
-    const Index only = only_nonzero(rows_.row(r));
+  for (Index r = 0; r < rates_.size(); ++r) {
+    const int only = gradients[static_cast<std::size_t>(r)].only();
     if (only < 0) continue;
     double& rate = f[at(only)];
     if (std::isfinite(rate)) rate = rates_[r] == 0.0 ? 0.0 : -rates_[r] / rows_(r, only);
@@ -219,31 +201,21 @@ void HeldFunctions::remove_normal_part(std::vector<double>& f) {
 }
 
 /// One Newton step onto the functions of a part; whether x changed.
-bool HeldFunctions::correct(std::size_t part, double t, double* x) {
-  auto& normal = normals_[part];
+bool HeldFunctions::correct(Part& part, double t, double* x) {
   bool away = false;
-  for (Index r = 0; r < normal.count; ++r) {
-    normal.residual[r] = value(static_cast<std::size_t>(r), t, x);
-    away = away || normal.residual[r] != 0.0;
+  for (Index r = 0; r < part.residual.size(); ++r) {
+    part.residual[r] = value(static_cast<std::size_t>(r), t, x);
+    away = away || part.residual[r] != 0.0;
   }
-  if (!away || !normal.residual.all_finite()) return false;
+  if (!away || !part.residual.all_finite()) return false;
   differentiate(t, x);
-  if (!normal.solve(rows_)) return false;
-  linalg::multiply(rows_.top_rows(normal.count).transpose(), normal.residual, step_);
-  if (!step_.all_finite()) return false;
-  bool moved = false;
-  for (std::size_t k = 0; k < row_.size(); ++k) {
-    const double next = x[k] - step_[index(k)];
-    moved = moved || next != x[k];
-    x[k] = next;
-  }
-  return moved;
+  return gradients_of(part).correct(part.residual, x);
 }
 
 bool HeldFunctions::project(double t, double* x) {
   bool changed = false;
   // Derivatives mean something on the surfaces only. Newton converges quadratically: three steps reach rounding.
-  for (const std::size_t part : {std::size_t{0}, std::size_t{1}}) {
+  for (auto& part : onto_) {
     for (int iteration = 0; iteration < 4 && correct(part, t, x); ++iteration) changed = true;
   }
   return changed;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "saltus/evaluation/model_kernel.hpp"
-#include "saltus/linalg/factors.hpp"
+#include "saltus/event_integrator/sliding/normal_rows.hpp"
 #include "saltus/linalg/matrix.hpp"
 
 namespace saltus::event_integrator {
@@ -56,6 +56,10 @@ class HeldFunctions {
   [[nodiscard]] std::vector<double> displaced(double t, const double* x, double step, unsigned pattern);
 
  private:
+  struct Part {
+    NormalRows gradients;
+    linalg::Vector residual;  ///< one per function
+  };
   void find_forms();
   [[nodiscard]] bool is_by_form(std::size_t i) const { return rooted_ || forms_[i] < 0; }
   [[nodiscard]] std::size_t below(std::size_t i) const;
@@ -63,7 +67,8 @@ class HeldFunctions {
   void find_drift(std::size_t lower);
   [[nodiscard]] double value_along(std::size_t i, double t, const double* x, double width);
   void extend_basis(std::size_t i);
-  bool correct(std::size_t part, double t, double* x);
+  bool correct(Part& part, double t, double* x);
+  NormalRows& gradients_of(Part& part);
 
   const evaluation::ModelKernel& kernel_;
   std::vector<HeldFunction> functions_;
@@ -73,16 +78,8 @@ class HeldFunctions {
   bool rooted_ = false;  ///< whether f has a root of one of the surfaces' functions
   mutable std::vector<double> values_;
   linalg::Matrix rows_, basis_;  ///< gradients, row by row; an orthonormal basis of their span, column by column
-  linalg::Vector rates_, parts_, step_;
-  /// Of the first functions, the switching functions themselves, and of all: J J^T and what it is solved for.
-  struct Normal {
-    linalg::Index count = 0;
-    linalg::Matrix matrix;
-    linalg::Vector residual;
-    linalg::Cholesky cholesky;
-    [[nodiscard]] bool solve(const linalg::Matrix& rows);
-  };
-  std::array<Normal, 2> normals_;
+  linalg::Vector rates_, parts_;
+  std::array<Part, 2> onto_;  ///< the first functions, the switching functions themselves; and all
 };
 
 }  // namespace saltus::event_integrator

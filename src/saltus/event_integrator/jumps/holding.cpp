@@ -44,7 +44,8 @@ std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vec
                                          const std::vector<double>& alpha, std::vector<double>& x) {
   release_all();
   absorbing_.clear();
-  basis_.clear();
+  constexpr double dependent = 1e-6;  // rows are good to about ten digits
+  basis_ = {index(row_.size()), index(guards.size() + loose.size()), dependent};
   for (const auto* list : {&guards, &loose}) {
     for (const auto& guard : *list) {
       const auto& targets = layout_.jumps[at(guard.hold.jump)].targets;
@@ -65,12 +66,12 @@ std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vec
     const double second = second_derivative(loose[k], t, alpha, x);
     const bool still = std::abs(second) <= 1e-9 * pressing_;
     const bool pressed = !still && second * loose[k].inward > 0.0;
-    const std::size_t dimension = basis_.size();
+    const linalg::Index dimension = basis_.size();
     const bool independent = (still || pressed) && is_independent(loose[k], t, alpha, x);
     if (still && !independent) held_.followers.push_back(loose[k]);
     if (pressed && !independent) return "their guards press on each other and cannot be held at rest together";
     if (!pressed || !can_rest(loose[k], t, alpha, x)) {
-      basis_.resize(dimension);
+      basis_.shrink(dimension);
       ++k;
       continue;
     }
@@ -88,21 +89,8 @@ std::optional<std::string> Holding::hold(std::vector<HeldGuard> guards, std::vec
 /// basis then.
 bool Holding::is_independent(const HeldGuard& guard, double t, const std::vector<double>& alpha,
                              std::vector<double>& x) {
-  const double square = find_rate_row(guard.hold, absorbing_, t, alpha, x);
-  if (!(square > 0.0)) return false;
-  std::vector<double> rest = row_;
-  for (const auto& direction : basis_) {
-    double part = 0.0;
-    for (std::size_t i = 0; i < rest.size(); ++i) part += rest[i] * direction[i];
-    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= part * direction[i];
-  }
-  double rest_square = 0.0;
-  for (const double entry : rest) rest_square += entry * entry;
-  // Rows are good to about ten digits.
-  if (!(rest_square > 1e-12 * square)) return false;
-  for (double& entry : rest) entry /= std::sqrt(rest_square);
-  basis_.push_back(std::move(rest));
-  return true;
+  static_cast<void>(find_rate_row(guard.hold, absorbing_, t, alpha, x));
+  return basis_.takes({row_.data(), index(row_.size())});
 }
 
 std::vector<evaluation::Hold> Holding::holds() const {
@@ -122,10 +110,8 @@ std::vector<double> Holding::free_field(double t, const std::vector<double>& alp
 }
 
 void Holding::resize_rows() {
-  const auto m = static_cast<linalg::Index>(held_.guards.size());
-  rows_.resize(m, kernel_.states());
-  residual_.resize(m);
-  normal_.resize(m, m);
+  rows_.resize(held_.guards.size(), row_.size());
+  residual_.resize(index(held_.guards.size()));
 }
 
 bool Holding::put(const std::vector<HeldGuard>& guards) {
@@ -222,8 +208,9 @@ bool Holding::find_positions(double t, const std::vector<double>& alpha, const s
     double rate = 0.0;
     kernel_.gradient(held_.guards[k].hold.function, t, x.data(), alpha.data(), row_.data(), &rate);
     for (std::size_t i = 0; i < row_.size(); ++i) {
-      rows_(static_cast<linalg::Index>(k), static_cast<linalg::Index>(i)) = layout_.discrete_states[i] ? 0.0 : row_[i];
+      if (layout_.discrete_states[i]) row_[i] = 0.0;
     }
+    rows_.set(k, row_);
   }
   return true;
 }
@@ -240,35 +227,9 @@ bool Holding::find_rates(double t, const std::vector<double>& alpha, std::vector
   for (std::size_t k = 0; k < held_.guards.size(); ++k) {
     const auto& targets = layout_.jumps[at(held_.guards[k].hold.jump)].targets;
     static_cast<void>(find_rate_row(held_.guards[k].hold, targets, t, alpha, x));
-    for (std::size_t i = 0; i < row_.size(); ++i) {
-      rows_(static_cast<linalg::Index>(k), static_cast<linalg::Index>(i)) = row_[i];
-    }
+    rows_.set(k, row_);
   }
   return true;
-}
-
-/// x less the shortest vector that makes the residuals 0; returns whether x changed.
-bool Holding::correct(std::vector<double>& x) {
-  if (held_.guards.size() == 1) {
-    residual_ /= rows_.squared_norm();  // one division: a guard that is a coordinate becomes exactly 0
-  } else {
-    linalg::multiply(rows_, rows_.transpose(), normal_);
-    cholesky_.compute(normal_);
-    if (!cholesky_.is_positive()) return false;
-    cholesky_.solve_in_place(residual_);
-  }
-  if (!residual_.all_finite()) return false;
-  bool moved = false;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    double correction = 0.0;
-    for (linalg::Index r = 0; r < residual_.size(); ++r) {
-      correction += rows_(r, static_cast<linalg::Index>(i)) * residual_[r];
-    }
-    const double next = x[i] - correction;
-    moved = moved || next != x[i];
-    x[i] = next;
-  }
-  return moved;
 }
 
 bool Holding::project(double t, const std::vector<double>& alpha, std::vector<double>& x) {
@@ -276,8 +237,8 @@ bool Holding::project(double t, const std::vector<double>& alpha, std::vector<do
   if (held_.guards.empty()) return changed;
   // Newton with a slope good to ten digits: the second step is at rounding, the others settle its last bits.
   for (int iteration = 0; iteration < 4; ++iteration) {
-    const bool placed = find_positions(t, alpha, x) && correct(x);
-    const bool rested = find_rates(t, alpha, x) && correct(x);
+    const bool placed = find_positions(t, alpha, x) && rows_.correct(residual_, x.data());
+    const bool rested = find_rates(t, alpha, x) && rows_.correct(residual_, x.data());
     changed = changed || placed || rested;
     if (!placed && !rested) break;
   }

@@ -7,8 +7,9 @@
 
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/event_integrator/contact/contacts.hpp"
-#include "saltus/linalg/factors.hpp"
+#include "saltus/event_integrator/sliding/normal_rows.hpp"
 #include "saltus/linalg/matrix.hpp"
+#include "saltus/linalg/row_basis.hpp"
 #include "saltus/model/layout.hpp"
 
 namespace saltus::event_integrator {
@@ -81,19 +82,17 @@ class Holding {
   void resize_rows();
   bool find_positions(double t, const std::vector<double>& alpha, const std::vector<double>& x);
   bool find_rates(double t, const std::vector<double>& alpha, std::vector<double>& x);
-  bool correct(std::vector<double>& x);
 
   evaluation::ModelKernel& kernel_;
   const model::Layout& layout_;
   Contacts* contacts_ = nullptr;
   HeldGuards held_;
-  double pressing_ = 0.0;       ///< the largest |d^2 g/dt^2| without a hold that was met: what counts as none
-  std::vector<int> absorbing_;  ///< states that the jumps in question set
-  std::vector<std::vector<double>> basis_;  ///< of the rows of rates of guards(), orthonormal
+  double pressing_ = 0.0;              ///< the largest |d^2 g/dt^2| without a hold that was met: what counts as none
+  std::vector<int> absorbing_;         ///< states that the jumps in question set
+  linalg::RowBasis basis_{0, 0, 0.0};  ///< of the rows of rates of guards()
   std::vector<double> values_, row_;
-  linalg::Matrix rows_, normal_;  ///< of all held guards
-  linalg::Vector residual_;
-  linalg::Cholesky cholesky_;
+  NormalRows rows_;          ///< of all held guards
+  linalg::Vector residual_;  ///< likewise
 };
 
 }  // namespace saltus::event_integrator

@@ -208,4 +208,8 @@ bool NormalRows::subtract_transposed(const linalg::Vector& z, double* x) {
   return changed;
 }
 
+bool NormalRows::correct(linalg::Vector& residual, double* x) {
+  return solve(residual) && residual.all_finite() && subtract_transposed(residual, x);
+}
+
 }  // namespace saltus::event_integrator

@@ -42,6 +42,11 @@ class NormalRows {
   [[nodiscard]] bool solve(linalg::Vector& residual);
   /// Takes J^T z from x (columns); returns whether that has changed it. Cost: the entries of all rows.
   bool subtract_transposed(const linalg::Vector& z, double* x);
+  /// Takes from x the least vector d of J d = r, a Newton step onto functions of these gradients and values r, in whose
+  /// place are its multipliers; returns whether x changed. It does not where rows depend on each other or r is not
+  /// finite.
+  bool correct(linalg::Vector& residual, double* x);
+  [[nodiscard]] std::size_t count() const { return rows_.size(); }
 
  private:
   /// Rows that are solved together.

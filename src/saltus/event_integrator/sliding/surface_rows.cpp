@@ -1,18 +1,16 @@
 #include "saltus/event_integrator/sliding/surface_rows.hpp"
 
-#include "saltus/event_integrator/mode/region_ties.hpp"
-
 namespace saltus::event_integrator {
 
-bool IndependentRows::solve(const linalg::Matrix& gradients, linalg::Vector& residual) {
-  take_rows(gradients, rows, part_);
-  part_residual_.resize(part_.rows());
-  for (linalg::Index k = 0; k < part_residual_.size(); ++k) part_residual_[k] = residual[rows[at(k)]];
-  matrix_.resize(part_.rows(), part_.rows());
-  linalg::multiply(part_, part_.transpose(), matrix_);
-  cholesky_.compute(matrix_);
-  if (!cholesky_.is_positive()) return false;
-  cholesky_.solve_in_place(part_residual_);
+bool IndependentRows::solve(const NormalRows& gradients, std::size_t columns, linalg::Vector& residual) {
+  if (part_.count() != rows.size()) part_.resize(rows.size(), columns);
+  part_residual_.resize(static_cast<linalg::Index>(rows.size()));
+  for (linalg::Index k = 0; k < part_residual_.size(); ++k) {
+    const auto row = at(rows[at(k)]);
+    part_.set(at(k), gradients[row], gradients.size(row));
+    part_residual_[k] = residual[rows[at(k)]];
+  }
+  if (!part_.solve(part_residual_)) return false;
   residual.set_zero();
   for (linalg::Index k = 0; k < part_residual_.size(); ++k) residual[rows[at(k)]] = part_residual_[k];
   return true;
@@ -60,7 +58,7 @@ bool SurfaceRows::solve_normal_equations() {
     residual[0] /= square;
     return square > 0.0;
   }
-  return independent.rows.empty() ? normal.solve(residual) : independent.solve(dense, residual);
+  return independent.rows.empty() ? normal.solve(residual) : independent.solve(normal, at(dense.cols()), residual);
 }
 
 }  // namespace saltus::event_integrator

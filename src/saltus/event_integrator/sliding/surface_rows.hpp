@@ -17,12 +17,11 @@ class IndependentRows {
   std::vector<linalg::Index> rows;  ///< ascending; empty = all
 
   /// Sets residual = (J J^T)^-1 residual of these rows of J, 0 of the others; false where they depend on each other.
-  [[nodiscard]] bool solve(const linalg::Matrix& gradients, linalg::Vector& residual);
+  [[nodiscard]] bool solve(const NormalRows& gradients, std::size_t columns, linalg::Vector& residual);
 
  private:
-  linalg::Matrix part_, matrix_;
+  NormalRows part_;
   linalg::Vector part_residual_;
-  linalg::Cholesky cholesky_;
 };
 
 /// Holds J by rows, d psi_I/dt beside it; gradients that no mode changes are kept.
