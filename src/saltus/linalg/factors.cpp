@@ -116,7 +116,7 @@ double FullLu::last_pivot() const {
   const auto& matrix = parts_->factors.matrixLU();
   return matrix.size() == 0 ? 0.0 : std::abs(matrix(matrix.rows() - 1, matrix.cols() - 1));
 }
-Matrix FullLu::inverse() const { return matrix_of(parts_->factors.inverse()); }
+Matrix FullLu::inverse() const { return solve(Matrix::identity(parts_->factors.rows(), parts_->factors.rows())); }
 Matrix FullLu::solve(ConstView right) const { return matrix_of(parts_->factors.solve(eigen(right))); }
 
 struct PivotedQr::Parts {
@@ -146,7 +146,9 @@ Matrix OrthogonalFactors::null_space() const {
   const Eigen::MatrixXd basis = factors.matrixZ().transpose().rightCols(factors.cols() - factors.rank());
   return matrix_of(factors.colsPermutation() * basis);
 }
-Matrix OrthogonalFactors::pseudo_inverse() const { return matrix_of(parts_->factors.pseudoInverse()); }
+Matrix OrthogonalFactors::pseudo_inverse() const {
+  return solve(Matrix::identity(parts_->factors.rows(), parts_->factors.rows()));
+}
 
 void Cholesky::compute(ConstView a) {
   SALTUS_ASSERT(a.rows() == a.cols());
@@ -191,7 +193,11 @@ void Ldl::compute(ConstView a) { parts_->factors.compute(eigen(a)); }
 bool Ldl::is_factorised() const { return parts_->factors.info() == Eigen::Success; }
 bool Ldl::is_positive() const { return parts_->factors.isPositive(); }
 Vector Ldl::pivots() const { return matrix_of(parts_->factors.vectorD()); }
-Matrix Ldl::solve(ConstView right) const { return matrix_of(parts_->factors.solve(eigen(right))); }
+Matrix Ldl::solve(ConstView right) const {
+  Matrix solution(right);
+  solve_in_place(solution);
+  return solution;
+}
 void Ldl::solve_in_place(View right) const {
   auto own = eigen(right);
   parts_->factors.solveInPlace(own);

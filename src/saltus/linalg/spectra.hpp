@@ -19,16 +19,8 @@ struct SingularValues {
 /// The largest singular value; 0 of nothing.
 [[nodiscard]] double spectral_norm(ConstView a);
 
-struct SymmetricSpectrum {
-  Vector values;   ///< increasing
-  Matrix vectors;  ///< a column each
-};
-
-[[nodiscard]] SymmetricSpectrum symmetric_spectrum(ConstView a);
-/// Increasing; cheaper than the spectrum.
+/// Of a symmetric matrix, increasing.
 [[nodiscard]] Vector symmetric_eigenvalues(ConstView a);
-/// Of any square matrix. Empty where the iteration does not converge.
-[[nodiscard]] std::optional<std::vector<std::complex<double>>> eigenvalues(ConstView a);
 
 /// One eigenvalue alpha / beta of a pencil.
 struct PencilValue {

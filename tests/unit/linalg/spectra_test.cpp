@@ -35,39 +35,11 @@ TEST(SingularValues, AreThoseOfAMatrixMadeOfThem) {
   EXPECT_LT((a.transpose() * wide.right.col(3)).max_abs(), 1e-14);
 }
 
-TEST(SymmetricSpectrum, IsThatOfAMatrixMadeOfIt) {
+TEST(SymmetricEigenvalues, AreThoseOfAMatrixMadeOfThem) {
   std::mt19937 random(2);
   const Vector values{-3.0, 0.0, 1.0, 7.0};
   const Matrix q = random_rotation(random, 4);
-  const Matrix a = q * Matrix::diagonal_of(values) * q.transpose();
-  const auto found = symmetric_spectrum(a);
-  EXPECT_LT(distance(found.values, values), 1e-13);
-  EXPECT_LT(distance(a * found.vectors, scaled_cols(found.vectors, found.values)), 1e-13);
-  EXPECT_LT(distance(symmetric_eigenvalues(a), values), 1e-13);
-}
-
-TEST(Eigenvalues, OfARotationAreComplex) {
-  const double angle = 0.3;
-  const auto values =
-      eigenvalues(Matrix{{std::cos(angle), -std::sin(angle)}, {std::sin(angle), std::cos(angle)}}).value();
-  ASSERT_EQ(values.size(), 2U);
-  EXPECT_NEAR(values[0].real(), std::cos(angle), 1e-15);
-  EXPECT_NEAR(std::abs(values[0].imag()), std::sin(angle), 1e-15);
-  EXPECT_EQ(values[1], std::conj(values[0]));
-}
-
-TEST(Eigenvalues, DoNotDependOnTheBasis) {
-  std::mt19937 random(3);
-  const Matrix basis = random_matrix(random, 5, 5);
-  const std::vector<double> expected{-2.0, -1.0, 0.5, 1.0, 4.0};
-  const auto values = eigenvalues(basis * Matrix::diagonal_of(expected) * inverse(basis)).value();
-  std::vector<double> found;
-  for (const auto& value : values) {
-    EXPECT_NEAR(value.imag(), 0.0, 1e-9);
-    found.push_back(value.real());
-  }
-  std::sort(found.begin(), found.end());
-  for (std::size_t k = 0; k < expected.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-9);
+  EXPECT_LT(distance(symmetric_eigenvalues(q * Matrix::diagonal_of(values) * q.transpose()), values), 1e-13);
 }
 
 /// diag(1, 2, 3) v = lambda diag(1, 4, 0) v: one of them is infinite.
@@ -83,6 +55,29 @@ TEST(PencilEigenvalues, MayBeInfinite) {
   ASSERT_EQ(finite.size(), 2U);
   EXPECT_NEAR(finite[0], 0.5, 1e-14);
   EXPECT_NEAR(finite[1], 1.0, 1e-14);
+}
+
+/// Those of B^-1 A with A = B M and M a rotation beside a number, in another basis.
+TEST(PencilEigenvalues, MayBePairs) {
+  std::mt19937 random(4);
+  const double angle = 0.3, real = std::cos(angle), imaginary = std::sin(angle);
+  const Matrix basis = random_matrix(random, 3, 3), b = random_matrix(random, 3, 3);
+  const Matrix m = basis * Matrix{{real, -imaginary, 0}, {imaginary, real, 0}, {0, 0, 4}} * inverse(basis);
+  const auto values = pencil_eigenvalues(b * m, b).value();
+  ASSERT_EQ(values.size(), 3U);
+  double sum_of_pair = 0.0, alone = 0.0;
+  for (const auto& [alpha, beta] : values) {
+    const auto value = alpha / beta;
+    if (alpha.imag() == 0.0) {
+      alone = value.real();
+      continue;
+    }
+    EXPECT_NEAR(value.real(), real, 1e-11);
+    EXPECT_NEAR(std::abs(value.imag()), imaginary, 1e-11);
+    sum_of_pair += value.imag();
+  }
+  EXPECT_NEAR(alone, 4.0, 1e-11);
+  EXPECT_NEAR(sum_of_pair, 0.0, 1e-14);
 }
 
 }  // namespace
