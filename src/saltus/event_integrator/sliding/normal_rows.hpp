@@ -42,9 +42,8 @@ class NormalRows {
   [[nodiscard]] bool solve(linalg::Vector& residual);
   /// Takes J^T z from x (columns); returns whether that has changed it. Cost: the entries of all rows.
   bool subtract_transposed(const linalg::Vector& z, double* x);
-  /// Takes from x the least vector d of J d = r, a Newton step onto functions of these gradients and values r, in whose
-  /// place are its multipliers; returns whether x changed. It does not where rows depend on each other or r is not
-  /// finite.
+  /// Takes from x the least d of J d = r: a Newton step onto functions of these gradients and values. Multipliers take
+  /// the place of r. Returns whether x changed: not where rows depend on each other, or r is not finite.
   bool correct(linalg::Vector& residual, double* x);
   [[nodiscard]] std::size_t count() const { return rows_.size(); }
 

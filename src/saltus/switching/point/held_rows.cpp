@@ -97,7 +97,21 @@ auto HeldRows::eliminate(const linalg::Matrix& effects) -> std::optional<Solutio
       for (std::size_t k = rank + 1; k < width; ++k) to[k] -= factor * from[k];
     }
   }
-  return solve_least(rank, largest);
+  if (rank < n) return solve_least(rank, largest);
+  substitute_back();
+  return Solution::one;
+}
+
+/// The solution of regular rows behind an elimination.
+void HeldRows::substitute_back() {
+  const std::size_t n = held_.size(), width = n + 1;
+  unknowns_.resize(index(n));
+  for (std::size_t i = n; i-- > 0;) {
+    const double* row = table_.data() + i * width;
+    double sum = row[n];
+    for (std::size_t k = i + 1; k < n; ++k) sum -= row[k] * unknowns_(order_[k]);
+    unknowns_(order_[i]) = sum / row[i];
+  }
 }
 
 /// The least solution of the rows behind an elimination, made orthogonal one after the other.
@@ -119,7 +133,7 @@ auto HeldRows::solve_least(std::size_t rank, double largest) -> Solution {
   for (std::size_t i = rank; i < n; ++i) {
     if (!(std::abs(table_[i * width + n]) <= contradiction * size)) return Solution::none;
   }
-  return rank < n ? Solution::open : Solution::one;
+  return Solution::open;
 }
 
 linalg::Matrix HeldRows::rows_of(const linalg::Matrix& effects) const {

@@ -38,6 +38,7 @@ class HeldRows {
   };
   [[nodiscard]] linalg::Matrix rows_of(const linalg::Matrix& effects) const;
   [[nodiscard]] std::optional<Solution> eliminate(const linalg::Matrix& effects);
+  void substitute_back();
   [[nodiscard]] Solution solve_least(std::size_t rank, double largest);
   template <class Unknowns, class Forces>
   void add(const Unknowns& unknowns, Forces& forces) const;

@@ -20,7 +20,7 @@ Sizes sizes_of(const PointProblem& problem, const PointSolution& solution) {
   constexpr double rounded = 1e-5;
   double largest = 0.0;
   for (Index i = 0; i < problem.constant.size(); ++i) {
-    const double part = problem.effects.row(i).dot(solution.z);
+    const double part = solution.y(i) - problem.constant(i);
     largest = std::max(largest, std::abs(problem.constant(i)) + std::abs(part));
   }
   const double response = problem.effects.max_abs();
@@ -106,16 +106,16 @@ void guess_directions(const PointProblem& problem, const std::vector<int>& free,
 
 }  // namespace
 
-bool solve_least(const PointProblem& problem, const std::vector<Face>& faces, PointSolution& solution) {
-  HeldRows rows(problem.constant.size());
+bool solve_least(const PointProblem& problem, const std::vector<Face>& faces, HeldRows& rows, PointSolution& solution) {
   solution.faces = faces;
-  solution.directions.assign(faces.size(), Vector::zero(2));
+  solution.directions.resize(faces.size());
   solution.idle.clear();
   std::vector<int> free;
   for (std::size_t b = 0; b < faces.size(); ++b) {
     const Block& block = problem.blocks[b];
-    if (block.kind == Block::Kind::absent) continue;
+    if (block.kind != Block::Kind::friction) continue;
     Vector& direction = solution.directions[b];
+    direction.set_zero(2);
     if (faces[b] == Face::slip_up) direction = Vector{1.0, 0.0};
     if (faces[b] == Face::slip_down) direction = Vector{-1.0, 0.0};
     if (faces[b] != Face::slip) continue;
@@ -135,7 +135,8 @@ bool solve_least(const PointProblem& problem, const std::vector<Face>& faces, Po
 }
 
 bool solve_on(const PointProblem& problem, const std::vector<Face>& faces, PointSolution& solution) {
-  if (!solve_least(problem, faces, solution)) return false;
+  HeldRows rows(problem.constant.size());
+  if (!solve_least(problem, faces, rows, solution)) return false;
   if (solution.is_open) choose_open(problem, solution);
   return true;
 }

@@ -15,7 +15,9 @@ namespace saltus::switching {
 [[nodiscard]] bool solve_on(const PointProblem& problem, const std::vector<Face>& faces, PointSolution& solution);
 
 /// Finds the least z on given faces, and y; where z is open it is not yet where they hold best.
-[[nodiscard]] bool solve_least(const PointProblem& problem, const std::vector<Face>& faces, PointSolution& solution);
+/// @param rows  memory
+[[nodiscard]] bool solve_least(const PointProblem& problem, const std::vector<Face>& faces, HeldRows& rows,
+                               PointSolution& solution);
 
 /// Solves anew with other blocks idle; returns whether the faces still hold.
 [[nodiscard]] bool solve_without(const PointProblem& problem, const std::vector<int>& idle, PointSolution& solution);

@@ -59,10 +59,11 @@ void drop_impossible(const PointProblem& problem, Options& options) {
   for (const Block& block : problem.blocks) {
     all.push_back(block.kind == Block::Kind::absent ? Face::open : Face::closed);
   }
+  HeldRows rows(problem.constant.size());
   PointSolution found;
-  if (!solve_least(problem, all, found) || found.is_open) return;
+  if (!solve_least(problem, all, rows, found) || found.is_open) return;
   const auto vertex = vertex_by_pivots(problem, options);
-  if (!vertex || !solve_least(problem, vertex->faces, found) || found.margin < face_holds) return;
+  if (!vertex || !solve_least(problem, vertex->faces, rows, found) || found.margin < face_holds) return;
   const auto [y, z] = sizes_of(problem, found);
   constexpr double clear = 1e-3;
   for (std::size_t b = 0; b < problem.blocks.size(); ++b) {
@@ -93,11 +94,12 @@ void search_all(const PointProblem& problem, const Options& options, double hold
   constexpr std::size_t enough = 16;
   std::vector<std::size_t> number(options.size(), 0);
   std::vector<Face> faces(options.size());
+  HeldRows rows(problem.constant.size());
   PointSolution solution;
   for (;;) {
     heed_stop();
     for (std::size_t b = 0; b < options.size(); ++b) faces[b] = options[b][number[b]];
-    if (solve_least(problem, faces, solution) &&
+    if (solve_least(problem, faces, rows, solution) &&
         (found.all.size() < enough || moves_otherwise(problem, found, solution)))
       take_if_held(problem, holds, solution, found);
     std::size_t b = 0;

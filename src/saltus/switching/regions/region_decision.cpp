@@ -83,8 +83,9 @@ bool solve_region_set(const RegionRates& rates, const std::vector<int>& active, 
   std::vector<Face> faces(system.problem.blocks.size(), Face::open);
   for (const int i : active) faces[at(i)] = Face::closed;
   faces.back() = Face::inside;
+  HeldRows rows(system.problem.constant.size());
   PointSolution solution;
-  if (!system.effects.all_finite() || !solve_least(system.problem, faces, solution)) return false;
+  if (!system.effects.all_finite() || !solve_least(system.problem, faces, rows, solution)) return false;
   auto found = set_of(solution);
   if (found) set = std::move(*found);
   return found.has_value();
