@@ -3,7 +3,6 @@
 # plotly into ./.venv. Safe to repeat; done in a fraction of a second when there is nothing to do.
 #   scripts/install.sh              what `make demo` and `make test` need
 #   scripts/install.sh developer    also clang-format and clang-tidy
-#   scripts/install.sh sanitize     also the compiler of the sanitized build, if Debian has it
 #   scripts/install.sh python       also what the Python package needs, as far as it can be had
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -111,10 +110,6 @@ if [[ "${1:-}" == python ]]; then
     apt-get install -y -qq --no-install-recommends python3-dev >&2 || say "going on without python3-dev"
   fi
   install_wheels scripts/requirements-python.txt || say "going on without the Python package"
-fi
-
-if [[ "${1:-}" == sanitize && ! -e /usr/lib/llvm-16/lib/clang/16/lib/linux/libclang_rt.asan-x86_64.a && $(id -u) -eq 0 ]]; then
-  apt-get install -y -qq --no-install-recommends clang-16 libclang-rt-16-dev >&2 || say "going on with g++"
 fi
 
 # A plotly with what reports need, a third of the wheel's, where npm can make it.

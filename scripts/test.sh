@@ -19,7 +19,6 @@ stage() {
   return $outcome
 }
 stage "install" scripts/install.sh python
-[[ " ${presets[*]} " != *" sanitize "* ]] || stage "install clang" scripts/install.sh sanitize
 for preset in "${presets[@]}"; do
   report="$PWD/build/$preset/ctest.xml"
   reports+=("$preset=$report")
