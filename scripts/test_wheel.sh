@@ -2,7 +2,6 @@
 # Installs the wheel of a build folder into an empty environment, without the source tree, and runs the tests there.
 #   scripts/test_wheel.sh WHEEL_FOLDER PYTHON…     the environments are those of these interpreters
 #   scripts/test_wheel.sh WHEEL_FOLDER others      of the oldest and the newest other Python >= 3.10 here, with a part of the tests
-# What is compared with the tool is compared with $SALTUS_TOOL, without it with that of the wheel.
 set -euo pipefail
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 wheels=$(cd "$1" && pwd)
@@ -37,6 +36,6 @@ for python in "${pythons[@]}"; do
   "$python" -m venv "$folder/$version"
   "$folder/$version/bin/pip" install --quiet --disable-pip-version-check --no-compile "${pins[@]}" "$wheel$extras" pytest ${extras:+mypy}
   echo "Python $version"
-  (cd "$folder/tests" && SALTUS_TEST_WHEEL=1 SALTUS_TEST_TOOL="${SALTUS_TOOL:-$folder/$version/bin/saltus}" SALTUS_TEST_SOURCE="$source_folder" \
+  (cd "$folder/tests" && SALTUS_TEST_WHEEL=1 SALTUS_TEST_TOOL="$folder/$version/bin/saltus" SALTUS_TEST_SOURCE="$source_folder" \
     MPLBACKEND=Agg "$folder/$version/bin/python" -m pytest -q -p no:cacheprovider "${tests[@]}")
 done
