@@ -7,6 +7,7 @@
 #include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/sliding/exit_rows.hpp"
 #include "saltus/event_integrator/sliding/normal_rows.hpp"
+#include "saltus/event_integrator/sliding/surface_rows.hpp"
 #include "saltus/linalg/factors.hpp"
 #include "systems.hpp"
 
@@ -63,6 +64,27 @@ TEST(NormalRows, ACorrectionIsAStepOfNewton) {
   EXPECT_NEAR(2.0 * (x[0] - 1.0) - 2.0 * (x[1] - 1.0) - (x[2] - 1.0), 0.0, 1e-15);  // nothing along the line
   residual.set_zero();
   EXPECT_FALSE(rows.correct(residual, x.data()));
+}
+
+// The second pass has other columns in the same places of memory: rows that were alone share one.
+TEST(IndependentRows, GradientsMayChangeBetweenSolutions) {
+  NormalRows gradients;
+  gradients.resize(3, 3);
+  IndependentRows independent;
+  independent.rows = {0, 2};
+  for (const double shared : {0.0, 1.0}) {
+    const std::vector<double> first{2.0, 0.0, shared}, last{0.0, shared, 1.0};
+    gradients.set(0, first);
+    gradients.set(1, first);
+    gradients.set(2, last);
+    linalg::Vector residual{1.0, 5.0, -3.0};
+    ASSERT_TRUE(independent.solve(gradients, 3, residual));
+    const linalg::Matrix rows{{first[0], first[1], first[2]}, {last[0], last[1], last[2]}};
+    const linalg::Vector expected = linalg::inverse(rows * rows.transpose()) * linalg::Vector{1.0, -3.0};
+    EXPECT_NEAR(residual[0], expected[0], 1e-14) << shared;
+    EXPECT_EQ(residual[1], 0.0);
+    EXPECT_NEAR(residual[2], expected[1], 1e-14) << shared;
+  }
 }
 
 TEST(NormalRows, WithoutASolutionNothingIsCorrected) {

@@ -34,6 +34,13 @@ void NormalRows::set(std::size_t row, const SparseRow& entries, double size) {
   size_[row] = size;
 }
 
+void NormalRows::copy(std::size_t row, const SparseRow& entries, double size) {
+  components_known_ = components_known_ && rows_[row] == &own_[row] && own_[row].column == entries.column;
+  own_[row] = entries;
+  rows_[row] = &own_[row];
+  size_[row] = size;
+}
+
 void NormalRows::set(std::size_t row, const std::vector<double>& dense) {
   auto& [column, value] = own_[row];
   // Where the columns are those of before, which they mostly are, so are the components.

@@ -28,12 +28,15 @@ struct SparseRow {
 
 /// Solves the normal equations of rows. Rows that share a column, directly or through others, are solved together; all
 /// others by themselves. Cost of a solution: O(1) for each of those, and for a component of c > 1 rows c^3; from 16
-/// rows on that of a sparse factorisation of J J^T, c times the square of its bandwidth.
+/// rows on that of a sparse factorisation of J J^T, c times the square of its bandwidth. A copy has to be given its
+/// rows anew.
 class NormalRows {
  public:
   void resize(std::size_t rows, std::size_t columns);
-  /// Takes entries that stay where they are, of this size.
+  /// Takes entries that stay where and what they are, of this size.
   void set(std::size_t row, const SparseRow& entries, double size);
+  /// Takes entries that may change or move.
+  void copy(std::size_t row, const SparseRow& entries, double size);
   void set(std::size_t row, const std::vector<double>& dense);
   [[nodiscard]] const SparseRow& operator[](std::size_t row) const { return *rows_[row]; }
   [[nodiscard]] double size(std::size_t row) const { return size_[row]; }
@@ -45,7 +48,6 @@ class NormalRows {
   /// Takes from x the least d of J d = r: a Newton step onto functions of these gradients and values. Multipliers take
   /// the place of r. Returns whether x changed: not where rows depend on each other, or r is not finite.
   bool correct(linalg::Vector& residual, double* x);
-  [[nodiscard]] std::size_t count() const { return rows_.size(); }
 
  private:
   /// Rows that are solved together.

@@ -3,11 +3,11 @@
 namespace saltus::event_integrator {
 
 bool IndependentRows::solve(const NormalRows& gradients, std::size_t columns, linalg::Vector& residual) {
-  if (part_.count() != rows.size()) part_.resize(rows.size(), columns);
+  if (at(part_residual_.size()) != rows.size()) part_.resize(rows.size(), columns);
   part_residual_.resize(static_cast<linalg::Index>(rows.size()));
   for (linalg::Index k = 0; k < part_residual_.size(); ++k) {
     const auto row = at(rows[at(k)]);
-    part_.set(at(k), gradients[row], gradients.size(row));
+    part_.copy(at(k), gradients[row], gradients.size(row));
     part_residual_[k] = residual[rows[at(k)]];
   }
   if (!part_.solve(part_residual_)) return false;
