@@ -1,5 +1,7 @@
 import os
 import pathlib
+import sys
+import types
 
 import pytest
 
@@ -74,3 +76,32 @@ def close_figures():
 @pytest.fixture(scope="module")
 def slip():
     return saltus.catalogue("stick-slip").simulate(until=20)
+
+
+class Bar:
+    made: list = []
+
+    def __init__(self, **how):
+        self.how, self.n, self.total, self.words = how, 0, None, []
+        Bar.made.append(self)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def update(self, more):
+        self.n += more
+
+    def set_postfix_str(self, text, refresh=True):
+        self.words.append(text)
+
+
+@pytest.fixture
+def bars(monkeypatch):
+    """Bars of progress, in the place of tqdm."""
+    Bar.made = []
+    monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
+    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
+    return Bar.made

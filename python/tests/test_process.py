@@ -235,7 +235,7 @@ def test_what_is_compiled_after_the_first_step_does_not_lose_the_run():
 
 
 ENDLESS_SWEEP = """
-    import os, signal, sys, types
+    import contextlib, os, signal, sys, types
     import concurrent.futures as futures
     import multiprocessing
     import numpy as np
@@ -244,19 +244,13 @@ ENDLESS_SWEEP = """
     class Bar:  # in the place of tqdm: the first runs that are done are followed by a Ctrl-C
         n, total = 0, None
 
-        def __init__(self, **how):
-            pass
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            pass
-
         def update(self, more):
             self.n += more
             if self.n > 0:
                 os.kill(os.getpid(), signal.SIGINT)
+
+    def tqdm(**how):
+        return contextlib.nullcontext(Bar())
 
     if __name__ == "__main__":
         m = saltus.catalogue("stick-slip")
@@ -265,7 +259,7 @@ ENDLESS_SWEEP = """
                 "threads": lambda: futures.ThreadPoolExecutor(2)}[sys.argv[1]]
         with make() as pool:
             m.sweep(belt=[0.1, 0.2], until=1, executor=pool)
-            sys.modules["tqdm"], sys.modules["tqdm.auto"] = types.ModuleType("tqdm"), types.SimpleNamespace(tqdm=Bar)
+            sys.modules["tqdm"], sys.modules["tqdm.auto"] = types.ModuleType("tqdm"), types.SimpleNamespace(tqdm=tqdm)
             try:
                 m.sweep(belt=np.linspace(0.05, 0.3, 100_000), until=1000, executor=pool, progress=True)
             except KeyboardInterrupt as stopped:
@@ -301,26 +295,6 @@ def test_progress_of_a_sweep(capsys, monkeypatch):
     assert capsys.readouterr().err.endswith("stick-slip: 2 of 2 runs\n")
 
 
-def test_progress_of_a_sweep_by_tqdm(monkeypatch):
-    made = []
-
-    class Bar:
-        def __init__(self, **how):
-            self.how, self.n, self.total = how, 0, None
-            made.append(self)
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            pass
-
-        def update(self, more):
-            self.n += more
-
-    import types
-
-    monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
-    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
+def test_progress_of_a_sweep_by_tqdm(bars):
     saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2, 0.3], until=1, progress=True)
-    assert [(bar.n, bar.total) for bar in made] == [(3, 3)]
+    assert [(bar.n, bar.total) for bar in bars] == [(3, 3)]

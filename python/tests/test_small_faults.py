@@ -1,7 +1,6 @@
 """Small things that a newcomer meets: each says where it belongs, at the place where it was written."""
 
 import sys
-import types
 
 import numpy as np
 import pytest
@@ -80,34 +79,6 @@ def test_the_card_of_an_optimum_tells_objective_certificate_and_verification(blo
 def test_tables_stand_in_monospace(brake):
     for shown in (brake.compare(until=1), brake.order(until=1, schemes=[("radau_iia", 2)], steps=[10, 20]), brake.check()):
         assert "font-family:monospace" in shown._repr_html_()
-
-
-class Bar:
-    made: list = []
-
-    def __init__(self, **how):
-        self.how, self.n, self.words = how, 0, []
-        Bar.made.append(self)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        pass
-
-    def update(self, more):
-        self.n += more
-
-    def set_postfix_str(self, text, refresh=True):
-        self.words.append(text)
-
-
-@pytest.fixture
-def bars(monkeypatch):
-    Bar.made = []
-    monkeypatch.setitem(sys.modules, "tqdm", types.ModuleType("tqdm"))
-    monkeypatch.setitem(sys.modules, "tqdm.auto", types.SimpleNamespace(tqdm=Bar))
-    return Bar.made
 
 
 def test_a_bar_tells_how_far_a_run_is_and_what_is_prepared(bars):

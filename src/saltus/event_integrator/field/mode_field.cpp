@@ -90,7 +90,7 @@ const evaluation::AffineRow* ModeField::exit_row(std::size_t row, Region region,
   // Where several are slid on, none of the others influences this one.
   const auto& alpha = sliding_.size() == 1 ? corner_[region == Region::below ? 0 : 1] : start_alpha_;
   return exit_rows_.of(sliding_[row], side, kept_state(row, x), alpha,
-                       keeps_rows() ? ExitRows::Rows::lasting : ExitRows::Rows::changing);
+                       kernel_.has_fixed_constants() ? ExitRows::Rows::lasting : ExitRows::Rows::changing);
 }
 
 double ModeField::normal_terms(std::size_t row) const {

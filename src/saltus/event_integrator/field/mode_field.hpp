@@ -125,7 +125,6 @@ class ModeField {
   [[nodiscard]] bool is_single() const { return solve_ == SlidingSolve::decoupled && sliding_.size() == 1; }
   void resize_rows();
   void prepare_corners();
-  [[nodiscard]] bool keeps_rows() const;
   void take_row(std::size_t row);
   void find_rooted_rows();
   void refer_to_constants();

@@ -25,8 +25,8 @@ void ModeField::enter(const ModeState& state) {
     kernel_.prepare_field(alpha_.data(), constants_[0]);
     return;
   }
-  // Cells may change a gradient that is constant in each.
-  const bool same_rows = same_single && rows_.is_constant.front() && keeps_rows();
+  // Cells, references and activities may change a gradient that is constant in each.
+  const bool same_rows = same_single && rows_.is_constant.front() && kernel_.has_fixed_constants();
   if (!same_rows) resize_rows();
   if (same_single) {
     solve_ = SlidingSolve::decoupled;

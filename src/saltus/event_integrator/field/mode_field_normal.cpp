@@ -7,13 +7,10 @@
 
 namespace saltus::event_integrator {
 
-/// Whether the rows of the sliding surfaces are kept from mode to mode. Cells and references change them.
-bool ModeField::keeps_rows() const { return kernel_.has_fixed_constants(); }
-
 /// The gradient in f_[0].
 void ModeField::take_row(std::size_t row) {
   const int j = sliding_[row];
-  rows_.take(row, at(j), f_[0], kernel_.is_affine(j) && kernel_.inner(j).empty(), keeps_rows());
+  rows_.take(row, at(j), f_[0], kernel_.is_affine(j) && kernel_.inner(j).empty(), kernel_.has_fixed_constants());
 }
 
 /// Towards the zero of a root motions vanish that are differences of terms of the size of the jump: what rounding of

@@ -43,6 +43,35 @@ bool is_zero(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
 }
 
+/// Rows lower <= change't <= upper of a linear program.
+class ProgramRows {
+ public:
+  void add(const std::vector<double>& change, double lower, double upper) {
+    for (std::size_t k = 0; k < change.size(); ++k) {
+      if (change[k] == 0.0) continue;
+      pattern_.add(static_cast<int>(lower_.size()), static_cast<int>(k));
+      entries_.push_back(change[k]);
+    }
+    lower_.push_back(lower);
+    upper_.push_back(upper);
+  }
+  /// Any t is as good.
+  [[nodiscard]] LpccProblem program(linalg::Index dimensions) const {
+    LpccProblem problem;
+    problem.cost = linalg::Vector::zero(dimensions);
+    problem.variables = {linalg::Vector::constant(dimensions, -no_limit),
+                         linalg::Vector::constant(dimensions, no_limit)};
+    problem.pattern = pattern_;
+    problem.entries = linalg::ConstView(entries_);
+    problem.rows = {linalg::ConstView(lower_), linalg::ConstView(upper_)};
+    return problem;
+  }
+
+ private:
+  decltype(LpccProblem::pattern) pattern_;
+  std::vector<double> entries_, lower_, upper_;
+};
+
 }  // namespace
 
 bool MultiplierRange::is_unique() const {
@@ -131,21 +160,9 @@ std::vector<int> MultiplierSet::rows_that_depend() const {
 MultiplierRange MultiplierSet::range(double value, const std::vector<double>& change, LpccSolver& linear) const {
   MultiplierRange found{value, value};
   if (is_zero(change)) return found;
-  LpccProblem problem;
-  const auto dimensions = std::ssize(change);
-  problem.variables.lower = linalg::Vector::constant(dimensions, -no_limit);
-  problem.variables.upper = linalg::Vector::constant(dimensions, no_limit);
-  problem.rows.lower = linalg::ConstView(least_);
-  problem.rows.upper = linalg::Vector::constant(std::ssize(least_), no_limit);
-  std::vector<double> entries;
-  for (std::size_t i = 0; i < signs_.size(); ++i) {
-    for (std::size_t k = 0; k < change.size(); ++k) {
-      if (signs_[i][k] == 0.0) continue;
-      problem.pattern.add(static_cast<int>(i), static_cast<int>(k));
-      entries.push_back(signs_[i][k]);
-    }
-  }
-  problem.entries = linalg::ConstView(entries);
+  ProgramRows signs;
+  for (std::size_t i = 0; i < signs_.size(); ++i) signs.add(signs_[i], least_[i], no_limit);
+  LpccProblem problem = signs.program(std::ssize(change));
   const auto least = [&](double sign) {
     problem.cost = sign * linalg::ConstView(change);
     const LpccSolution solution = linear.solve(problem, linear_seconds);
@@ -185,28 +202,14 @@ std::optional<SideMultiplier> MultiplierSet::of_side(mpcc::Problem& problem, int
 
 bool MultiplierSet::can_have(const std::vector<MultiplierCondition>& conditions, const std::vector<int>& freed,
                              LpccSolver& linear) const {
-  LpccProblem problem;
-  std::vector<double> entries, lower, upper;
-  const auto add = [&](const std::vector<double>& change, double from, double to) {
-    for (std::size_t k = 0; k < change.size(); ++k) {
-      if (change[k] == 0.0) continue;
-      problem.pattern.add(static_cast<int>(lower.size()), static_cast<int>(k));
-      entries.push_back(change[k]);
-    }
-    lower.push_back(from);
-    upper.push_back(to);
-  };
+  ProgramRows all;
   for (std::size_t i = 0; i < signs_.size(); ++i) {
-    if (!contains(freed, owners_[i])) add(signs_[i], least_[i], no_limit);
+    if (!contains(freed, owners_[i])) all.add(signs_[i], least_[i], no_limit);
   }
   for (const auto& [multiplier, from, to] : conditions) {
-    add(multiplier->change, from - multiplier->value, to - multiplier->value);
+    all.add(multiplier->change, from - multiplier->value, to - multiplier->value);
   }
-  const auto dimensions = vectors_.cols();
-  problem.cost = linalg::Vector::zero(dimensions);
-  problem.variables = {linalg::Vector::constant(dimensions, -no_limit), linalg::Vector::constant(dimensions, no_limit)};
-  problem.rows = {linalg::ConstView(lower), linalg::ConstView(upper)};
-  problem.entries = linalg::ConstView(entries);
+  const LpccProblem problem = all.program(vectors_.cols());
   return linear.solve(problem, linear_seconds).termination == result::Termination::completed;
 }
 
