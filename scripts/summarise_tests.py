@@ -1,4 +1,5 @@
-"""Adds up CTest's JUnit reports: a line per preset, the failed tests by name, and "N passed, M failed" as the last line.
+"""Adds up CTest's JUnit reports: a line per preset, the failed tests by name with the end of what they printed, and "N passed,
+M failed" as the last line.
 
 usage: summarise_tests.py PRESET=REPORT.xml ...
 
@@ -20,11 +21,16 @@ def outcome(case):
     return "passed"
 
 
+def last_lines(case, count=30):
+    """The last lines that a test printed. The log of a whole run is long; who has only its end needs these."""
+    return (case.findtext("system-out") or "").rstrip().splitlines()[-count:]
+
+
 def read(report):
-    """Name -> outcome of every test of a report; None if there is no readable report."""
+    """Name, outcome and last lines of every test of a report; None if there is no readable report."""
     try:
         cases = xml.parse(report).getroot().iter("testcase")
-        return [(case.get("name"), outcome(case)) for case in cases]
+        return [(case.get("name"), outcome(case), last_lines(case)) for case in cases]
     except (OSError, xml.ParseError):
         return None
 
@@ -39,11 +45,13 @@ def main(arguments):
             totals["failed"] += 1
             lines.append(f"{preset}: did not build, or ran no test")
             continue
-        counts = {kind: sum(1 for _, got in tests if got == kind) for kind in totals}
+        counts = {kind: sum(1 for _, got, _ in tests if got == kind) for kind in totals}
         for kind, count in counts.items():
             totals[kind] += count
         lines.append(f"{preset}: {counts['passed']} passed, {counts['failed']} failed, {counts['skipped']} skipped")
-        lines += [f"  failed: {name}" for name, got in tests if got == "failed"]
+        for name, got, printed in tests:
+            if got == "failed":
+                lines += [f"  failed: {name}", *(f"    | {line}" for line in printed)]
     print("\n" + "\n".join(lines))
     if totals["skipped"]:
         print(f"{totals['skipped']} skipped")

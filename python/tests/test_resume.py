@@ -218,7 +218,8 @@ def test_who_stops_a_sweep_goes_on_with_it(slip, tmp_path, executor):
     stopping.join()
     signal.signal(signal.SIGINT, before)
     kept = stopped.value.result
-    assert 3 <= len(kept) < 40 and not kept.done and kept["run"].tolist() == list(range(1, len(kept) + 1))
+    runs = kept["run"].tolist()  # the run that the stop met is not among them, while a worker may have ended the next
+    assert 3 <= len(kept) < 40 and not kept.done and runs == sorted(set(runs)) and set(runs) <= set(range(1, 41))
     assert set(kept["status"]) == {"completed"}
     same_tables(slip.sweep(**how), slip.sweep(**how, resume=folder))
 
