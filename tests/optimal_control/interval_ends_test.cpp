@@ -88,7 +88,10 @@ TEST(OcpIntervalEnds, BlocksStopBeforeAnIntervalEnds) {
 
 /// J = 0.0974 where the block rests at the edge of stick, and does not go back.
 TEST(OcpIntervalEnds, BlocksAreNotHeldAtTheEdgeOfStick) {
-  expect_block(1, 0.458, 3, "terminal_cost = \"10*(x - 0.3)^2 + 0.5*v^2\"\nreformulation = \"stewart\"\n", 0.0442437);
+  expect_block(1, 0.458, 3,
+               "terminal_cost = \"10*(x - 0.3)^2 + 0.5*v^2\"\nreformulation = \"stewart\"\n"
+               "[optimize.mpcc]\nfirst = \"relaxed\"\n",
+               0.0442437);
 }
 
 /// A ball that lands exactly where the horizon ends, with J = 0.2406; before, it rests for a while. With three elements
@@ -218,6 +221,8 @@ control_intervals = 9
 stages = 3
 running_cost = "u^2"
 terminal_constraints = ["q == 1.06", "v == 0"]
+[optimize.mpcc]
+first = "relaxed"
 )toml"));
   constexpr double length = 0.3;
   constexpr int intervals = 9;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "saltus/foreign/problem.hpp"
-#include "saltus/foreign/statement_internal.hpp"
+#include "saltus/foreign/statement.hpp"
 #include "saltus/model/graph/model_function.hpp"
 #include "saltus/mpcc/problem.hpp"
 

@@ -1,10 +1,11 @@
+#include "saltus/foreign/make_problem.hpp"
+
 #include <cmath>
 #include <utility>
 
 #include "saltus/base/at.hpp"
 #include "saltus/foreign/derivatives_internal.hpp"
 #include "saltus/foreign/functions_internal.hpp"
-#include "saltus/foreign/make_problem_internal.hpp"
 #include "saltus/foreign/row_ranges_internal.hpp"
 #include "saltus/foreign/signs_internal.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "saltus/foreign/nl_expression_internal.hpp"
 #include "saltus/foreign/nl_lines_internal.hpp"
-#include "saltus/foreign/statement_internal.hpp"
+#include "saltus/foreign/statement.hpp"
 
 namespace saltus::foreign {
 

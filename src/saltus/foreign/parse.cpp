@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "saltus/foreign/make_problem_internal.hpp"
+#include "saltus/foreign/make_problem.hpp"
 #include "saltus/foreign/readers_internal.hpp"
 
 namespace saltus::foreign {

@@ -7,7 +7,7 @@
 
 #include "saltus/base/error.hpp"
 #include "saltus/foreign/parse.hpp"
-#include "saltus/foreign/statement_internal.hpp"
+#include "saltus/foreign/statement.hpp"
 
 namespace saltus::foreign {
 

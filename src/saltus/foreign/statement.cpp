@@ -1,6 +1,6 @@
-#include <fmt/format.h>
+#include "saltus/foreign/statement.hpp"
 
-#include "saltus/foreign/statement_internal.hpp"
+#include <fmt/format.h>
 
 namespace saltus::foreign {
 

@@ -152,6 +152,23 @@ void judge(Run& run) {
   }
 }
 
+/// With what is known of the branch, or of the last relaxed point.
+Solution finished(Run& run) {
+  Solution& solution = run.solution;
+  if (run.branch) {
+    appraise(run);
+    solution.crossed_over = true;
+    solution.w = run.branch->w;
+    solution.sides = run.branch->sides;
+  } else {
+    certify_relaxed(run);
+    solution.w = run.relaxed.point.w.head(run.problem.variables());
+  }
+  solution.objective = run.problem.objective(solution.w);
+  judge(run);
+  return std::move(solution);
+}
+
 }  // namespace
 
 Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
@@ -176,20 +193,21 @@ Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver
   const PathEnd end = is_on_branch ? PathEnd::crossed_over : follow_paths(run, from, others);
   if (options.crossover && end != PathEnd::crossed_over && end != PathEnd::stopped) rescue(run);
   if (!run.branch) run.branch = std::move(run.refused);
-  Solution& solution = run.solution;
-  if (run.branch) {
-    if (!is_descended) descend(run);
-    appraise(run);
-    solution.crossed_over = true;
-    solution.w = run.branch->w;
-    solution.sides = run.branch->sides;
-  } else {
-    certify_relaxed(run);
-    solution.w = run.relaxed.point.w.head(problem.variables());
-  }
-  solution.objective = problem.objective(solution.w);
-  judge(run);
-  return std::move(solution);
+  if (run.branch && !is_descended) descend(run);
+  return finished(run);
+}
+
+std::optional<Solution> solve_motion(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
+                                     const SolveOptions& options, const linalg::Vector& w) {
+  problem.without_method_terms();
+  const auto motion = problem.motion(w);
+  if (!motion) return std::nullopt;
+  Run run(problem, nlp, lpcc, options);
+  auto branch = run.solve_branch(motion->sides, motion->w, start_iterations, "the motion of these controls");
+  if (!branch.is_feasible(options.tolerance) || !std::isfinite(branch.objective)) return std::nullopt;
+  run.branch = std::move(branch);
+  descend(run);
+  return finished(run);
 }
 
 }  // namespace saltus::solver

@@ -93,6 +93,11 @@ struct Start {
   MpccMultipliers multipliers;
 };
 
+/// Solves from the motion of the controls of w: the branch of its modes, then better ones beside it. Nothing where
+/// there is no such motion, or none of its modes that satisfies the constraints.
+[[nodiscard]] std::optional<Solution> solve_motion(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
+                                                   const SolveOptions& options, const linalg::Vector& w);
+
 /// Returns the start of a seed: 0 the given one, else one half way from it to a random point, which is drawn between
 /// finite bounds, else within max(1, |w|) of w. Same seed, same bits on every machine.
 [[nodiscard]] linalg::Vector start_of_seed(const mpcc::Problem& problem, ConstVectorView w, int seed);

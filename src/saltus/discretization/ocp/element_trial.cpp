@@ -14,9 +14,13 @@ namespace {
 using mpcc::ActiveSide;
 
 constexpr int largest_steps = 15;
-/// Of the equations of an element that is solved.
+/// Of the equations of an element that is solved, and of one that no step makes smaller.
 constexpr double solved = 1e-10;
-/// By which selections and multipliers may be beyond their bounds.
+constexpr double exact = 1e-13;
+/// Steps in a row that do not halve the error: what has no solution stays where the equations contradict each other
+/// least.
+constexpr int most_vain_steps = 3;
+/// By which selections may be beyond their bounds.
 constexpr double allowed = 1e-8;
 
 /// What is left, relative to the beginning, of the multiplier that comes to 0 first.
@@ -157,12 +161,13 @@ std::vector<double> ElementTrial::inputs(const std::vector<double>& left, std::s
 }
 
 std::optional<linalg::Vector> ElementTrial::solve(const std::vector<double>& left, std::size_t interval,
-                                                  const Modes& modes, double length) const {
+                                                  const Modes& modes, double length, const linalg::Vector* near) const {
   const auto& kernel = made_.kernel;
   std::vector<double> z = inputs(left, interval);
   const std::size_t first = z.size() - at(kernel.layout.size);
   linalg::View local(z.data() + first, kernel.layout.size);
   begin_at(left, local);
+  if (near) local.tail(near->size()) = *near;
   local[kernel.layout.h] = length;
   std::vector<bool> is_held = hold(modes, local);
   do {
@@ -236,11 +241,15 @@ bool ElementTrial::solve(std::vector<double>& z, std::size_t first, const std::v
   linalg::View local(z.data() + first, made_.kernel.layout.size);
   std::vector<double> rows(at(element.equations() + 2 * element.pairs()));
   const linalg::ConstView errors(rows.data(), element.equations());
-  double objective = 0.0;
-  for (int step = 0; step < largest_steps; ++step) {
+  double objective = 0.0, least = std::numeric_limits<double>::infinity();
+  int vain_steps = 0;
+  for (int step = 0; step < largest_steps && vain_steps < most_vain_steps; ++step) {
     element.values(z.data(), made_.local_parameters.data(), &objective, rows.data());
     if (!errors.all_finite()) return false;
-    if (errors.max_abs() <= solved) return true;
+    const double error = errors.max_abs();
+    vain_steps = error > 0.5 * least ? vain_steps + 1 : 0;
+    least = std::min(least, error);
+    if (error <= solved && (error <= exact || vain_steps > 0)) return true;
     const linalg::Vector change = linalg::least_squares(columns_of_free(jacobian(z), is_held), errors);
     linalg::Index next = 0;
     for (linalg::Index i = 0; i < local.size(); ++i) {
@@ -250,11 +259,11 @@ bool ElementTrial::solve(std::vector<double>& z, std::size_t first, const std::v
   return false;
 }
 
-bool ElementTrial::is_admissible(const linalg::Vector& own) const {
+bool ElementTrial::is_admissible(const linalg::Vector& own, double below) const {
   const auto& layout = made_.kernel.layout;
   const auto selections = own.segment(layout.selection.first - 1, layout.selection.end() - layout.selection.first);
   const auto lambdas = own.segment(layout.lambda.first - 1, layout.lambda.end() - layout.lambda.first);
-  if (lambdas.size() > 0 && lambdas.min() < -allowed) return false;
+  if (lambdas.size() > 0 && lambdas.min() < -below) return false;
   return selections.size() == 0 || (selections.min() >= -allowed && selections.max() <= 1.0 + allowed);
 }
 

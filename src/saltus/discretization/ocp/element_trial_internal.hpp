@@ -19,6 +19,9 @@ struct HeldSelection {
 /// Returns whether ends of elements are the same but for what is left of zeros.
 [[nodiscard]] bool are_near(const std::vector<double>& a, const std::vector<double>& b);
 
+/// Of multipliers that have come to 0.
+inline constexpr double usual_digits = 1e-8;
+
 /// Solves elements one by one, with the controls and parameters of a point.
 class ElementTrial {
  public:
@@ -41,8 +44,10 @@ class ElementTrial {
   [[nodiscard]] std::vector<double> lambda(const std::vector<double>& left) const;
   /// Returns the variables of an element but its length, if its equations have a solution.
   /// @param length  in parts of a control interval
+  /// @param near    where to begin: those of another length
   [[nodiscard]] std::optional<linalg::Vector> solve(const std::vector<double>& left, std::size_t interval,
-                                                    const Modes& modes, double length) const;
+                                                    const Modes& modes, double length,
+                                                    const linalg::Vector* near = nullptr) const;
   /// Returns the local variables of such an element.
   [[nodiscard]] std::vector<double> inputs(const std::vector<double>& left, std::size_t interval,
                                            const linalg::Vector& own, double length) const;
@@ -60,7 +65,8 @@ class ElementTrial {
   [[nodiscard]] std::optional<linalg::Vector> solve_to_end(const std::vector<double>& left, std::size_t interval,
                                                            const Modes& modes, double& length) const;
   /// Returns whether selections and multipliers are within their bounds.
-  [[nodiscard]] bool is_admissible(const linalg::Vector& own) const;
+  /// @param below  0: by which multipliers may be
+  [[nodiscard]] bool is_admissible(const linalg::Vector& own, double below = usual_digits) const;
   /// Returns whether the clock stands.
   [[nodiscard]] bool stands_still(const std::vector<double>& left, const linalg::Vector& own) const;
 

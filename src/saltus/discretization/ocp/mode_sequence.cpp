@@ -84,12 +84,16 @@ class Writer {
     bool is_solved = true;
     for (const auto& stretch : stretches) {
       for (int i = 0; i < stretch.elements; ++i, ++e) {
-        const auto own = is_solved ? trial.solve(left, k, stretch.modes, stretch.of_element()) : std::nullopt;
-        is_solved = own.has_value();
-        if (own) left = trial.right_of(*own);
-        const int size = made_.kernel.layout.size - 1;
-        written_.w.segment(made_.element[e].first, size) =
-            own ? *own : linalg::Vector(w_.segment(made_.element[stretch.origin].first, size));
+        const bool has_own = stretch.own.size() > 0;
+        const auto found =
+            is_solved || has_own ? trial.solve(left, k, stretch.modes, stretch.of_element()) : std::nullopt;
+        is_solved = is_solved && found;
+        const auto [first, size] = std::pair(made_.element[e].first, made_.kernel.layout.size - 1);
+        const linalg::Vector own = found     ? *found
+                                   : has_own ? stretch.own
+                                             : linalg::Vector(w_.segment(made_.element[stretch.origin].first, size));
+        if (found || has_own) left = trial.right_of(own);
+        written_.w.segment(first, size) = own;
         modes_.write(stretch.modes, e, written_.sides);
         set_length(e, stretch.of_element() / sum);
       }

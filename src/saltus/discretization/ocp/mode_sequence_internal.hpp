@@ -16,6 +16,7 @@ struct Stretch {
   int elements = 1;
   bool stands = false;     ///< time stands still
   std::size_t origin = 0;  ///< an element: where equations have no solution its variables are a start
+  linalg::Vector own{};    ///< those of one element instead, if they are known
   [[nodiscard]] double of_element() const { return length / elements; }
   [[nodiscard]] bool has_vanished() const { return length <= vanished; }
 };

@@ -10,37 +10,47 @@ namespace {
 using mpcc::ActiveSide;
 
 /// Of an interval: so long a mode must go on to be one. What is left at the end of an interval is not missed.
-constexpr double short_share = 1e-4;
+constexpr double short_share = 1e-3;
+/// Of an interval: more are an accumulation, or no motion.
+constexpr std::size_t most_stretches = 20;
+/// Of modes, in a whole motion: where many surfaces meet they are as many as 3^n.
+constexpr int most_trials = 1000;
 /// A switch is found by bisection: to rounding.
 constexpr int bisections = 45;
+/// Of multipliers that have come to 0: the next mode may hold them there.
+constexpr double at_bound = 3e-11;
 
 }  // namespace
 
 /// What goes on first, then what differs at the surfaces that are reached.
-std::optional<Motion::Step> Motion::step(std::size_t k, const std::vector<double>& left, double rest) const {
+std::optional<Motion::Step> Motion::step(std::size_t k, const std::vector<double>& left, double rest) {
   const auto lambda = trial_.lambda(left);
+  // Short elements hide what falls with the square of time.
+  const double least = lambda.empty() ? 0.0 : *std::min_element(lambda.begin(), lambda.end());
+  const double below = std::max(at_bound, -2.0 * least);
   for (const auto& modes : states_.candidates(lambda, last_.empty() ? states_.on_all(lambda) : last_)) {
+    if (++trials_ > most_trials) return std::nullopt;
     Step step{{.modes = modes, .length = std::min(short_share, rest)}, {}};
     auto own = trial_.solve(left, k, modes, step.stretch.length);
     if (own && trial_.stands_still(left, *own)) {
       step.stretch.stands = true;
       own = trial_.solve_to_end(left, k, modes, step.stretch.length);
     }
-    if (!own || !trial_.is_admissible(*own)) continue;
+    if (!own || !trial_.is_admissible(*own, below)) continue;
     step.own = std::move(*own);
-    if (!step.stretch.stands) go_on(k, left, rest, step);
+    if (!step.stretch.stands) go_on(k, left, rest, below, step);
     return step;
   }
   return std::nullopt;
 }
 
 /// As long as the mode does.
-void Motion::go_on(std::size_t k, const std::vector<double>& left, double rest, Step& step) const {
+void Motion::go_on(std::size_t k, const std::vector<double>& left, double rest, double below, Step& step) const {
   double low = step.stretch.length, high = rest;
   for (int bisection = 0; bisection < bisections && low < high; ++bisection) {
     const double length = bisection == 0 ? rest : 0.5 * (low + high);
-    auto own = trial_.solve(left, k, step.stretch.modes, length);
-    if (own && trial_.is_admissible(*own)) {
+    auto own = trial_.solve(left, k, step.stretch.modes, length, &step.own);
+    if (own && trial_.is_admissible(*own, below)) {
       low = length;
       step.own = std::move(*own);
     } else {
@@ -54,19 +64,21 @@ std::optional<Stretches> Motion::interval(std::size_t k, std::vector<double>& le
   Stretches stretches;
   double rest = 1.0;
   while (rest > short_share) {
-    if (static_cast<int>(stretches.size()) == made_.interval[k].elements) return std::nullopt;
+    if (stretches.size() == most_stretches) return std::nullopt;
     const auto next = step(k, left, rest);
     if (!next) return std::nullopt;
     if (!next->stretch.stands) rest -= next->stretch.length;
     left = trial_.right_of(next->own);
     last_ = next->stretch.modes;
     stretches.push_back(next->stretch);
+    stretches.back().own = next->own;
   }
   return stretches;
 }
 
-std::optional<mpcc::NamedStart> OcpProblem::motion(mpcc::ConstVectorView w) {
-  const auto& made = *implementation_->structure;
+namespace {
+
+std::optional<ModeSequence> modes_of_motion(const OcpStructure& made, mpcc::ConstVectorView w) {
   if (made.kernel.pairs.empty()) return std::nullopt;
   Motion motion(made, w);
   std::vector<double> left = ElementTrial(made, w).left_of(0);
@@ -77,13 +89,30 @@ std::optional<mpcc::NamedStart> OcpProblem::motion(mpcc::ConstVectorView w) {
     if (!stretches) return std::nullopt;
     sequence.emplace(k, std::move(*stretches));
   }
+  return sequence;
+}
+
+}  // namespace
+
+std::vector<int> OcpProblem::modes_in_intervals(mpcc::ConstVectorView w) const {
+  const auto sequence = modes_of_motion(*implementation_->structure, w);
+  std::vector<int> counts;
+  if (!sequence) return counts;
+  for (const auto& [k, stretches] : *sequence) counts.push_back(static_cast<int>(stretches.size()));
+  return counts;
+}
+
+std::optional<mpcc::NamedStart> OcpProblem::motion(mpcc::ConstVectorView w) {
+  const auto& made = *implementation_->structure;
+  auto sequence = modes_of_motion(made, w);
+  if (!sequence) return std::nullopt;
   std::vector<ActiveSide> sides;
   linalg::Vector c(rows());
   functions(w, c);
   const auto G = c.segment(constraints(), pairs()), H = c.tail(pairs());
   for (int i = 0; i < pairs(); ++i) sides.push_back(G[i] <= H[i] ? ActiveSide::G : ActiveSide::H);
-  auto realised = realise(made, ElementSides(made, sides), w, std::move(sequence));
-  if (!realised || !realised->is_solved) return std::nullopt;
+  auto realised = realise(made, ElementSides(made, sides), w, std::move(*sequence));
+  if (!realised) return std::nullopt;  // what shorter elements change at the next surface is left to the solver
   return mpcc::NamedStart{.name = "a motion", .w = std::move(realised->w), .sides = std::move(realised->sides)};
 }
 

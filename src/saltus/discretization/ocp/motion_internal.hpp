@@ -17,7 +17,7 @@ class Motion {
   Motion(const OcpStructure& made, mpcc::ConstVectorView w) : made_(made), states_(made), trial_(made, w) {}
 
   /// Returns the stretches of interval k behind what is left of it, which becomes what is left of the next one; nothing
-  /// where no mode goes on, or there are more of them than elements.
+  /// where no mode goes on, they accumulate, or too many have been tried.
   /// Cost: some forty elements per switch.
   [[nodiscard]] std::optional<Stretches> interval(std::size_t k, std::vector<double>& left);
 
@@ -26,13 +26,14 @@ class Motion {
     Stretch stretch;
     linalg::Vector own;
   };
-  [[nodiscard]] std::optional<Step> step(std::size_t k, const std::vector<double>& left, double rest) const;
-  void go_on(std::size_t k, const std::vector<double>& left, double rest, Step& step) const;
+  [[nodiscard]] std::optional<Step> step(std::size_t k, const std::vector<double>& left, double rest);
+  void go_on(std::size_t k, const std::vector<double>& left, double rest, double below, Step& step) const;
 
   const OcpStructure& made_;
   SurfaceStates states_;
   ElementTrial trial_;
   ElementSides::Sides last_{};  ///< modes so far
+  int trials_ = 0;              ///< elements of modes that might go on
 };
 
 }  // namespace saltus::discretization

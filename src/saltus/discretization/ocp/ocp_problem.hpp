@@ -121,6 +121,8 @@ class OcpProblem final : public mpcc::Problem {
   /// Gives elements that end where the motion switches; nothing where an interval has fewer elements than modes, or no
   /// mode goes on.
   [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w) override;
+  /// Returns how many modes that motion has in each interval, one after the other; empty where there is none.
+  [[nodiscard]] std::vector<int> modes_in_intervals(mpcc::ConstVectorView w) const;
   [[nodiscard]] std::string name(int variable) const override;
   [[nodiscard]] std::string row_name(int row) const override;
   [[nodiscard]] const mpcc::Chain* chain() const override;

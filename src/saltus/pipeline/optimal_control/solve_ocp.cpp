@@ -10,6 +10,7 @@
 #include "saltus/base/at.hpp"
 #include "saltus/base/stopwatch.hpp"
 #include "saltus/pipeline/optimal_control/solve_ocp_internal.hpp"
+#include "saltus/pipeline/optimal_control/stepped_start_internal.hpp"
 
 namespace saltus::pipeline {
 namespace {
@@ -20,6 +21,9 @@ using result::Termination;
 constexpr int most_rounds = 3;
 /// Motions with contacts differ in their collisions, and each order of them has optima of its own.
 constexpr int compared_starts_with_contacts = 4;
+constexpr double least_seconds = 1e-3;  // a time limit is > 0
+/// Of the objective of time stepping, relative.
+constexpr double error_of_steps = 0.05;
 /// Of the objective: by less an element more is not worth it.
 constexpr double worth_an_element = 1e-4;
 
@@ -107,6 +111,73 @@ class MoreElements {
   adapters::HighsLpcc highs_;
 };
 
+/// Whoever says how to begin gets that.
+bool begins_freely(const OptimizeOptions& options) {
+  const auto& wanted = options.mpcc;
+  return options.start_from == nullptr && wanted.strategy == solver::Strategy::structured && wanted.crossover &&
+         wanted.first == solver::FirstProblem::automatic && !wanted.sigma_initial && !wanted.seed &&
+         !wanted.compared_starts && wanted.starts.value_or(1) == 1 && options.switch_detection;
+}
+
+/// A solution with the elements that its motion has needed.
+struct FromSteps {
+  solver::Solution solution;
+  std::unique_ptr<discretization::OcpProblem> problem;
+  std::vector<int> elements;
+  bool is_as_good = false;  ///< as the steps
+};
+
+/// From the motion of the controls that time stepping finds: with an element for each of its modes. Nothing where that
+/// leads to no solution. Its states are one more start.
+std::optional<FromSteps> solve_from_steps(const model::Ocp& ocp, const OptimizeOptions& options,
+                                          const solver::SolveOptions& wanted, SolvedOcp& solved) {
+  auto& [stated, record, has_more, seconds] = solved;
+  const auto start = stepped_start(ocp, options, wanted, stated.problem->start_fractions(), record);
+  if (!start) return std::nullopt;
+  stated.problem->add_start("the motion of time stepping", start->guess);
+  const linalg::Vector w = stated.problem->other_starts().back().w;
+  const auto modes = stated.problem->modes_in_intervals(w);
+  if (modes.empty()) return std::nullopt;
+  auto elements = stated.elements;
+  for (std::size_t k = 0; k < elements.size(); ++k) elements[k] = std::max(elements[k], modes[k]);
+  auto problem = discretization::OcpProblem::make(stated.kernel, ocp, *stated.dcs, elements);
+  if (!problem) return std::nullopt;
+  (*problem)->set_start(*stated.problem, w);
+  adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
+  adapters::HighsLpcc highs;
+  auto found = solver::solve_motion(**problem, ipopt, highs, wanted, (*problem)->start());
+  if (!found || found->termination != Termination::completed) return std::nullopt;
+  const double most = start->objective + error_of_steps * std::abs(start->objective);
+  const bool is_as_good = found->objective <= most;
+  return FromSteps{std::move(*found), std::move(*problem), std::move(elements), is_as_good};
+}
+
+/// Where steps promise more than their motion has come to, or lead nowhere, relaxed problems are solved, too.
+std::optional<Error> solve_either_way(const model::Ocp& ocp, const OptimizeOptions& options,
+                                      const solver::SolveOptions& wanted, SolvedOcp& solved) {
+  const Stopwatch clock;
+  auto from_steps = begins_freely(options) ? solve_from_steps(ocp, options, wanted, solved) : std::nullopt;
+  if (!from_steps || !from_steps->is_as_good) {
+    solver::SolveOptions rest = wanted;
+    if (rest.time_limit) rest.time_limit = std::max(*rest.time_limit - clock.seconds(), least_seconds);
+    adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
+    adapters::HighsLpcc highs;
+    auto& problem = *solved.stated.problem;
+    auto solution = solver::solve(problem, ipopt, highs, rest, same_structure(problem, options));
+    if (!solution) return solution.error();
+    solved.solution.starts = std::move(solution->starts);  // those of the path so far stay
+    go_on_with(std::move(*solution), solved.solution);
+  }
+  const auto& other = solved.solution;
+  const bool is_only = !from_steps || from_steps->is_as_good || other.termination != Termination::completed;
+  if (!from_steps || !(is_only || from_steps->solution.objective < other.objective)) return std::nullopt;
+  go_on_with(std::move(from_steps->solution), solved.solution);
+  solved.has_more_elements = from_steps->elements != solved.stated.elements;
+  solved.stated.elements = std::move(from_steps->elements);
+  solved.stated.problem = std::move(from_steps->problem);
+  return std::nullopt;
+}
+
 }  // namespace
 
 Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& options,
@@ -124,13 +195,8 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
   wanted.make_workplace = [&] { return another_place(ocp, options); };
   const bool has_start = options.start_from != nullptr;
   if (!wanted.compared_starts && ocp.physical && !has_start) wanted.compared_starts = compared_starts_with_contacts;
-  adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
-  adapters::HighsLpcc highs;
-  auto& problem = *solved.stated.problem;
   const Stopwatch solving;
-  auto solution = solver::solve(problem, ipopt, highs, wanted, same_structure(problem, options));
-  if (!solution) return tl::unexpected(solution.error());
-  solved.solution = std::move(*solution);
+  if (auto error = solve_either_way(ocp, options, wanted, solved)) return tl::unexpected(std::move(*error));
   if (wanted.time_limit) *wanted.time_limit -= solving.seconds();
   MoreElements more(ocp, wanted, solved);
   for (int round = 0; round < most_rounds && more.add();) ++round;

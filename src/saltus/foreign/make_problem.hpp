@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "saltus/foreign/problem.hpp"
-#include "saltus/foreign/statement_internal.hpp"
+#include "saltus/foreign/statement.hpp"
 
 namespace saltus::foreign {
 

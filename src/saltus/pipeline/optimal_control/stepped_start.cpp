@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <utility>
+
+#include "saltus/adapters/highs/highs_lpcc.hpp"
+#include "saltus/adapters/ipopt/ipopt_solver.hpp"
+#include "saltus/base/at.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/model/time_freezing/time_freezing.hpp"
+#include "saltus/pipeline/optimal_control/ocp_guess.hpp"
+#include "saltus/pipeline/optimal_control/stepped_start_internal.hpp"
+#include "saltus/time_stepping/stepped_ocp.hpp"
+
+namespace saltus::pipeline {
+namespace {
+
+/// What is left of complementarity is less than the error of a step.
+constexpr double last_sigma = 1e-6;
+/// Of constraints, for the same reason.
+constexpr double feasible = 1e-3;
+constexpr int most_of_steps = 1500;  // iterations of one start
+/// So large that motions hardly know of contacts, and so small that they stay near their start.
+constexpr double large_sigma = 1.0, small_sigma = 0.01;
+
+/// Without the clock and what else is hidden in frozen time, and back.
+std::vector<double> shown(std::vector<double> x, const model::Ocp& ocp) {
+  x.resize(ocp.physical->state_names.size());
+  return x;
+}
+std::vector<double> with_clock(std::vector<double> x, const model::Ocp& ocp, double t) {
+  x.resize(ocp.system.state_names.size(), 0.0);
+  x[at(ocp.system.freezing->clock)] = t;
+  return x;
+}
+
+/// Straight lines between the ends of equal steps.
+std::vector<double> state_at(const time_stepping::Motion& motion, double fraction) {
+  const double place = fraction * static_cast<double>(motion.states.size());
+  const auto step = std::min(static_cast<std::size_t>(std::max(place, 0.0)), motion.states.size() - 1);
+  const auto& before = step == 0 ? motion.initial_state : motion.states[step - 1];
+  const auto& after = motion.states[step];
+  std::vector<double> x = before;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += (place - static_cast<double>(step)) * (after[i] - before[i]);
+  return x;
+}
+
+result::HomotopyStep named(result::HomotopyStep step) {
+  step.message = step.message.empty() ? "time stepping" : "time stepping: " + step.message;
+  return step;
+}
+
+/// Where a path begins.
+struct Beginning {
+  linalg::Vector w;
+  double sigma = 1.0;
+};
+
+/// Each order of collisions has optima of its own: the lowest one.
+std::optional<solver::Solution> best_of(const std::vector<Beginning>& beginnings, mpcc::Problem& problem,
+                                        solver::SolveOptions wanted, solver::Solution& record) {
+  wanted.on_step = [tell = wanted.on_step](const result::HomotopyStep& step) { tell(named(step)); };
+  adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
+  adapters::HighsLpcc highs;
+  std::optional<solver::Solution> best;
+  for (const auto& [w, sigma] : beginnings) {
+    if (wanted.is_interrupted()) break;
+    wanted.sigma_initial = sigma;
+    auto solution = solver::solve(problem, ipopt, highs, wanted, solver::Start{.w = w, .multipliers = {}});
+    if (!solution) continue;
+    for (const auto& step : solution->homotopy) record.homotopy.push_back(named(step));
+    record.iterations += solution->iterations;
+    record.evaluation_seconds += solution->evaluation_seconds;
+    record.solver_seconds += solution->solver_seconds;
+    const auto& of = solution->certificate;
+    const bool is_feasible = of.primal_infeasibility <= feasible && of.complementarity_residual <= feasible;
+    if (is_feasible && !(best && solution->objective >= best->objective)) best = std::move(*solution);
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<SteppedStart> stepped_start(const model::Ocp& ocp, const OptimizeOptions& options,
+                                          solver::SolveOptions wanted, const std::vector<double>& fractions,
+                                          solver::Solution& record) {
+  if (!ocp.physical || ocp.physical->contacts.empty()) return std::nullopt;
+  const int intervals = static_cast<int>(options.control_intervals);
+  const auto begin = guess_start(ocp, intervals, time_stepping::ends_of_steps(intervals));
+  if (!begin) return std::nullopt;
+  time_stepping::Motion guess{.horizon = begin->horizon,
+                              .parameters = begin->parameters,
+                              .controls = begin->controls,
+                              .initial_state = shown(begin->initial_state, ocp),
+                              .states = {}};
+  for (const auto& x : begin->states) guess.states.push_back(shown(x, ocp));
+  const auto stepped = time_stepping::SteppedOcp::make(ocp, intervals, guess);
+  if (!stepped) return std::nullopt;
+  wanted.crossover = false;
+  wanted.schedule.sigma_final = last_sigma;
+  wanted.iteration_limit = std::min(wanted.iteration_limit, most_of_steps);
+  wanted.compared_starts = 0;
+  wanted.starts = 1;
+  wanted.make_workplace = {};
+  const linalg::Vector w = stepped->problem().start();
+  std::vector<Beginning> beginnings{{w, large_sigma}, {w, small_sigma}};
+  for (const auto& [name, states] : begin->others) beginnings.push_back({stepped->start_at(states), small_sigma});
+  const auto solution = best_of(beginnings, stepped->problem(), std::move(wanted), record);
+  if (!solution) return std::nullopt;
+  auto motion = stepped->read(solution->w);
+  discretization::OcpGuessValues found{.horizon = motion.horizon,
+                                       .parameters = std::move(motion.parameters),
+                                       .controls = std::move(motion.controls),
+                                       .initial_state = with_clock(motion.initial_state, ocp, ocp.from),
+                                       .states = {}};
+  for (const double fraction : fractions) {
+    const double t = ocp.from + fraction * motion.horizon;
+    found.states.push_back(with_clock(state_at(motion, fraction), ocp, t));
+  }
+  return SteppedStart{std::move(found), solution->objective};
+}
+
+}  // namespace saltus::pipeline

@@ -1,0 +1,290 @@
+#include "saltus/time_stepping/stepped_ocp.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <casadi/core/function.hpp>
+#include <casadi/core/sx.hpp>
+
+#include "saltus/base/at.hpp"
+#include "saltus/base/contains.hpp"
+#include "saltus/foreign/make_problem.hpp"
+#include "saltus/foreign/problem.hpp"
+#include "saltus/model/ocp.hpp"
+#include "saltus/model/system.hpp"
+
+namespace saltus::time_stepping {
+
+using casadi::SX;
+using foreign::infinity;
+using model::Ocp;
+using model::System;
+
+namespace {
+
+/// Of each interval.
+constexpr int steps = 5;
+/// Where multipliers begin.
+constexpr double small = 0.01;
+
+/// The numbers of the selections that expressions depend on, with those inside of their surfaces.
+std::vector<int> selections_in(const System& system, const SX& expressions) {
+  std::vector<int> found;
+  for (int k = static_cast<int>(system.switching.size()) - 1; k >= 0; --k) {
+    const auto holds = [&](int other) { return contains(system.switching[at(other)].inner, k); };
+    const bool is_inner = std::any_of(found.begin(), found.end(), holds);
+    if (is_inner || SX::depends_on(expressions, system.alpha(k))) found.push_back(k);
+  }
+  return found;
+}
+
+/// What the functions of a step are made of, with all contacts open.
+SX expressions_of(const System& system) {
+  const auto& contacts = system.contacts;
+  const SX all = SX::vertcat(
+      {system.f, system.outputs, contacts.gap, contacts.velocity, SX::vec(contacts.responses), contacts.friction});
+  const auto constants = model::Activity().values();
+  const SX open =
+      SX::repmat(SX(std::vector<double>(constants.begin(), constants.end())), 1, contacts.activities.size2());
+  return SX::substitute(all, SX::vec(contacts.activities), SX::vec(open));
+}
+
+bool is_plastic(const System& system) {
+  const auto values = casadi::Function("restitution", {system.p}, {system.contacts.restitution})(
+      std::vector<casadi::DM>{casadi::DM(system.parameter_values)});
+  for (const double value : values.front().get_elements()) {
+    if (value != 0.0) return false;
+  }
+  return true;
+}
+
+bool is_known(const Ocp& ocp) {
+  if (!ocp.physical || ocp.physical->contacts.empty()) return false;
+  const System& system = *ocp.physical;
+  const auto& contacts = system.contacts.contacts;
+  const auto of_contacts = std::count_if(contacts.begin(), contacts.end(), [](auto& one) { return one.jump >= 0; });
+  const bool has_gaps = std::all_of(contacts.begin(), contacts.end(), [](auto& one) { return one.has_gap; });
+  const auto used = selections_in(system, expressions_of(system));
+  const bool are_steps = std::all_of(used.begin(), used.end(), [&](int k) {
+    const auto role = system.switching[at(k)].role;
+    return role == model::SwitchingRole::listed || role == model::SwitchingRole::kink;
+  });
+  return has_gaps && are_steps && static_cast<std::ptrdiff_t>(system.jumps.size()) <= of_contacts &&
+         system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() &&
+         ocp.stage_slacks.empty() && is_plastic(system);
+}
+
+}  // namespace
+
+class Builder {
+ public:
+  Builder(const Ocp& ocp, int intervals, const Motion& guess)
+      : ocp_(ocp),
+        system_(*ocp.physical),
+        intervals_(intervals),
+        guess_(guess),
+        used_(selections_in(system_, expressions_of(system_))),
+        made_(new SteppedOcp()) {}
+
+  std::unique_ptr<SteppedOcp> build() {
+    declare();
+    SX x = initial_state_;
+    for (int k = 0; k < intervals_; ++k) {
+      const SX u = controls(k);
+      for (int j = 0; j < steps; ++j) x = step(k, j, x, u);
+      for (const auto& row : ocp_.path) constrain(row);
+    }
+    for (const auto& row : ocp_.terminal) constrain(row);
+    if (ocp_.terminal_cost) statement_.objective += outputs_(*ocp_.terminal_cost);
+    statement_.objective += ocp_.horizon.time_weight * horizon_;
+    statement_.file_variables = static_cast<int>(statement_.symbols.size());
+    made_->problem_ = foreign::make_problem(std::move(statement_));
+    made_->motion_ = guess_;
+    return std::move(made_);
+  }
+
+ private:
+  SX add(double start, double lower, double upper) {
+    statement_.symbols.push_back(SX::sym("w" + std::to_string(statement_.symbols.size())));
+    statement_.start.push_back(start);
+    statement_.lower.push_back(lower);
+    statement_.upper.push_back(upper);
+    return statement_.symbols.back();
+  }
+  [[nodiscard]] int last() const { return static_cast<int>(statement_.symbols.size()) - 1; }
+  SX multiplier() { return add(small, 0.0, infinity); }
+  void equal(const SX& difference) {
+    for (casadi_int i = 0; i < difference.numel(); ++i) statement_.rows.push_back({difference(i), 0.0, 0.0, {}});
+  }
+  void pair(const SX& G, const SX& H) { statement_.pairs.push_back({G, H, {}}); }
+
+  /// What all steps share.
+  void declare() {
+    const auto& horizon = ocp_.horizon;
+    horizon_ = horizon.free ? add(guess_.horizon, horizon.lower, horizon.upper) : SX(horizon.value);
+    if (horizon.free) made_->horizon_ = last();
+    for (std::size_t i = 0; i < guess_.parameters.size(); ++i) {
+      const bool is_free = ocp_.free_parameters[i] && !ocp_.is_initial_value(i);
+      parameters_ = SX::vertcat(
+          {parameters_, is_free ? add(guess_.parameters[i], ocp_.parameter_lower[i], ocp_.parameter_upper[i])
+                                : SX(guess_.parameters[i])});
+      made_->parameters_.push_back(is_free ? last() : -1);
+    }
+    for (std::size_t i = 0; i < system_.state_names.size(); ++i) {
+      const bool is_free = ocp_.free_states[i];
+      initial_state_ = SX::vertcat(
+          {initial_state_, is_free ? add(guess_.initial_state[i], system_.state_lower[i], system_.state_upper[i])
+                                   : SX(guess_.initial_state[i])});
+      made_->initial_state_.push_back(is_free ? last() : -1);
+    }
+    for (const auto& [state, parameter] : ocp_.initial_values) parameters_(parameter) = initial_state_(state);
+    const auto& contacts = system_.contacts;
+    std::vector<SX> psi;
+    for (const int k : used_) psi.push_back(system_.switching[at(k)].psi);
+    const SX all = expressions_of(system_);
+    const auto sizes = std::vector<casadi_int>{0,
+                                               system_.f.numel(),
+                                               system_.outputs.numel(),
+                                               contacts.gap.numel(),
+                                               contacts.velocity.numel(),
+                                               contacts.responses.numel(),
+                                               contacts.friction.numel()};
+    std::vector<casadi_int> ends = sizes;
+    for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
+    std::vector<SX> parts = SX::vertsplit(all, ends);
+    parts.push_back(SX::vertcat(psi));
+    functions_ = casadi::Function("step", {system_.t, system_.x, system_.u, system_.p, system_.alpha}, parts);
+  }
+
+  SX controls(int k) {
+    SX u(0, 1);
+    auto& places = made_->controls_.emplace_back();
+    for (std::size_t i = 0; i < system_.control_names.size(); ++i) {
+      u = SX::vertcat({u, add(guess_.controls[at(k)][i], system_.control_lower[i], system_.control_upper[i])});
+      places.push_back(last());
+    }
+    return u;
+  }
+
+  /// The state at the end of step j of interval k.
+  SX step(int k, int j, const SX& before, const SX& u) {
+    const int number = k * steps + j;
+    SX x(0, 1);
+    auto& places = made_->states_.emplace_back();
+    for (std::size_t i = 0; i < system_.state_names.size(); ++i) {
+      x = SX::vertcat({x, add(guess_.states[at(number)][i], system_.state_lower[i], system_.state_upper[i])});
+      places.push_back(last());
+    }
+    SX alpha = SX::zeros(system_.alpha.numel());
+    for (const int s : used_) alpha(s) = add(0.5, 0.0, 1.0);
+    const SX h = horizon_ / (intervals_ * steps), t = ocp_.from + (number + 1) * h;
+    const auto values = functions_(std::vector<SX>{t, x, u, parameters_, alpha});
+    outputs_ = values[1];
+    select(alpha, values[6]);
+    equal(x - before - h * values[0] - impulses(values));
+    if (ocp_.running_cost) statement_.objective += h * outputs_(*ocp_.running_cost);
+    return x;
+  }
+
+  void select(const SX& alpha, const SX& psi) {
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      const SX plus = multiplier(), minus = multiplier();
+      equal(psi(static_cast<casadi_int>(i)) - plus + minus);
+      pair(alpha(used_[i]), minus);
+      pair(1.0 - alpha(used_[i]), plus);
+    }
+  }
+
+  /// By how much contacts change the states in a step.
+  SX impulses(const std::vector<SX>& values) {
+    const auto& contacts = system_.contacts;
+    const SX &gap = values[2], &velocity = values[3], &friction = values[5];
+    const SX responses = SX::reshape(values[4], contacts.responses.size1(), contacts.responses.size2());
+    const casadi_int m = gap.numel();
+    SX changes = SX::zeros(responses.size1());
+    for (casadi_int i = 0; i < m; ++i) {
+      const SX normal = multiplier();
+      pair(normal, gap(i));
+      changes += responses(casadi::Slice(), i) * normal;
+      const auto& contact = contacts.contacts[at(i)];
+      if (!contact.has_friction) continue;
+      const SX speed = multiplier();
+      SX rest = friction(i) * normal;
+      for (int d = 0; d < contact.tangents(); ++d) {
+        const casadi_int row = (d + 1) * m + i;
+        const SX plus = multiplier(), minus = multiplier();
+        pair(plus, speed + velocity(row));
+        pair(minus, speed - velocity(row));
+        changes += responses(casadi::Slice(), row) * (plus - minus);
+        rest -= plus + minus;
+      }
+      pair(speed, rest);
+    }
+    SX of_states = SX::zeros(system_.x.numel());
+    for (std::size_t i = 0; i < contacts.velocities.size(); ++i) {
+      of_states(contacts.velocities[i]) = changes(static_cast<casadi_int>(i));
+    }
+    return of_states;
+  }
+
+  void constrain(const model::OcpConstraint& row) {
+    if (row.norm != model::ConstraintNorm::hard) return;
+    statement_.rows.push_back({outputs_(row.output), row.lower, row.upper, {}});
+  }
+
+  const Ocp& ocp_;
+  const System& system_;
+  int intervals_;
+  const Motion& guess_;
+  std::vector<int> used_;  ///< selections
+  std::unique_ptr<SteppedOcp> made_;
+  foreign::Statement statement_;
+  casadi::Function functions_;
+  SX horizon_, parameters_ = SX(0, 1), initial_state_ = SX(0, 1);
+  SX outputs_;  ///< at the end of the last step
+};
+
+std::vector<double> ends_of_steps(int intervals) {
+  std::vector<double> fractions;
+  const int count = intervals * steps;
+  for (int k = 1; k <= count; ++k) fractions.push_back(static_cast<double>(k) / count);
+  return fractions;
+}
+
+std::unique_ptr<SteppedOcp> SteppedOcp::make(const Ocp& ocp, int intervals, const Motion& guess) {
+  return is_known(ocp) ? Builder(ocp, intervals, guess).build() : nullptr;
+}
+
+SteppedOcp::~SteppedOcp() = default;
+
+std::vector<double> SteppedOcp::values(mpcc::ConstVectorView w, const std::vector<int>& places) const {
+  std::vector<double> found;
+  for (const int place : places) found.push_back(w[place]);
+  return found;
+}
+
+linalg::Vector SteppedOcp::start_at(const std::vector<std::vector<double>>& states) const {
+  linalg::Vector w = problem_->start();
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    for (std::size_t i = 0; i < states_[k].size(); ++i) w[states_[k][i]] = states[k][i];
+  }
+  return w;
+}
+
+Motion SteppedOcp::read(mpcc::ConstVectorView w) const {
+  Motion motion = motion_;
+  if (horizon_ >= 0) motion.horizon = w[horizon_];
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    if (parameters_[i] >= 0) motion.parameters[i] = w[parameters_[i]];
+  }
+  for (std::size_t i = 0; i < initial_state_.size(); ++i) {
+    if (initial_state_[i] >= 0) motion.initial_state[i] = w[initial_state_[i]];
+  }
+  for (std::size_t k = 0; k < controls_.size(); ++k) motion.controls[k] = values(w, controls_[k]);
+  for (std::size_t k = 0; k < states_.size(); ++k) motion.states[k] = values(w, states_[k]);
+  return motion;
+}
+
+}  // namespace saltus::time_stepping
