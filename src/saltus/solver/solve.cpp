@@ -16,6 +16,8 @@ using result::Termination;
 
 /// Of the branch problem of a start, which may be far from its solution. In one go: the solver keeps its barrier.
 constexpr int start_iterations = 3000;
+/// Of that of a motion: 7 to 100 where it leads to a solution.
+constexpr int motion_iterations = 500;
 /// Of one that nobody asked for: where the solution is near, it is found sooner.
 constexpr int near_iterations = 150;
 
@@ -203,7 +205,7 @@ std::optional<Solution> solve_motion(mpcc::Problem& problem, NlpSolver& nlp, Lpc
   const auto motion = problem.motion(w);
   if (!motion) return std::nullopt;
   Run run(problem, nlp, lpcc, options);
-  auto branch = run.solve_branch(motion->sides, motion->w, start_iterations, "the motion of these controls");
+  auto branch = run.solve_branch(motion->sides, motion->w, motion_iterations, "the motion of these controls");
   if (!branch.is_feasible(options.tolerance) || !std::isfinite(branch.objective)) return std::nullopt;
   run.branch = std::move(branch);
   descend(run);

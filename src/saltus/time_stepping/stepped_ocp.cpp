@@ -69,7 +69,7 @@ bool is_known(const Ocp& ocp) {
   const auto used = selections_in(system, expressions_of(system));
   const bool are_steps = std::all_of(used.begin(), used.end(), [&](int k) {
     const auto role = system.switching[at(k)].role;
-    return role == model::SwitchingRole::listed || role == model::SwitchingRole::kink;
+    return role != model::SwitchingRole::discrete && role != model::SwitchingRole::region;
   });
   return has_gaps && are_steps && static_cast<std::ptrdiff_t>(system.jumps.size()) <= of_contacts &&
          system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() &&
