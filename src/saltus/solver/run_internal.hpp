@@ -71,8 +71,6 @@ class Run {
 /// Returns whether a ray from a point is feasible as far as numbers go, and the objective falls along it. Then the
 /// problem has no solution. Cost: one linear program.
 [[nodiscard]] bool falls_without_end(Run& run, const linalg::Vector& w);
-/// Returns the time limit of what begins after so many seconds.
-[[nodiscard]] std::optional<double> time_left(const SolveOptions& options, double seconds);
 /// Solves from one start, whatever SolveOptions::starts.
 [[nodiscard]] Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
                                             const SolveOptions& options, const std::optional<Start>& start);

@@ -200,12 +200,10 @@ Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver
 }
 
 std::optional<Solution> solve_motion(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
-                                     const SolveOptions& options, const linalg::Vector& w) {
+                                     const SolveOptions& options, const mpcc::NamedStart& motion) {
   problem.without_method_terms();
-  const auto motion = problem.motion(w);
-  if (!motion) return std::nullopt;
   Run run(problem, nlp, lpcc, options);
-  auto branch = run.solve_branch(motion->sides, motion->w, motion_iterations, "the motion of these controls");
+  auto branch = run.solve_branch(motion.sides, motion.w, motion_iterations, "the motion of these controls");
   if (!branch.is_feasible(options.tolerance) || !std::isfinite(branch.objective)) return std::nullopt;
   run.branch = std::move(branch);
   descend(run);

@@ -93,10 +93,13 @@ struct Start {
   MpccMultipliers multipliers;
 };
 
-/// Solves from the motion of the controls of w: the branch of its modes, then better ones beside it. Nothing where
-/// there is no such motion, or none of its modes that satisfies the constraints.
+/// Solves from a motion: the branch of its sides, then better ones beside it. Nothing where no point of that branch
+/// satisfies the constraints.
 [[nodiscard]] std::optional<Solution> solve_motion(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
-                                                   const SolveOptions& options, const linalg::Vector& w);
+                                                   const SolveOptions& options, const mpcc::NamedStart& motion);
+
+/// Returns the time limit of what begins after so many seconds.
+[[nodiscard]] std::optional<double> time_left(const SolveOptions& options, double seconds);
 
 /// Returns the start of a seed: 0 the given one, else one half way from it to a random point, which is drawn between
 /// finite bounds, else within max(1, |w|) of w. Same seed, same bits on every machine.

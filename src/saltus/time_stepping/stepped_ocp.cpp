@@ -1,7 +1,6 @@
 #include "saltus/time_stepping/stepped_ocp.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -29,44 +28,47 @@ constexpr int steps = 5;
 /// Where multipliers begin.
 constexpr double small = 0.01;
 
-/// The numbers of the selections that expressions depend on, with those inside of their surfaces.
-std::vector<int> selections_in(const System& system, const SX& expressions) {
+/// The numbers of the selections that parts depend on, with those inside of their surfaces.
+std::vector<int> selections_in(const System& system, const std::vector<SX>& parts) {
+  const auto depends = [&](const SX& alpha) {
+    return std::any_of(parts.begin(), parts.end(), [&](const SX& part) { return SX::depends_on(part, alpha); });
+  };
   std::vector<int> found;
   for (int k = static_cast<int>(system.switching.size()) - 1; k >= 0; --k) {
     const auto holds = [&](int other) { return contains(system.switching[at(other)].inner, k); };
     const bool is_inner = std::any_of(found.begin(), found.end(), holds);
-    if (is_inner || SX::depends_on(expressions, system.alpha(k))) found.push_back(k);
+    if (is_inner || depends(system.alpha(k))) found.push_back(k);
   }
   return found;
 }
 
-/// What the functions of a step are made of, with all contacts open.
-SX expressions_of(const System& system) {
+/// What is evaluated in a step, by number; behind it the surfaces.
+enum Part : std::size_t { rates, outputs, gaps, velocities, responses, friction, surfaces };
+
+/// With all contacts open.
+std::vector<SX> parts_of(const System& system) {
   const auto& contacts = system.contacts;
-  const SX all = SX::vertcat(
-      {system.f, system.outputs, contacts.gap, contacts.velocity, SX::vec(contacts.responses), contacts.friction});
   const auto constants = model::Activity().values();
   const SX open =
       SX::repmat(SX(std::vector<double>(constants.begin(), constants.end())), 1, contacts.activities.size2());
-  return SX::substitute(all, SX::vec(contacts.activities), SX::vec(open));
+  return SX::substitute(
+      {system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses, contacts.friction},
+      {SX::vec(contacts.activities)}, {SX::vec(open)});
 }
 
 bool is_plastic(const System& system) {
   const auto values = casadi::Function("restitution", {system.p}, {system.contacts.restitution})(
       std::vector<casadi::DM>{casadi::DM(system.parameter_values)});
-  for (const double value : values.front().get_elements()) {
-    if (value != 0.0) return false;
-  }
-  return true;
+  const auto all = values.front().get_elements();
+  return std::all_of(all.begin(), all.end(), [](double value) { return value == 0.0; });
 }
 
-bool is_known(const Ocp& ocp) {
-  if (!ocp.physical || ocp.physical->contacts.empty()) return false;
+/// @param used  selections
+bool is_known(const Ocp& ocp, const std::vector<int>& used) {
   const System& system = *ocp.physical;
   const auto& contacts = system.contacts.contacts;
   const auto of_contacts = std::count_if(contacts.begin(), contacts.end(), [](auto& one) { return one.jump >= 0; });
   const bool has_gaps = std::all_of(contacts.begin(), contacts.end(), [](auto& one) { return one.has_gap; });
-  const auto used = selections_in(system, expressions_of(system));
   const bool are_steps = std::all_of(used.begin(), used.end(), [&](int k) {
     const auto role = system.switching[at(k)].role;
     return role != model::SwitchingRole::discrete && role != model::SwitchingRole::region;
@@ -80,13 +82,20 @@ bool is_known(const Ocp& ocp) {
 
 class Builder {
  public:
-  Builder(const Ocp& ocp, int intervals, const Motion& guess)
+  /// @param parts  of a step
+  /// @param used   selections
+  Builder(const Ocp& ocp, int intervals, const Motion& guess, std::vector<SX> parts, std::vector<int> used)
       : ocp_(ocp),
         system_(*ocp.physical),
         intervals_(intervals),
         guess_(guess),
-        used_(selections_in(system_, expressions_of(system_))),
-        made_(new SteppedOcp()) {}
+        used_(std::move(used)),
+        made_(new SteppedOcp()) {
+    std::vector<SX> psi;
+    for (const int k : used_) psi.push_back(system_.switching[at(k)].psi);
+    parts.push_back(SX::vertcat(psi));
+    functions_ = casadi::Function("step", {system_.t, system_.x, system_.u, system_.p, system_.alpha}, parts);
+  }
 
   std::unique_ptr<SteppedOcp> build() {
     declare();
@@ -140,22 +149,6 @@ class Builder {
       made_->initial_state_.push_back(is_free ? last() : -1);
     }
     for (const auto& [state, parameter] : ocp_.initial_values) parameters_(parameter) = initial_state_(state);
-    const auto& contacts = system_.contacts;
-    std::vector<SX> psi;
-    for (const int k : used_) psi.push_back(system_.switching[at(k)].psi);
-    const SX all = expressions_of(system_);
-    const auto sizes = std::vector<casadi_int>{0,
-                                               system_.f.numel(),
-                                               system_.outputs.numel(),
-                                               contacts.gap.numel(),
-                                               contacts.velocity.numel(),
-                                               contacts.responses.numel(),
-                                               contacts.friction.numel()};
-    std::vector<casadi_int> ends = sizes;
-    for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
-    std::vector<SX> parts = SX::vertsplit(all, ends);
-    parts.push_back(SX::vertcat(psi));
-    functions_ = casadi::Function("step", {system_.t, system_.x, system_.u, system_.p, system_.alpha}, parts);
   }
 
   SX controls(int k) {
@@ -181,9 +174,9 @@ class Builder {
     for (const int s : used_) alpha(s) = add(0.5, 0.0, 1.0);
     const SX h = horizon_ / (intervals_ * steps), t = ocp_.from + (number + 1) * h;
     const auto values = functions_(std::vector<SX>{t, x, u, parameters_, alpha});
-    outputs_ = values[1];
-    select(alpha, values[6]);
-    equal(x - before - h * values[0] - impulses(values));
+    outputs_ = values[outputs];
+    select(alpha, values[surfaces]);
+    equal(x - before - h * values[rates] - impulses(values));
     if (ocp_.running_cost) statement_.objective += h * outputs_(*ocp_.running_cost);
     return x;
   }
@@ -200,24 +193,23 @@ class Builder {
   /// By how much contacts change the states in a step.
   SX impulses(const std::vector<SX>& values) {
     const auto& contacts = system_.contacts;
-    const SX &gap = values[2], &velocity = values[3], &friction = values[5];
-    const SX responses = SX::reshape(values[4], contacts.responses.size1(), contacts.responses.size2());
+    const SX &gap = values[gaps], &velocity = values[velocities], &response = values[responses];
     const casadi_int m = gap.numel();
-    SX changes = SX::zeros(responses.size1());
+    SX changes = SX::zeros(response.size1());
     for (casadi_int i = 0; i < m; ++i) {
       const SX normal = multiplier();
       pair(normal, gap(i));
-      changes += responses(casadi::Slice(), i) * normal;
+      changes += response(casadi::Slice(), i) * normal;
       const auto& contact = contacts.contacts[at(i)];
       if (!contact.has_friction) continue;
       const SX speed = multiplier();
-      SX rest = friction(i) * normal;
+      SX rest = values[friction](i) * normal;
       for (int d = 0; d < contact.tangents(); ++d) {
         const casadi_int row = (d + 1) * m + i;
         const SX plus = multiplier(), minus = multiplier();
         pair(plus, speed + velocity(row));
         pair(minus, speed - velocity(row));
-        changes += responses(casadi::Slice(), row) * (plus - minus);
+        changes += response(casadi::Slice(), row) * (plus - minus);
         rest -= plus + minus;
       }
       pair(speed, rest);
@@ -254,7 +246,11 @@ std::vector<double> ends_of_steps(int intervals) {
 }
 
 std::unique_ptr<SteppedOcp> SteppedOcp::make(const Ocp& ocp, int intervals, const Motion& guess) {
-  return is_known(ocp) ? Builder(ocp, intervals, guess).build() : nullptr;
+  if (!ocp.physical || ocp.physical->contacts.empty()) return nullptr;
+  auto parts = parts_of(*ocp.physical);
+  auto used = selections_in(*ocp.physical, parts);
+  if (!is_known(ocp, used)) return nullptr;
+  return Builder(ocp, intervals, guess, std::move(parts), std::move(used)).build();
 }
 
 SteppedOcp::~SteppedOcp() = default;

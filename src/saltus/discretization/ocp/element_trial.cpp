@@ -20,8 +20,6 @@ constexpr double exact = 1e-13;
 /// Steps in a row that do not halve the error: what has no solution stays where the equations contradict each other
 /// least.
 constexpr int most_vain_steps = 3;
-/// By which selections may be beyond their bounds.
-constexpr double allowed = 1e-8;
 
 /// What is left, relative to the beginning, of the multiplier that comes to 0 first.
 double least_left(const std::vector<double>& begin, const std::vector<double>& end) {
@@ -205,7 +203,7 @@ bool ElementTrial::hold_beyond(linalg::View local, std::vector<bool>& is_held) c
   const auto& selection = made_.kernel.layout.selection;
   for (int i = selection.first; i < selection.end(); ++i) {
     const double inside = std::clamp(local[i], 0.0, 1.0);
-    if (is_held[at(i)] || std::abs(local[i] - inside) <= allowed) continue;
+    if (is_held[at(i)] || std::abs(local[i] - inside) <= allowed_beyond) continue;
     local[i] = inside;
     are_beyond = is_held[at(i)] = true;
   }
@@ -264,7 +262,7 @@ bool ElementTrial::is_admissible(const linalg::Vector& own, double below) const 
   const auto selections = own.segment(layout.selection.first - 1, layout.selection.end() - layout.selection.first);
   const auto lambdas = own.segment(layout.lambda.first - 1, layout.lambda.end() - layout.lambda.first);
   if (lambdas.size() > 0 && lambdas.min() < -below) return false;
-  return selections.size() == 0 || (selections.min() >= -allowed && selections.max() <= 1.0 + allowed);
+  return selections.size() == 0 || (selections.min() >= -allowed_beyond && selections.max() <= 1.0 + allowed_beyond);
 }
 
 bool ElementTrial::stands_still(const std::vector<double>& left, const linalg::Vector& own) const {

@@ -19,8 +19,8 @@ struct HeldSelection {
 /// Returns whether ends of elements are the same but for what is left of zeros.
 [[nodiscard]] bool are_near(const std::vector<double>& a, const std::vector<double>& b);
 
-/// Of multipliers that have come to 0.
-inline constexpr double usual_digits = 1e-8;
+/// By which selections and multipliers may be beyond their bounds.
+inline constexpr double allowed_beyond = 1e-8;
 
 /// Solves elements one by one, with the controls and parameters of a point.
 class ElementTrial {
@@ -66,7 +66,7 @@ class ElementTrial {
                                                            const Modes& modes, double& length) const;
   /// Returns whether selections and multipliers are within their bounds.
   /// @param below  0: by which multipliers may be
-  [[nodiscard]] bool is_admissible(const linalg::Vector& own, double below = usual_digits) const;
+  [[nodiscard]] bool is_admissible(const linalg::Vector& own, double below = allowed_beyond) const;
   /// Returns whether the clock stands.
   [[nodiscard]] bool stands_still(const std::vector<double>& left, const linalg::Vector& own) const;
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "saltus/discretization/ocp/motion_internal.hpp"
@@ -23,41 +24,41 @@ constexpr double at_bound = 3e-11;
 }  // namespace
 
 /// What goes on first, then what differs at the surfaces that are reached.
-std::optional<Motion::Step> Motion::step(std::size_t k, const std::vector<double>& left, double rest) {
+std::optional<Stretch> Motion::step(std::size_t k, const std::vector<double>& left, double rest) {
   const auto lambda = trial_.lambda(left);
   // Short elements hide what falls with the square of time.
   const double least = lambda.empty() ? 0.0 : *std::min_element(lambda.begin(), lambda.end());
   const double below = std::max(at_bound, -2.0 * least);
   for (const auto& modes : states_.candidates(lambda, last_.empty() ? states_.on_all(lambda) : last_)) {
     if (++trials_ > most_trials) return std::nullopt;
-    Step step{{.modes = modes, .length = std::min(short_share, rest)}, {}};
-    auto own = trial_.solve(left, k, modes, step.stretch.length);
+    Stretch stretch{.modes = modes, .length = std::min(short_share, rest)};
+    auto own = trial_.solve(left, k, modes, stretch.length);
     if (own && trial_.stands_still(left, *own)) {
-      step.stretch.stands = true;
-      own = trial_.solve_to_end(left, k, modes, step.stretch.length);
+      stretch.stands = true;
+      own = trial_.solve_to_end(left, k, modes, stretch.length);
     }
     if (!own || !trial_.is_admissible(*own, below)) continue;
-    step.own = std::move(*own);
-    if (!step.stretch.stands) go_on(k, left, rest, below, step);
-    return step;
+    stretch.own = std::move(*own);
+    if (!stretch.stands) go_on(k, left, rest, below, stretch);
+    return stretch;
   }
   return std::nullopt;
 }
 
 /// As long as the mode does.
-void Motion::go_on(std::size_t k, const std::vector<double>& left, double rest, double below, Step& step) const {
-  double low = step.stretch.length, high = rest;
+void Motion::go_on(std::size_t k, const std::vector<double>& left, double rest, double below, Stretch& stretch) const {
+  double low = stretch.length, high = rest;
   for (int bisection = 0; bisection < bisections && low < high; ++bisection) {
     const double length = bisection == 0 ? rest : 0.5 * (low + high);
-    auto own = trial_.solve(left, k, step.stretch.modes, length, &step.own);
+    auto own = trial_.solve(left, k, stretch.modes, length, &stretch.own);
     if (own && trial_.is_admissible(*own, below)) {
       low = length;
-      step.own = std::move(*own);
+      stretch.own = std::move(*own);
     } else {
       high = length;
     }
   }
-  step.stretch.length = low;
+  stretch.length = low;
 }
 
 std::optional<Stretches> Motion::interval(std::size_t k, std::vector<double>& left) {
@@ -65,53 +66,54 @@ std::optional<Stretches> Motion::interval(std::size_t k, std::vector<double>& le
   double rest = 1.0;
   while (rest > short_share) {
     if (stretches.size() == most_stretches) return std::nullopt;
-    const auto next = step(k, left, rest);
+    auto next = step(k, left, rest);
     if (!next) return std::nullopt;
-    if (!next->stretch.stands) rest -= next->stretch.length;
+    if (!next->stands) rest -= next->length;
     left = trial_.right_of(next->own);
-    last_ = next->stretch.modes;
-    stretches.push_back(next->stretch);
-    stretches.back().own = next->own;
+    last_ = next->modes;
+    stretches.push_back(std::move(*next));
   }
   return stretches;
 }
 
-namespace {
-
-std::optional<ModeSequence> modes_of_motion(const OcpStructure& made, mpcc::ConstVectorView w) {
-  if (made.kernel.pairs.empty()) return std::nullopt;
-  Motion motion(made, w);
-  std::vector<double> left = ElementTrial(made, w).left_of(0);
+struct MotionModes {
   ModeSequence sequence;
-  for (std::size_t k = 0; k < made.interval.size(); ++k) {
-    if (made.interval[k].elements > 1 && made.interval[k].lengths.empty()) return std::nullopt;
-    auto stretches = motion.interval(k, left);
-    if (!stretches) return std::nullopt;
-    sequence.emplace(k, std::move(*stretches));
-  }
-  return sequence;
-}
+};
 
-}  // namespace
-
-std::vector<int> OcpProblem::modes_in_intervals(mpcc::ConstVectorView w) const {
-  const auto sequence = modes_of_motion(*implementation_->structure, w);
+std::vector<int> elements_of(const MotionModes& modes) {
   std::vector<int> counts;
-  if (!sequence) return counts;
-  for (const auto& [k, stretches] : *sequence) counts.push_back(static_cast<int>(stretches.size()));
+  for (const auto& [k, stretches] : modes.sequence) counts.push_back(static_cast<int>(stretches.size()));
   return counts;
 }
 
-std::optional<mpcc::NamedStart> OcpProblem::motion(mpcc::ConstVectorView w) {
+std::shared_ptr<const MotionModes> OcpProblem::motion_modes(mpcc::ConstVectorView w) const {
   const auto& made = *implementation_->structure;
-  auto sequence = modes_of_motion(made, w);
-  if (!sequence) return std::nullopt;
+  if (made.kernel.pairs.empty()) return nullptr;
+  Motion motion(made, w);
+  std::vector<double> left = ElementTrial(made, w).left_of(0);
+  MotionModes modes;
+  for (std::size_t k = 0; k < made.interval.size(); ++k) {
+    if (made.interval[k].elements > 1 && made.interval[k].lengths.empty()) return nullptr;
+    auto stretches = motion.interval(k, left);
+    if (!stretches) return nullptr;
+    modes.sequence.emplace(k, std::move(*stretches));
+  }
+  return std::make_shared<const MotionModes>(std::move(modes));
+}
+
+std::optional<mpcc::NamedStart> OcpProblem::motion(mpcc::ConstVectorView w) {
+  const auto modes = motion_modes(w);
+  return modes ? motion(w, *modes) : std::nullopt;
+}
+
+std::optional<mpcc::NamedStart> OcpProblem::motion(mpcc::ConstVectorView w, const MotionModes& modes) {
+  const auto& made = *implementation_->structure;
   std::vector<ActiveSide> sides;
   linalg::Vector c(rows());
   functions(w, c);
   const auto G = c.segment(constraints(), pairs()), H = c.tail(pairs());
   for (int i = 0; i < pairs(); ++i) sides.push_back(G[i] <= H[i] ? ActiveSide::G : ActiveSide::H);
-  auto realised = realise(made, ElementSides(made, sides), w, std::move(*sequence));
+  auto realised = realise(made, ElementSides(made, sides), w, modes.sequence);
   if (!realised) return std::nullopt;  // what shorter elements change at the next surface is left to the solver
   return mpcc::NamedStart{.name = "a motion", .w = std::move(realised->w), .sides = std::move(realised->sides)};
 }

@@ -22,12 +22,8 @@ class Motion {
   [[nodiscard]] std::optional<Stretches> interval(std::size_t k, std::vector<double>& left);
 
  private:
-  struct Step {
-    Stretch stretch;
-    linalg::Vector own;
-  };
-  [[nodiscard]] std::optional<Step> step(std::size_t k, const std::vector<double>& left, double rest);
-  void go_on(std::size_t k, const std::vector<double>& left, double rest, double below, Step& step) const;
+  [[nodiscard]] std::optional<Stretch> step(std::size_t k, const std::vector<double>& left, double rest);
+  void go_on(std::size_t k, const std::vector<double>& left, double rest, double below, Stretch& stretch) const;
 
   const OcpStructure& made_;
   SurfaceStates states_;

@@ -66,6 +66,11 @@ struct OcpSolution {
   std::vector<std::vector<SolvedElement>> elements;
 };
 
+/// Holds the modes of a motion, one after the other in each interval.
+struct MotionModes;
+/// Returns how many there are in each interval.
+[[nodiscard]] std::vector<int> elements_of(const MotionModes& modes);
+
 /// States min f, g = 0, 0 <= G _|_ H >= 0 of fesd.md (Optimal control), [nurkanovic2024] eq. (45). Variables: horizon
 /// and free parameters; free initial states and their multipliers; per interval controls, speed of time, lengths hhat
 /// (h = hhat s T/N, sum hhat = 1), then its elements.
@@ -121,8 +126,10 @@ class OcpProblem final : public mpcc::Problem {
   /// Gives elements that end where the motion switches; nothing where an interval has fewer elements than modes, or no
   /// mode goes on.
   [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w) override;
-  /// Returns how many modes that motion has in each interval, one after the other; empty where there is none.
-  [[nodiscard]] std::vector<int> modes_in_intervals(mpcc::ConstVectorView w) const;
+  /// Returns the modes of that motion, however many elements it needs; null where there is none.
+  [[nodiscard]] std::shared_ptr<const MotionModes> motion_modes(mpcc::ConstVectorView w) const;
+  /// Gives the motion of the same controls in modes that are known, of a problem of the same kernel.
+  [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w, const MotionModes& modes);
   [[nodiscard]] std::string name(int variable) const override;
   [[nodiscard]] std::string row_name(int row) const override;
   [[nodiscard]] const mpcc::Chain* chain() const override;

@@ -13,6 +13,7 @@
 #include "saltus/model/ocp.hpp"
 #include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/optimal_control/ocp_guess.hpp"
+#include "saltus/pipeline/optimal_control/state_rows_internal.hpp"
 #include "saltus/pipeline/options/element_choices_internal.hpp"
 #include "saltus/reformulation/dcs.hpp"
 
@@ -87,31 +88,11 @@ discretization::FesdOptions discretization_options(const OptimizeOptions& option
   return chosen;
 }
 
-/// Values of a stored trajectory at a time: straight lines between its rows.
-std::vector<double> row_at(const std::vector<double>& t, const result::Table<double>& rows, double time) {
-  const auto behind = std::upper_bound(t.begin(), t.end(), time);
-  if (behind == t.begin()) return rows.front();
-  if (behind == t.end()) return rows.back();
-  const auto i = static_cast<std::size_t>(behind - t.begin());
-  const double length = t[i] - t[i - 1];
-  const double share = length > 0.0 ? (time - t[i - 1]) / length : 1.0;
-  std::vector<double> row = rows[i - 1];
-  for (std::size_t k = 0; k < row.size(); ++k) row[k] += share * (rows[i][k] - rows[i - 1][k]);
-  return row;
-}
-
 /// Of the states, those that results have: all, or without the hidden ones of frozen time.
 std::vector<std::string> result_states(const model::System& system) {
   auto names = system.state_names;
   if (system.freezing) names.resize(at(system.freezing->first_hidden));
   return names;
-}
-
-/// A row of a result at a time, with the clock and the other hidden states of frozen time, which are 0.
-std::vector<double> with_hidden_states(const model::System& system, std::vector<double> x, double t) {
-  x.resize(system.state_names.size(), 0.0);
-  if (system.freezing) x[at(system.freezing->clock)] = t;
-  return x;
 }
 
 /// A start from a stored result of the same model, possibly with another number of intervals.

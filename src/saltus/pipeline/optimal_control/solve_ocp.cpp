@@ -21,7 +21,6 @@ using result::Termination;
 constexpr int most_rounds = 3;
 /// Motions with contacts differ in their collisions, and each order of them has optima of its own.
 constexpr int compared_starts_with_contacts = 4;
-constexpr double least_seconds = 1e-3;  // a time limit is > 0
 /// Of the objective of time stepping, relative.
 constexpr double error_of_steps = 0.05;
 /// Of the objective: by less an element more is not worth it.
@@ -132,20 +131,25 @@ struct FromSteps {
 std::optional<FromSteps> solve_from_steps(const model::Ocp& ocp, const OptimizeOptions& options,
                                           const solver::SolveOptions& wanted, SolvedOcp& solved) {
   auto& [stated, record, has_more, seconds] = solved;
+  const Stopwatch clock;
   const auto start = stepped_start(ocp, options, wanted, stated.problem->start_fractions(), record);
   if (!start) return std::nullopt;
   stated.problem->add_start("the motion of time stepping", start->guess);
   const linalg::Vector w = stated.problem->other_starts().back().w;
-  const auto modes = stated.problem->modes_in_intervals(w);
-  if (modes.empty()) return std::nullopt;
-  auto elements = stated.elements;
-  for (std::size_t k = 0; k < elements.size(); ++k) elements[k] = std::max(elements[k], modes[k]);
+  const auto modes = stated.problem->motion_modes(w);
+  if (!modes) return std::nullopt;
+  auto elements = discretization::elements_of(*modes);
+  for (std::size_t k = 0; k < elements.size(); ++k) elements[k] = std::max(elements[k], stated.elements[k]);
   auto problem = discretization::OcpProblem::make(stated.kernel, ocp, *stated.dcs, elements);
   if (!problem) return std::nullopt;
   (*problem)->set_start(*stated.problem, w);
+  const auto motion = (*problem)->motion((*problem)->start(), *modes);
+  if (!motion) return std::nullopt;
+  solver::SolveOptions rest = wanted;
+  rest.time_limit = solver::time_left(wanted, clock.seconds());
   adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
   adapters::HighsLpcc highs;
-  auto found = solver::solve_motion(**problem, ipopt, highs, wanted, (*problem)->start());
+  auto found = solver::solve_motion(**problem, ipopt, highs, rest, *motion);
   if (!found || found->termination != Termination::completed) return std::nullopt;
   const double most = start->objective + error_of_steps * std::abs(start->objective);
   const bool is_as_good = found->objective <= most;
@@ -159,7 +163,7 @@ std::optional<Error> solve_either_way(const model::Ocp& ocp, const OptimizeOptio
   auto from_steps = begins_freely(options) ? solve_from_steps(ocp, options, wanted, solved) : std::nullopt;
   if (!from_steps || !from_steps->is_as_good) {
     solver::SolveOptions rest = wanted;
-    if (rest.time_limit) rest.time_limit = std::max(*rest.time_limit - clock.seconds(), least_seconds);
+    rest.time_limit = solver::time_left(wanted, clock.seconds());
     adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
     adapters::HighsLpcc highs;
     auto& problem = *solved.stated.problem;

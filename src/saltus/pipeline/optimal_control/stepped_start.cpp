@@ -3,10 +3,10 @@
 
 #include "saltus/adapters/highs/highs_lpcc.hpp"
 #include "saltus/adapters/ipopt/ipopt_solver.hpp"
-#include "saltus/base/at.hpp"
+#include "saltus/base/stopwatch.hpp"
 #include "saltus/model/ocp.hpp"
-#include "saltus/model/time_freezing/time_freezing.hpp"
 #include "saltus/pipeline/optimal_control/ocp_guess.hpp"
+#include "saltus/pipeline/optimal_control/state_rows_internal.hpp"
 #include "saltus/pipeline/optimal_control/stepped_start_internal.hpp"
 #include "saltus/time_stepping/stepped_ocp.hpp"
 
@@ -21,25 +21,9 @@ constexpr int most_of_steps = 1500;  // iterations of one start
 /// So large that motions hardly know of contacts, and so small that they stay near their start.
 constexpr double large_sigma = 1.0, small_sigma = 0.01;
 
-/// Without the clock and what else is hidden in frozen time, and back.
+/// Without the hidden states of frozen time.
 std::vector<double> shown(std::vector<double> x, const model::Ocp& ocp) {
   x.resize(ocp.physical->state_names.size());
-  return x;
-}
-std::vector<double> with_clock(std::vector<double> x, const model::Ocp& ocp, double t) {
-  x.resize(ocp.system.state_names.size(), 0.0);
-  x[at(ocp.system.freezing->clock)] = t;
-  return x;
-}
-
-/// Straight lines between the ends of equal steps.
-std::vector<double> state_at(const time_stepping::Motion& motion, double fraction) {
-  const double place = fraction * static_cast<double>(motion.states.size());
-  const auto step = std::min(static_cast<std::size_t>(std::max(place, 0.0)), motion.states.size() - 1);
-  const auto& before = step == 0 ? motion.initial_state : motion.states[step - 1];
-  const auto& after = motion.states[step];
-  std::vector<double> x = before;
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += (place - static_cast<double>(step)) * (after[i] - before[i]);
   return x;
 }
 
@@ -60,11 +44,14 @@ std::optional<solver::Solution> best_of(const std::vector<Beginning>& beginnings
   wanted.on_step = [tell = wanted.on_step](const result::HomotopyStep& step) { tell(named(step)); };
   adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
   adapters::HighsLpcc highs;
+  const Stopwatch clock;
   std::optional<solver::Solution> best;
   for (const auto& [w, sigma] : beginnings) {
     if (wanted.is_interrupted()) break;
-    wanted.sigma_initial = sigma;
-    auto solution = solver::solve(problem, ipopt, highs, wanted, solver::Start{.w = w, .multipliers = {}});
+    solver::SolveOptions one = wanted;
+    one.sigma_initial = sigma;
+    one.time_limit = solver::time_left(wanted, clock.seconds());
+    auto solution = solver::solve(problem, ipopt, highs, one, solver::Start{.w = w, .multipliers = {}});
     if (!solution) continue;
     for (const auto& step : solution->homotopy) record.homotopy.push_back(named(step));
     record.iterations += solution->iterations;
@@ -84,7 +71,8 @@ std::optional<SteppedStart> stepped_start(const model::Ocp& ocp, const OptimizeO
                                           solver::Solution& record) {
   if (!ocp.physical || ocp.physical->contacts.empty()) return std::nullopt;
   const int intervals = static_cast<int>(options.control_intervals);
-  const auto begin = guess_start(ocp, intervals, time_stepping::ends_of_steps(intervals));
+  std::vector<double> times = time_stepping::ends_of_steps(intervals);  // fractions of the horizon
+  const auto begin = guess_start(ocp, intervals, times);
   if (!begin) return std::nullopt;
   time_stepping::Motion guess{.horizon = begin->horizon,
                               .parameters = begin->parameters,
@@ -106,14 +94,18 @@ std::optional<SteppedStart> stepped_start(const model::Ocp& ocp, const OptimizeO
   const auto solution = best_of(beginnings, stepped->problem(), std::move(wanted), record);
   if (!solution) return std::nullopt;
   auto motion = stepped->read(solution->w);
+  const auto with_clock = [&](std::vector<double> x, double fraction) {
+    return with_hidden_states(ocp.system, std::move(x), ocp.from + fraction * motion.horizon);
+  };
   discretization::OcpGuessValues found{.horizon = motion.horizon,
                                        .parameters = std::move(motion.parameters),
                                        .controls = std::move(motion.controls),
-                                       .initial_state = with_clock(motion.initial_state, ocp, ocp.from),
+                                       .initial_state = with_clock(motion.initial_state, 0.0),
                                        .states = {}};
+  times.insert(times.begin(), 0.0);
+  motion.states.insert(motion.states.begin(), std::move(motion.initial_state));
   for (const double fraction : fractions) {
-    const double t = ocp.from + fraction * motion.horizon;
-    found.states.push_back(with_clock(state_at(motion, fraction), ocp, t));
+    found.states.push_back(with_clock(row_at(times, motion.states, fraction), fraction));
   }
   return SteppedStart{std::move(found), solution->objective};
 }
