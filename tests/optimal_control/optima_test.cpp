@@ -76,6 +76,35 @@ terminal_cost = "x"
   }
 }
 
+/// Beyond the shore x is drawn away. The best controls touch it, and between two stages they are beyond it: the motion
+/// of an optimum that is only asked at stages (0.00635) is another one, and ends off by 0.76 of its range.
+TEST(OcpOptima, SurfacesThatAreOnlyTouchedAreKeptOff) {
+  for (const std::string form : {"", "reformulation = \"stewart\"\n"}) {
+    const auto result = optimized(stated(R"toml(
+[model]
+name = "shore"
+[states]
+x = 0.5
+y = 0
+[controls]
+u = { lower = -3, upper = 3 }
+[dynamics]
+x = "u + 2*(t - 1) + 2*(sign(x) - 1)"
+y = "sign(x)"
+[optimize]
+horizon = 2
+control_intervals = 4
+elements = 4
+running_cost = "(x - 0.5*(t - 1)^2 + 0.02)^2 + 0.01*u^2"
+)toml" + form));
+    EXPECT_EQ(result.status.termination, Termination::completed) << form << ": " << result.status.message;
+    EXPECT_NEAR(result.optimization->objective, 0.00637, 5e-5) << form;
+    ASSERT_TRUE(result.optimization->verification) << form;
+    EXPECT_LT(result.optimization->verification->interval_defect, 1e-10) << form;
+    EXPECT_EQ(result.optimization->verification->switches_missed, 0) << form;
+  }
+}
+
 /// A ball that comes nowhere near the ground: the rate of its gap says nothing, so that it may change its sign. By
 /// quadrature J = 1.0403050; an optimiser that holds the rate at 0 hovers, with J = 1.4224.
 TEST(OcpOptima, RatesOfOpenGapsAreNotHeld) {

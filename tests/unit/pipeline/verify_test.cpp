@@ -253,6 +253,29 @@ TEST(VerifyTest, ExitsOfTheSolutionFromASurfaceThatRepels) {
   }
 }
 
+/// a' = -sign(b), b' = -sign(a) from (1, 1): at t = 1 both are zero. They may stay there, or leave to either side: a
+/// motion that meets one surface first never comes to the other.
+TEST(VerifyTest, TwoSurfacesThatTheSolutionMeetsAtOnce) {
+  Builder model("meets");
+  const SX a = model.state("a", {1.0}), b = model.state("b", {1.0});
+  model.dynamics("a", -model.sign(b));
+  model.dynamics("b", -model.sign(a));
+  auto path = path_of(2.0, {{1.0, 1.0}, {0.0, 0.0}}, {{}});
+  result::Event event;
+  event.t = 1.0;
+  event.mode_before = result::Mode{1, 1};
+  event.mode_after = result::Mode{0, 0};
+  path.events = {event};
+  path.elements = {{0.0, 0, {1.0, 1.0}}, {1.0, 0, {0.0, 0.0}}};
+  const auto found = verified(problem_of(model, 2.0), path);
+  EXPECT_LT(found.interval_defect, exact);
+  EXPECT_EQ(found.switches_missed + found.switches_extra, 0);
+  EXPECT_NE(found.message.find("not unique in interval 0"), std::string::npos) << found.message;
+  // What it was moved by there counts.
+  path.elements.back().x = {0.0, 0.01};
+  EXPECT_GT(verified(problem_of(model, 2.0), path).interval_defect, 0.009);
+}
+
 TEST(VerifyTest, NodesBesideASurfaceOnWhichTheSolutionSlides) {
   // x' = 1/2 - sign(x) from 1/4: on the surface from t = 1/2 on.
   Builder model("sliding");

@@ -154,6 +154,11 @@ class OcpProblem final : public mpcc::Problem {
   /// @param upper  multipliers of upper bounds at w
   [[nodiscard]] std::vector<int> crowded_intervals(mpcc::ConstVectorView w, const linalg::Vector& upper,
                                                    double tolerance) const;
+  /// Bounds switching functions at points of a solution that only touches their surfaces: it stays beside them between
+  /// its stages, too. So do selections where it slides at the edge of that. A bound that is there is doubled if the
+  /// interval still switches. Returns the largest one that has changed, 0 without any.
+  /// @param missed_in  the interval in which the motion itself switches
+  double keep_off_touched(const std::vector<mpcc::ActiveSide>& sides, mpcc::ConstVectorView w, int missed_in);
 
  private:
   struct Implementation;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -90,24 +91,17 @@ void keep_added_elements(const std::vector<int>& elements, const OptimizeObserve
       fmt::join(elements, ", ")));
 }
 
-}  // namespace
-
-Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& asked,
-                                  const OptimizeObservers& observers) {
-  const SymbolicLock lock;  // problems are made, and dropped, while it runs
-  const Stopwatch whole;
-  if (auto error = model::find_stale(ocp.system)) return tl::unexpected(*error);
-  auto solved = solve_ocp(ocp, asked, observers);
-  if (!solved) return tl::unexpected(solved.error());
-  auto& problem = *solved->stated.problem;
-  const auto& solution = solved->solution;
+Expected<result::Result> judged_result(const model::Ocp& ocp, const OptimizeOptions& asked,
+                                       const OptimizeObservers& observers, const SolvedOcp& solved) {
+  auto& problem = *solved.stated.problem;
+  const auto& solution = solved.solution;
   OptimizeOptions options = asked;
-  if (solved->has_more_elements) keep_added_elements(solved->stated.elements, observers, options);
+  if (solved.has_more_elements) keep_added_elements(solved.stated.elements, observers, options);
 
   const auto read = problem.read(solution.w);
-  auto run = optimized_run(ocp, read, reformulation_options(options.element), solved->stated.tableau);
+  auto run = optimized_run(ocp, read, reformulation_options(options.element), solved.stated.tableau);
   if (!run) return tl::unexpected(run.error());
-  auto result = optimum_result(ocp, options, *solved, read, *run);
+  auto result = optimum_result(ocp, options, solved, read, *run);
   std::unique_ptr<PhysicalBodies> bodies;
   if (ocp.physical) {
     auto made = PhysicalBodies::make(ocp, run->path.parameters);
@@ -118,21 +112,78 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   const auto noted = noting(observers, result.status);
   warn_of_impacts_at_nodes(result, noted);
   warn_of_crowded_intervals(problem, solution, options, noted);
-  if (result.status.termination != Termination::stopped_by_user && solution.w.all_finite()) {
-    std::vector<linalg::Matrix> gains;
-    if (options.closed_loop.value_or(ocp.plant || !result.contacts.empty())) {
-      gains = solver::feedback_gains(problem, solution, static_cast<int>(ocp.system.control_names.size()),
-                                     static_cast<int>(result.states.size()), tracking_scales(ocp, options, run->path));
-    }
-    auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), bodies.get(), observers);
-    if (!verification) return tl::unexpected(verification.error());
-    judge(*verification, options, result.status);
-    warn_of_path_violations(ocp.path, ocp.path_at, *verification, options, observers);
-    if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);
-    result.optimization->verification = std::move(*verification);
+  if (result.status.termination == Termination::stopped_by_user || !solution.w.all_finite()) return result;
+  std::vector<linalg::Matrix> gains;
+  if (options.closed_loop.value_or(ocp.plant || !result.contacts.empty())) {
+    gains = solver::feedback_gains(problem, solution, static_cast<int>(ocp.system.control_names.size()),
+                                   static_cast<int>(result.states.size()), tracking_scales(ocp, options, run->path));
   }
-  result.statistics.wall_seconds = result.optimization->statistics.wall_seconds = whole.seconds();
+  auto verification = judged_by_events(ocp, run->path, result, options, std::move(gains), bodies.get(), observers);
+  if (!verification) return tl::unexpected(verification.error());
+  judge(*verification, options, result.status);
+  warn_of_path_violations(ocp.path, ocp.path_at, *verification, options, observers);
+  if (verification->penetration) verification->penetration->solution = solution_depth(ocp, read);
+  result.optimization->verification = std::move(*verification);
   return result;
+}
+
+/// Whether the motion itself is another one than the solution's.
+bool differs(const result::Result& result) {
+  return result.status.termination == Termination::verification_failed &&
+         std::isfinite(result.optimization->verification->interval_defect);
+}
+
+/// Of the objective, relative: what costs more is another motion.
+constexpr double worth_a_distance = 0.1;
+
+/// Warnings of a result, to be told if it is the last one.
+struct Judged {
+  result::Result result;
+  std::vector<std::string> warnings;
+};
+
+Expected<Judged> judged(const model::Ocp& ocp, const OptimizeOptions& asked, const OptimizeObservers& observers,
+                        const SolvedOcp& solved) {
+  std::vector<std::string> warnings;
+  auto later = observers;
+  later.on_warning = [&](const std::string& warning) { warnings.push_back(warning); };
+  auto result = judged_result(ocp, asked, later, solved);
+  if (!result) return tl::unexpected(result.error());
+  return Judged{std::move(*result), std::move(warnings)};
+}
+
+}  // namespace
+
+Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& asked,
+                                  const OptimizeObservers& observers) {
+  const SymbolicLock lock;  // problems are made, and dropped, while it runs
+  const Stopwatch whole;
+  if (auto error = model::find_stale(ocp.system)) return tl::unexpected(*error);
+  auto solved = solve_ocp(ocp, asked, observers);
+  if (!solved) return tl::unexpected(solved.error());
+  auto found = judged(ocp, asked, observers, *solved);
+  if (!found) return tl::unexpected(found.error());
+  const double objective = found->result.optimization->objective;
+  const double most = objective + worth_a_distance * std::abs(objective);
+  for (auto last = *found; differs(last.result) && !ocp.physical;) {
+    OptimizeOptions rest = asked;
+    rest.mpcc.time_limit = solver::time_left(asked.mpcc, whole.seconds());
+    if (!keep_off_touched(rest, observers, last.result.optimization->verification->interval, *solved)) break;
+    auto next = judged(ocp, asked, observers, *solved);
+    if (!next) return tl::unexpected(next.error());
+    last = std::move(*next);
+    if (!(last.result.optimization->objective <= most)) break;
+    if (!is_done(last.result.status.termination)) continue;
+    last.warnings.push_back(fmt::format(
+        "what the solution would only touch it is kept off by up to {:.2g}, so that its motion does not switch between "
+        "two stages; without that the objective is {:.6g}",
+        solved->distance, objective));
+    found = last;
+  }
+  for (const auto& warning : found->warnings) observers.on_warning(warning);
+  auto& result = found->result;
+  result.statistics.wall_seconds = result.optimization->statistics.wall_seconds = whole.seconds();
+  return std::move(result);
 }
 
 }  // namespace saltus::pipeline

@@ -43,32 +43,6 @@ std::optional<result::Mode> mode_at_start(const OptimizedPath& path, std::size_t
   return mode;
 }
 
-/// The mode of a run before a time; nullopt if no event says it.
-std::optional<result::Mode> mode_before(const Integration& run, double t) {
-  std::optional<result::Mode> mode;
-  for (const auto& event : run.events) {
-    if (event.t >= t) return mode ? mode : event.mode_before;
-    if (event.mode_after) mode = event.mode_after;
-  }
-  return mode;
-}
-
-/// Whether a function that is held at zero is left.
-bool leaves_sliding(const result::Event& event) {
-  if (!event.mode_before || !event.mode_after) return false;
-  const auto &before = *event.mode_before, &after = *event.mode_after;
-  for (std::size_t c = 0; c < before.size(); ++c) {
-    if (before[c] == 0 && after[c] != 0) return true;
-  }
-  return false;
-}
-
-/// Whether another solution branches off before a time: on a surface that is held though it repels, say.
-bool has_other_solutions(const Integration& run, double t) {
-  return std::any_of(run.events.begin(), run.events.end(),
-                     [t](const auto& event) { return event.t < t && event.unique == false; });
-}
-
 bool starts_in(const Integration& run, const result::Mode& mode) {
   return !run.events.empty() && run.events.front().kind == result::EventKind::start &&
          run.events.front().mode_after == mode;
@@ -78,6 +52,15 @@ bool is_complete(const Integration& run, const IntegrationOptions& options) {
   // What happens at the end itself, where controls jump, belongs to the next interval, and so do its failures.
   return run.status.termination != Termination::stopped_by_user && run.status.time_reached >= options.until &&
          std::all_of(run.final.x.begin(), run.final.x.end(), [](double value) { return std::isfinite(value); });
+}
+
+/// The state of the plan behind a switch of it: where elements have no length the last one.
+const std::vector<double>* plan_behind(const OptimizedPath& path, double t, double within) {
+  const std::vector<double>* state = nullptr;
+  for (const auto& element : path.elements) {
+    if (std::abs(element.t - t) <= within) state = &element.x;
+  }
+  return state;
 }
 
 /// The options of the part of a run that ends, or begins, at a time.
@@ -191,36 +174,55 @@ Resimulation::Piece Resimulation::piece(std::vector<double> start, IntegrationOp
   return piece;
 }
 
-Resimulation::Segment Resimulation::from_node(std::size_t k, const IntegrationOptions& options,
+Resimulation::Segment Resimulation::in_pieces(std::size_t k, const IntegrationOptions& options, Restart restart,
                                               const std::function<bool()>& is_interrupted) {
   const double rounding = at_start * (path_->times[k + 1] - path_->times[k]);
   Piece last = piece(path_->nodes[k], options, mode_at_start(*path_, k), is_interrupted);
   std::optional<Integration> before;
+  std::vector<double> off(path_->nodes[k].size(), 0.0);
+  bool was_chosen = last.segment.was_chosen;
   for (const auto& event : path_->events) {
     const bool is_inside = event.t > last.options.from + rounding && event.t < options.until - rounding;
-    if (!is_inside || !leaves_sliding(event) || !has_other_solutions(last.segment.run, event.t)) continue;
-    if (mode_before(last.segment.run, event.t) != event.mode_before) continue;
-    // A solution may stay on a surface that repels, and leave it whenever it wants.
+    const auto* planned = plan_behind(*path_, event.t, rounding);
+    if (!is_inside || !event.mode_after) continue;
     const auto until_there = part_of(last.options, last.options.from, event.t);
     kernel_.set_initial_state(last.start);
     Integration there = run(until_there, is_interrupted);
     if (!is_complete(there, until_there)) continue;
-    Piece next = piece(there.final.x, part_of(options, event.t, options.until), event.mode_after, is_interrupted);
+    Piece next = piece(restart == Restart::at_plan && planned ? *planned : there.final.x,
+                       part_of(options, event.t, options.until), event.mode_after, is_interrupted);
     if (!next.segment.is_complete || !starts_in(next.segment.run, *event.mode_after)) continue;
+    for (std::size_t i = 0; i < off.size(); ++i) {
+      off[i] = std::max(off[i], std::abs(there.final.x[i] - next.start[i]));
+    }
     before = before ? joined(std::move(*before), std::move(there)) : std::move(there);
+    was_chosen = was_chosen || next.segment.was_chosen;
     last = std::move(next);
   }
-  if (!before) return std::move(last.segment);
-  return {joined(std::move(*before), std::move(last.segment.run)), last.segment.is_complete, true};
+  Integration whole = before ? joined(std::move(*before), std::move(last.segment.run)) : std::move(last.segment.run);
+  return {std::move(whole), last.segment.is_complete, was_chosen, std::move(off)};
 }
 
-Resimulation::Segment Resimulation::interval(std::size_t k, const std::function<bool()>& is_interrupted) {
-  return from_node(k, resimulation_options(path_->times[k], path_->times[k + 1], rows_per_interval), is_interrupted);
+Resimulation::Segment Resimulation::from_node(std::size_t k, const IntegrationOptions& options, Restart restart,
+                                              const IsNear& is_near, const std::function<bool()>& is_interrupted) {
+  auto whole = piece(path_->nodes[k], options, mode_at_start(*path_, k), is_interrupted).segment;
+  if (whole.run.status.termination == Termination::stopped_by_user) return whole;
+  if (whole.is_complete && is_near(whole.run.final.x)) return whole;
+  auto pieces = in_pieces(k, options, restart, is_interrupted);
+  const bool is_nearer = pieces.is_complete && pieces.was_chosen && is_near(pieces.run.final.x);
+  return is_nearer ? std::move(pieces) : std::move(whole);
 }
 
-Resimulation::Segment Resimulation::open_loop(const std::function<bool()>& is_interrupted) {
+Resimulation::Segment Resimulation::interval(std::size_t k, const IsNear& is_near,
+                                             const std::function<bool()>& is_interrupted) {
+  return from_node(k, resimulation_options(path_->times[k], path_->times[k + 1], rows_per_interval), Restart::at_plan,
+                   is_near, is_interrupted);
+}
+
+Resimulation::Segment Resimulation::open_loop(const IsNear& is_near, const std::function<bool()>& is_interrupted) {
   const std::size_t rows = std::clamp(20 * path_->controls.size(), std::size_t{200}, most_drawn_rows);
-  return from_node(0, resimulation_options(path_->times.front(), path_->times.back(), rows), is_interrupted);
+  return from_node(0, resimulation_options(path_->times.front(), path_->times.back(), rows), Restart::where_it_is,
+                   is_near, is_interrupted);
 }
 
 linalg::Vector Resimulation::end_of(std::size_t k, std::vector<double> start,

@@ -25,13 +25,18 @@ class Resimulation {
     event_integrator::Integration run;
     bool is_complete = false;  ///< it came to its end
     bool was_chosen = false;   ///< the mode somewhere is that of the solution, and not what the engine takes
+    /// By how much states were moved onto those of the optimised trajectory inside of it; empty: not at all.
+    std::vector<double> moved{};
   };
+  /// Returns whether an end is that of the optimised trajectory.
+  using IsNear = std::function<bool(const std::vector<double>&)>;
   /// Simulates from node k with the controls of interval k to its end. The solution from there may not be unique. Then
-  /// the mode that the optimised trajectory has is taken if it is one of those that are possible. So it is where the
-  /// optimised trajectory leaves a surface that it has been on, though it could stay.
-  [[nodiscard]] Segment interval(std::size_t k, const std::function<bool()>& is_interrupted);
-  /// Simulates from the first node over the whole horizon, likewise.
-  [[nodiscard]] Segment open_loop(const std::function<bool()>& is_interrupted);
+  /// the mode that the optimised trajectory has is taken if it is one of those that are possible. Where this ends
+  /// elsewhere, the interval is cut where the optimised trajectory switches. Each piece begins at its state there, in
+  /// its mode if that is possible: it may leave a surface that it could stay on, or meet two at once.
+  [[nodiscard]] Segment interval(std::size_t k, const IsNear& is_near, const std::function<bool()>& is_interrupted);
+  /// Simulates from the first node over the whole horizon, likewise; pieces begin where the last one has ended.
+  [[nodiscard]] Segment open_loop(const IsNear& is_near, const std::function<bool()>& is_interrupted);
   /// Returns the 2-norm of d x(T) / d x(from), the product of the derivatives of all intervals, by central differences
   /// in steps of 1e-5 `scales`. Bodies that touch at a node stay in touch. NaN if a simulation does not come to its
   /// end.
@@ -45,7 +50,11 @@ class Resimulation {
     event_integrator::IntegrationOptions options;
     Segment segment;
   };
-  [[nodiscard]] Segment from_node(std::size_t k, const event_integrator::IntegrationOptions& options,
+  /// Where a piece begins.
+  enum class Restart { at_plan, where_it_is };
+  [[nodiscard]] Segment from_node(std::size_t k, const event_integrator::IntegrationOptions& options, Restart restart,
+                                  const IsNear& is_near, const std::function<bool()>& is_interrupted);
+  [[nodiscard]] Segment in_pieces(std::size_t k, const event_integrator::IntegrationOptions& options, Restart restart,
                                   const std::function<bool()>& is_interrupted);
   /// In the wanted mode if that is one of those that are possible.
   [[nodiscard]] Piece piece(std::vector<double> start, event_integrator::IntegrationOptions options,

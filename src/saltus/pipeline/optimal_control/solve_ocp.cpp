@@ -73,7 +73,7 @@ class MoreElements {
 
   /// @return whether there are intervals that are better with an element more; they have it
   [[nodiscard]] bool add() {
-    auto& [stated, solution, has_more, seconds] = solved_;
+    auto& [stated, solution, has_more, seconds, distance] = solved_;
     options_.iteration_limit = std::min(solution.iterations, most_iterations_ - solution.iterations);
     if (solution.termination != Termination::completed || options_.iteration_limit < 1 || !has_time()) return false;
     const auto crowded = stated.problem->crowded_intervals(solution.w, solution.multipliers.upper, options_.tolerance);
@@ -130,7 +130,7 @@ struct FromSteps {
 /// leads to no solution. Its states are one more start.
 std::optional<FromSteps> solve_from_steps(const model::Ocp& ocp, const OptimizeOptions& options,
                                           const solver::SolveOptions& wanted, SolvedOcp& solved) {
-  auto& [stated, record, has_more, seconds] = solved;
+  auto& [stated, record, has_more, seconds, distance] = solved;
   const Stopwatch clock;
   const auto start = stepped_start(ocp, options, wanted, stated.problem->start_fractions(), record);
   if (!start) return std::nullopt;
@@ -182,6 +182,14 @@ std::optional<Error> solve_either_way(const model::Ocp& ocp, const OptimizeOptio
   return std::nullopt;
 }
 
+solver::SolveOptions one_start(const OptimizeOptions& options, const OptimizeObservers& observers) {
+  solver::SolveOptions wanted = options.mpcc;
+  wanted.starts = wanted.starts.value_or(1);
+  wanted.is_interrupted = observers.is_interrupted;
+  wanted.on_step = observers.on_step;
+  return wanted;
+}
+
 }  // namespace
 
 Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& options,
@@ -191,10 +199,7 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
   if (!stated) return tl::unexpected(stated.error());
   for (const auto& warning : stated->warnings) observers.on_warning(warning);
   SolvedOcp solved{.stated = std::move(*stated), .solution = {}, .build_seconds = building.seconds()};
-  solver::SolveOptions wanted = options.mpcc;
-  wanted.starts = wanted.starts.value_or(1);
-  wanted.is_interrupted = observers.is_interrupted;
-  wanted.on_step = observers.on_step;
+  solver::SolveOptions wanted = one_start(options, observers);
   wanted.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   wanted.make_workplace = [&] { return another_place(ocp, options); };
   const bool has_start = options.start_from != nullptr;
@@ -211,6 +216,22 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
     tried = false;
   }
   return solved;
+}
+
+bool keep_off_touched(const OptimizeOptions& options, const OptimizeObservers& observers, int missed_in,
+                      SolvedOcp& solved) {
+  auto& [stated, solution, has_more, seconds, distance] = solved;
+  if (!solution.crossed_over) return false;
+  const double moved = stated.problem->keep_off_touched(solution.sides, solution.w, missed_in);
+  distance = std::max(distance, moved);
+  if (moved <= 0.0) return false;
+  adapters::IpoptSolver ipopt(adapters::linear_solver_of(options.mpcc.strategy));
+  adapters::HighsLpcc highs;
+  const mpcc::NamedStart start{.name = "off what is touched", .w = solution.w, .sides = solution.sides};
+  auto next = solver::solve_motion(*stated.problem, ipopt, highs, one_start(options, observers), start);
+  if (!next || next->termination != Termination::completed) return false;
+  go_on_with(std::move(*next), solution);
+  return true;
 }
 
 }  // namespace saltus::pipeline

@@ -120,11 +120,14 @@ class IntervalChecks {
   /// @return false: interrupted
   [[nodiscard]] bool simulate(Resimulation& resimulation, const std::function<bool()>& is_interrupted) {
     for (std::size_t k = 0; k < path_.controls.size(); ++k) {
-      const auto interval = resimulation.interval(k, is_interrupted);
+      const auto is_near = [&](const std::vector<double>& end) {
+        return difference_at_end(k, end).first <= verification_.tolerance;
+      };
+      const auto interval = resimulation.interval(k, is_near, is_interrupted);
       if (interval.run.status.termination == Termination::stopped_by_user) return false;
       switches_.push_back(switches_of(interval.run.events, is_listed_));
       if (interval.was_chosen) chosen_.push_back(k);
-      ends_.push_back(interval.run.final.x);
+      ends_.push_back({interval.run.final.x, interval.moved});
       if (!interval.is_complete) {
         note_failure(k, interval.run.status);
         continue;
@@ -156,6 +159,13 @@ class IntervalChecks {
 
   [[nodiscard]] const Scales& scales() const { return scales_; }
 
+  /// Of an end of interval k and that of the solution, relative to the ranges of the states; of which state.
+  [[nodiscard]] std::pair<double, std::size_t> difference_at_end(std::size_t k, const std::vector<double>& end) const {
+    const auto worst = largest_difference(end, path_.nodes[k + 1]);
+    // A jump at the node itself is before it or behind it by a rounding.
+    return path_.ends.empty() ? worst : std::min(worst, largest_difference(end, path_.ends[k]));
+  }
+
  private:
   void add(const std::string& text) { verification_.message += (verification_.message.empty() ? "" : "; ") + text; }
 
@@ -172,9 +182,9 @@ class IntervalChecks {
       return;
     }
     for (std::size_t k = 0; k < ends_.size(); ++k) {
-      auto worst = largest_difference(ends_[k], path_.nodes[k + 1]);
-      // A jump at the node itself is before it or behind it by a rounding.
-      if (!path_.ends.empty()) worst = std::min(worst, largest_difference(ends_[k], path_.ends[k]));
+      const auto& [end, moved] = ends_[k];
+      auto worst = difference_at_end(k, end);
+      if (!moved.empty()) worst = std::max(worst, largest_difference(moved, std::vector<double>(moved.size(), 0.0)));
       if (verification_.interval >= 0 && !(worst.first > verification_.interval_defect)) continue;
       verification_.interval_defect = worst.first;
       verification_.interval = static_cast<int>(k);
@@ -198,7 +208,10 @@ class IntervalChecks {
   Verification& verification_;
   Scales scales_;
   PathViolations violations_;
-  std::vector<std::vector<double>> ends_;
+  struct End {
+    std::vector<double> x, moved;
+  };
+  std::vector<End> ends_;
   std::vector<std::vector<Switch>> switches_;
   std::vector<bool> is_listed_;
   std::vector<std::size_t> chosen_;
@@ -268,7 +281,11 @@ Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, const V
     return verification;
   }
   checks.compare();
-  verification.open_loop = open_loop_of(ocp, path, checks.scales(), resimulation->open_loop(is_interrupted));
+  const auto is_near_end = [&](const std::vector<double>& end) {
+    return checks.difference_at_end(path.controls.size() - 1, end).first <= wanted.tolerance;
+  };
+  verification.open_loop =
+      open_loop_of(ocp, path, checks.scales(), resimulation->open_loop(is_near_end, is_interrupted));
   verification.open_loop.amplification = resimulation->amplification(checks.scales().all(), is_interrupted);
   if (wanted.gains.empty()) return verification;
   auto closed_loop = simulate_closed_loop(ocp, path, wanted.gains, is_interrupted);
