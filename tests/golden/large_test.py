@@ -20,6 +20,48 @@ CHAIN_OF_FIVE = (
     13.830418084357017, 14.215681452193769)
 
 
+def wall(base, until):
+    """Bricks of mass 1 in rows of `base`, base - 1, ... with friction 0.6, each on the corners of two of the row below."""
+    half, low, friction = 0.25, 0.05, 0.6
+    places = [(row, 2.02 * half * (row / 2 + k), (2 * row + 1) * low) for row in range(base) for k in range(base - row)]
+    bricks = range(len(places))
+    names = [[f"{letter}{i}" for i in bricks for letter in letters] for letters in ("xzq", "uvw")]
+    inertia = (half**2 + low**2) / 3
+    masses = [[(inertia if i % 3 == 2 else 1) if i == k else 0 for k in range(3 * len(bricks))]
+              for i in range(3 * len(bricks))]
+    text = ['[model]\nname = "wall"\n[states]']
+    text += [f"x{i} = {x!r}\nz{i} = {z!r}\nq{i} = 0\nu{i} = 0\nv{i} = 0\nw{i} = 0" for i, (_, x, z) in enumerate(places)]
+    text += ["[mechanics]", f"positions = {json.dumps(names[0])}", f"velocities = {json.dumps(names[1])}",
+             f"mass = {json.dumps(masses)}", "force = { " + ", ".join(f"v{i} = -9.81" for i in bricks) + " }"]
+
+    def corner(i, side, height):
+        return (f"({side * half}*cos(q{i}) - {height * low}*sin(q{i}))",
+                f"({side * half}*sin(q{i}) + {height * low}*cos(q{i}))")
+
+    def touch(name, gap, tangent):
+        entries = ", ".join(f'{state} = "{part}"' for state, part in tangent.items())
+        text.append(f'[[contacts]]\nname = "{name}"\ngap = "{gap}"\ntangent = {{ {entries} }}\nfriction = {friction}')
+
+    def touch_face(i, side, j, up):
+        """A corner of i at the face of j: its upper one for up = 1."""
+        x, z = corner(i, side, -up)
+        along, above, sine, cosine = f"(x{i} + {x} - x{j})", f"(z{i} + {z} - z{j})", f"sin(q{j})", f"cos(q{j})"
+        touch(f"c{i}_{j}{'lu'[up > 0]}", f"{up}*({cosine}*{above} - {sine}*{along}) - {low}", {
+            f"x{i}": cosine, f"z{i}": sine, f"q{i}": f"{sine}*{x} - {cosine}*{z}",
+            f"x{j}": f"-{cosine}", f"z{j}": f"-{sine}", f"q{j}": f"{cosine}*{above} - {sine}*{along}"})
+
+    for i, (row, x, _) in enumerate(places):
+        for side in (-1, 1):
+            across, down = corner(i, side, -1)
+            if row == 0:
+                touch(f"ground{i}{'lr'[side > 0]}", f"z{i} + {down}", {f"x{i}": "1", f"q{i}": f"-{down}"})
+                continue
+            j = next(j for j in bricks if places[j][0] == row - 1 and 0 < side * (places[j][1] - x) < 2 * half)
+            touch_face(i, side, j, 1)
+            touch_face(j, -side, i, -1)
+    return "\n".join(text) + f"\n[simulate]\nuntil = {until}\noutput = {{ points = 11 }}\n"
+
+
 class Large(tool.ToolTest):
     def model(self, kind, n):
         file = self.folder / f"{kind}-{n}.toml"
@@ -101,6 +143,17 @@ class Large(tool.ToolTest):
         _, error = self.run_tool("simulate", "m.toml", code=2)
         self.assertRegex(error, rf"^m.toml:{number + 1}:\d+: error: unknown name 'qq")
         self.assertIn("did you mean", error)
+
+    def test_a_wall_of_ten_bricks_stands_still(self):
+        self.write("m.toml", wall(4, 100))
+        self.run_tool("simulate", "m.toml", "--quiet", "--out", "r.json", code=0)
+        result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+        self.assertEqual(result["status"]["termination"], "completed")
+        self.assertEqual(len(result["contacts"]), 32)
+        self.assertEqual(result["events"], [])
+        self.assertLessEqual(result["statistics"]["steps"], 100)
+        start, end = result["trajectory"]["x"][0], result["final"]["x"]
+        self.assertLess(max(abs(before - after) for before, after in zip(start, end, strict=True)), 1e-9)
 
     def test_definitions_that_unfold_are_refused(self):
         # Each has the one before four times; written out they would be 4^60 terms.

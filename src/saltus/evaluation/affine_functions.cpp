@@ -77,18 +77,21 @@ std::vector<bool> affine_entries(const SX& expression, const ModelSymbols& symbo
 AffineRowFunctions::AffineRowFunctions(const SX& functions, const ModelSymbols& symbols,
                                        const std::vector<bool>& affine)
     : origin_(at(symbols.x.numel()), 0.0), start_{0} {
-  const SX jacobian = SX::jacobian(functions, symbols.x);
-  const SX rates = SX::densify(SX::jacobian(functions, symbols.t));
+  SX values = SX::densify(functions);
+  for (std::size_t j = 0; j < affine.size(); ++j) {
+    if (!affine[j]) values.nonzeros()[j] = std::numeric_limits<double>::quiet_NaN();
+  }
+  const SX jacobian = SX::jacobian(values, symbols.x);
+  const SX rates = SX::densify(SX::jacobian(values, symbols.t));
   const auto& sparsity = jacobian.sparsity();
   std::vector<std::vector<std::pair<std::size_t, casadi_int>>> entries(affine.size());  // column, place
   for (casadi_int column = 0; column < sparsity.size2(); ++column) {
     for (casadi_int k = sparsity.colind()[column]; k < sparsity.colind()[column + 1]; ++k) {
       const auto row = at(sparsity.row()[k]);
-      if (affine[row]) entries[row].emplace_back(at(column), k);
+      entries[row].emplace_back(at(column), k);
     }
   }
   std::vector<SX> coefficients, rate, offset;
-  const SX values = SX::densify(functions);
   for (std::size_t j = 0; j < affine.size(); ++j) {
     const auto row = static_cast<casadi_int>(j);
     for (const auto& [column, place] : entries[j]) {
@@ -96,8 +99,8 @@ AffineRowFunctions::AffineRowFunctions(const SX& functions, const ModelSymbols& 
       coefficients.emplace_back(jacobian.nonzeros()[at(place)]);
     }
     start_.push_back(column_.size());
-    rate.push_back(affine[j] ? SX(rates(row)) : SX(0.0));
-    offset.push_back(affine[j] ? SX(values(row)) : SX(std::numeric_limits<double>::quiet_NaN()));
+    rate.emplace_back(rates(row));
+    offset.emplace_back(values(row));
   }
   const auto column_of = [](const std::vector<SX>& rows) { return rows.empty() ? SX(0, 1) : SX::vertcat(rows); };
   values_ = ModelFunction("saltus_affine_rows", inputs(symbols),

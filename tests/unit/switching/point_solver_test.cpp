@@ -256,6 +256,58 @@ TEST(PointSolver, SixtyContactsWithFriction) {
   }
 }
 
+/// Discs of mass 1 in rows of `base`, base - 1, ... discs on the ground, each on two of the row below: all that bodies
+/// alike have in common, and more rows than velocities.
+struct Pyramid {
+  std::vector<Block> blocks;
+  Matrix effects;
+  Vector constant;
+};
+Pyramid pyramid(int base, double friction) {
+  const double radius = 0.1, height = std::sqrt(0.75);
+  const int contacts = base * base;
+  Matrix directions = Matrix::zero(2 * contacts, 3 * base * (base + 1) / 2);
+  Pyramid result;
+  const auto add = [&](int upper, int lower, double along, double up) {
+    const auto row = static_cast<int>(result.blocks.size());
+    for (const auto& [disc, sign] : {std::pair(upper, 1.0), std::pair(lower, -1.0)}) {
+      if (disc < 0) continue;
+      directions(row, 3 * disc) = sign * along;
+      directions(row, 3 * disc + 1) = sign * up;
+      directions(contacts + row, 3 * disc) = sign * up;
+      directions(contacts + row, 3 * disc + 1) = -sign * along;
+      directions(contacts + row, 3 * disc + 2) = radius;
+    }
+    result.blocks.push_back(cone(row, contacts + row, friction));
+  };
+  for (int level = 0, first = 0; level < base; first += base - level, ++level) {
+    for (int disc = first; disc < first + base - level; ++disc) {
+      if (level == 0) add(disc, -1, 0.0, 1.0);
+      if (level > 0) add(disc, disc - (base - level) - 1, 0.5, height);
+      if (level > 0) add(disc, disc - (base - level), -0.5, height);
+    }
+  }
+  Vector responses(directions.cols()), weights = Vector::zero(directions.cols());
+  for (Index k = 0; k < responses.size(); ++k) {
+    responses(k) = k % 3 == 2 ? 2.0 / (radius * radius) : 1.0;
+    if (k % 3 == 1) weights(k) = -9.81;
+  }
+  result.effects = linalg::scaled_cols(directions, responses) * directions.transpose();
+  result.constant = directions * weights;
+  return result;
+}
+
+TEST(PointSolver, PyramidsOfDiscs) {
+  for (const int base : {3, 5, 6, 7, 8}) {
+    for (const double friction : {0.3, 0.6, 1.0}) {
+      const auto [blocks, effects, constant] = pyramid(base, friction);
+      const auto found = solve(blocks, effects, constant);
+      ASSERT_FALSE(found.all.empty()) << base << " " << friction;
+      expect_solution(blocks, effects, constant, found.all.front());
+    }
+  }
+}
+
 TEST(HeldRows, TakeTheLeastOfWhatDependentRowsLeaveOpen) {
   HeldRows rows(2);
   for (const int row : {0, 1}) rows.hold(row);

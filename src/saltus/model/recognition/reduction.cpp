@@ -48,6 +48,7 @@ Alphas alphas_of(const Tape& tape, int root) {
 class NonaffineTable {
  public:
   const Alphas& of(const Tape& tape, int node) {
+    if (!has_alphas(tape, node)) return none_;
     if (const auto it = known_.find(node); it != known_.end()) return it->second;
     for (const int current : tape.cone(std::span(&node, 1), Links::written)) {
       if (has_alphas(tape, current) && !known_.contains(current)) known_.emplace(current, nonaffine(tape, current));
@@ -84,6 +85,7 @@ class NonaffineTable {
     }
   }
 
+  Alphas none_;
   std::unordered_map<int, Alphas> known_;
 };
 
@@ -135,10 +137,7 @@ class Interpolation {
 
 }  // namespace
 
-std::vector<int> nonaffine_alphas(const Tape& tape, int node) {
-  if ((tape[node].written & kind_bit(VariableKind::alpha)) == 0) return {};
-  return NonaffineTable().of(tape, node);
-}
+std::vector<int> nonaffine_alphas(const Tape& tape, int node) { return NonaffineTable().of(tape, node); }
 
 Expected<SXElem> interpolate(SxGraph& graph, int node, const std::set<int>& alphas, const std::string& what) {
   auto result = Interpolation(graph, alphas).of_sum(node);

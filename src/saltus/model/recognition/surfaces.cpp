@@ -229,6 +229,7 @@ class Classification {
   };
 
   void note(int target) {
+    if ((tape_[target].written & kind_bit(VariableKind::alpha)) == 0) return;
     const auto cone = tape_.cone(std::span(&target, 1), Links::through_alpha);
     const bool with_cells = has_cells(tape_, cone);
     for (const int alpha : alpha_nodes(tape_, std::span(&target, 1), Links::written)) {

@@ -1,7 +1,8 @@
 #include "saltus/switching/point/pivoting.hpp"
 
 #include <cmath>
-#include <limits>
+#include <numeric>
+#include <utility>
 
 #include "saltus/base/at.hpp"
 
@@ -12,34 +13,39 @@ using linalg::Index;
 using linalg::Matrix;
 using linalg::Vector;
 
-/// The table y - W z - d z_0 = w, of which n unknowns are basic. Unknowns: y, z, z_0.
+/// The table y - W z - d z_0 = w, solved for n basic unknowns: in each row what the others and w make of one. Its rows
+/// are columns in memory. Unknowns: y, z, z_0.
+///
+/// Where w has zeros, or bodies are alike, ratios are equal. A shift of w tells them apart, another one in each row:
+/// far above the rounding of the table, so that no basis comes twice, and no part of the values.
 class Table {
  public:
   Table(const Matrix& effects, const Vector& constant)
-      : n_(constant.size()), table_(Matrix::zero(n_, 2 * n_ + 2)), basis_(at(n_)) {
+      : n_(constant.size()), table_(n_ + 3, n_), places_(at(2 * n_ + 1)), basis_(at(n_)) {
     for (Index i = 0; i < n_; ++i) {
-      table_(i, i) = 1.0;
-      for (Index k = 0; k < n_; ++k) table_(i, n_ + k) = -effects(i, k);
-      table_(i, artificial()) = -1.0;
-      table_(i, right()) = constant[i];
-      basis_[at(i)] = i;
+      for (Index k = 0; k < n_; ++k) entry(i, k) = -effects(i, k);
+      entry(i, n_) = -1.0;
+      entry(i, right()) = constant[i];
+      entry(i, shift()) = 1.0 + std::fmod(golden * static_cast<double>(i), 1.0);
     }
+    for (Index unknown = 0; unknown <= artificial(); ++unknown) {
+      places_[at(unknown)] = unknown < n_ ? unknown : unknown - n_;
+    }
+    std::iota(basis_.begin(), basis_.end(), Index{0});
     size_ = constant.max_abs();
   }
 
   [[nodiscard]] Index artificial() const { return 2 * n_; }
-  [[nodiscard]] Index right() const { return 2 * n_ + 1; }
   [[nodiscard]] Index basic(Index row) const { return basis_[at(row)]; }
-  [[nodiscard]] double value(Index row) const { return table_(row, right()); }
+  [[nodiscard]] double value(Index row) const { return entry(row, right()); }
   [[nodiscard]] Index complement(Index unknown) const { return unknown < n_ ? unknown + n_ : unknown - n_; }
 
   /// Brings z_0 in, in the place of what is most negative; false where nothing is.
   [[nodiscard]] bool start(Index& left) {
     Index row = -1;
     constexpr double rounding = 1e-14;
-    double least = -rounding * size_;
     for (Index i = 0; i < n_; ++i) {
-      if (value(i) < least) least = value(row = i);
+      if (value(i) < -rounding * size_ && (row < 0 || shifted(i) < shifted(row))) row = i;
     }
     if (row < 0) return false;
     left = basic(row);
@@ -47,50 +53,50 @@ class Table {
     return true;
   }
 
-  /// The row that leaves as an unknown comes in; -1 on a ray. z_0 leaves where it can.
+  /// The row that leaves as an unknown comes in; -1 on a ray.
   [[nodiscard]] Index leaving(Index entering) const {
     constexpr double none = 1e-11;
+    const Index column = places_[at(entering)];
     double largest = 0.0;
-    for (Index i = 0; i < n_; ++i) largest = std::max(largest, std::abs(table_(i, entering)));
+    for (Index i = 0; i < n_; ++i) largest = std::max(largest, std::abs(entry(i, column)));
     Index best = -1;
     for (Index i = 0; i < n_; ++i) {
-      if (!(table_(i, entering) > none * largest)) continue;
-      if (best < 0 || comes_before(i, best, entering)) best = i;
+      if (!(entry(i, column) > none * largest)) continue;
+      if (best < 0 || shifted(i) * entry(best, column) < shifted(best) * entry(i, column)) best = i;
     }
     return best;
   }
 
   void exchange(Index row, Index entering) {
-    auto own = table_.row(row);
-    own /= double{table_(row, entering)};
+    const Index column = places_[at(entering)];
+    auto own = table_.col(row);
+    const double pivot = entry(row, column);
+    entry(row, column) = 1.0;
+    own /= pivot;
     for (Index i = 0; i < n_; ++i) {
-      const double factor = table_(i, entering);
+      const double factor = entry(i, column);
       if (i == row || factor == 0.0) continue;
-      table_.row(i).add_scaled(-factor, own);
-      table_(i, entering) = 0.0;
+      entry(i, column) = 0.0;
+      table_.col(i).add_scaled(-factor, own);
     }
+    std::swap(places_[at(basic(row))], places_[at(entering)]);
     basis_[at(row)] = entering;
   }
 
  private:
-  /// By the ratios of values, those of equal ones by the columns of y: no basis comes twice.
-  [[nodiscard]] bool comes_before(Index i, Index k, Index entering) const {
-    constexpr double same = 1e-12;
-    const double own = table_(i, entering), other = table_(k, entering);
-    const double difference = value(i) / own - value(k) / other;
-    const double unit = size_ * std::max(1.0 / own, 1.0 / other);
-    if (std::abs(difference) > same * unit) return difference < 0.0;
-    if (basic(i) == artificial() || basic(k) == artificial()) return basic(i) == artificial();
-    for (Index c = 0; c < n_; ++c) {
-      const double a = table_(i, c) / own, b = table_(k, c) / other;
-      if (std::abs(a - b) > same * (std::abs(a) + std::abs(b))) return a < b;
-    }
-    return own > other;
-  }
+  static constexpr double golden = 0.6180339887498949;
+  static constexpr double shift_size = 1e-9;  ///< relative to w
+
+  [[nodiscard]] Index right() const { return n_ + 1; }
+  [[nodiscard]] Index shift() const { return n_ + 2; }
+  [[nodiscard]] double& entry(Index row, Index column) { return table_(column, row); }
+  [[nodiscard]] double entry(Index row, Index column) const { return table_(column, row); }
+  [[nodiscard]] double shifted(Index row) const { return value(row) + shift_size * size_ * entry(row, shift()); }
 
   Index n_;
   Matrix table_;
-  std::vector<Index> basis_;
+  std::vector<Index> places_;  ///< of every unknown: its row if it is basic, its column if it is not
+  std::vector<Index> basis_;   ///< by row
   double size_ = 0.0;
 };
 
