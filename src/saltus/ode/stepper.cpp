@@ -68,6 +68,22 @@ int dense_degree(Method method) {
   __builtin_unreachable();
 }
 
+std::string_view reason(Stages stages) {
+  switch (stages) {
+    case Stages::found:
+      return "";
+    case Stages::undefined:
+      return "its iterates leave where the right-hand side is defined";
+    case Stages::no_jacobian:
+      return "the derivative of the right-hand side by the states is not finite";
+    case Stages::singular:
+      return "its linear systems are singular";
+    case Stages::not_found:
+      return "its iteration does not converge";
+  }
+  __builtin_unreachable();
+}
+
 Stepper::Stepper(Method method, int n)
     : pair_(method == Method::taylor ? Method::dop853 : method),
       n_(n),
@@ -183,6 +199,8 @@ double Stepper::stability_ratio(const Tolerances& tolerances) const {
 double Stepper::stability_ratio_of_explicit() {
   return std::abs(h_) * radau_->spectral_radius() / dop853_stability_limit;
 }
+
+Stages Stepper::stages() const { return radau_ ? radau_->stages_of_attempt() : Stages::found; }
 
 double Stepper::contraction() const { return radau_->contraction(); }
 

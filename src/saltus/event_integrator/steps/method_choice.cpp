@@ -95,9 +95,12 @@ void MethodChoice::look_at_implicit(ode::Stepper& stepper) {
   if (wanted != now_.method) change_to(wanted);
 }
 
-void MethodChoice::failed() {
+void MethodChoice::failed(ode::Stages stages) {
   if (!chooses_ || !ode::is_implicit(now_.method) || ++failures_ < most_failures) return;
-  now_.may_be_implicit = false;
+  if (stages != ode::Stages::undefined) {
+    now_.may_be_implicit = false;
+    if (!failure_) failure_ = Failure{here_.t, now_.method, stages};
+  }
   change_to(first_);
 }
 

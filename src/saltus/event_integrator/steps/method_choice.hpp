@@ -39,9 +39,16 @@ class MethodChoice {
   /// Notes an accepted step that ends here.
   /// @param watched  whether its length says something: it is not as long as it may be
   void accepted(ode::Stepper& stepper, const ode::Tolerances& tolerances, bool watched);
-  /// Notes an attempt in which Newton's iteration found no stages. A mode in which that goes on is left to the explicit
-  /// method for good.
-  void failed();
+  /// Notes an attempt in which a Radau method found no stages. Where that goes on the mode is left to the explicit
+  /// method; for good, but where the right-hand side is undefined, which is so at a place.
+  void failed(ode::Stages stages);
+  /// Returns where that was first so for good.
+  struct Failure {
+    double t;
+    ode::Method method;
+    ode::Stages stages;
+  };
+  [[nodiscard]] const std::optional<Failure>& failure() const { return failure_; }
   /// Returns how many steps were taken by which method, and how much time passed in them; empty if it was named.
   [[nodiscard]] std::vector<result::IntegratorUse> uses() const;
 
@@ -72,6 +79,7 @@ class MethodChoice {
   int age_ = 0;           ///< steps since the order was changed
   int failures_ = 0;      ///< in a row
   std::optional<double> stiff_at_;
+  std::optional<Failure> failure_;
   std::array<result::IntegratorUse, ode::methods> uses_;
 };
 
