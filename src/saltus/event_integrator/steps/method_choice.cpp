@@ -24,7 +24,7 @@ Method lower(Method method) { return method == Method::radau13 ? Method::radau9 
 }  // namespace
 
 Method first_method(std::size_t states, const ode::Tolerances& tolerances) {
-  constexpr double loose = 1e-8;
+  constexpr double loose = 1e-6;
   constexpr std::size_t many = 64;  // from here on local steps pay, of explicit pairs
   if (tolerances.rtol >= loose) return Method::dopri5;
   return states < many ? Method::taylor : Method::dop853;

@@ -14,8 +14,9 @@
 
 namespace saltus::event_integrator {
 
-/// Returns the explicit method to begin with: dopri5 down to rtol = 1e-8, where it costs as much as dop853; below,
-/// taylor (dop853 in modes that are not affine), or for many states, of which a switch moves few, dop853.
+/// Returns the explicit method to begin with: dopri5 down to rtol = 1e-6, where dop853 takes about as many evaluations
+/// in modes that are not affine; below, taylor, which is dop853 there, or for many states, of which a switch moves few,
+/// dop853.
 [[nodiscard]] ode::Method first_method(std::size_t states, const ode::Tolerances& tolerances);
 
 /// A MethodChoice watches accepted steps. An explicit method that stability limits gives way to a Radau method, whose
