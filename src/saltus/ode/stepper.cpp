@@ -256,7 +256,9 @@ Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
   output.coefficients_.resize(n * static_cast<std::size_t>(dense_degree(method()) + 1));
   if (explicit_ != nullptr) {
     const StageWork work{f, evaluations_, x_new_.data(), stages_.data(), argument_.data()};
-    return explicit_->dense(explicit_step(), work, output.coefficients_.data()) ? Attempt::finite : Attempt::undefined;
+    const bool finite = explicit_->dense(explicit_step(), work, output.coefficients_.data()) &&
+                        all_finite(output.coefficients_.data(), output.coefficients_.size());
+    return finite ? Attempt::finite : Attempt::undefined;
   }
   std::copy_n(start_.begin(), n, output.coefficients_.begin());
   if (radau_) radau_->dense(output.coefficients_.data() + n);
