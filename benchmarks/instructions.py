@@ -4,7 +4,8 @@ usage: instructions.py BUILD [--record | --out FILE] [--against [FILE]] [--bound
 
 BUILD is a build folder with bin/saltus and benchmarks/compare/compare_saltus (cmake --preset release -DSALTUS_BENCHMARKS=ON).
 Measured are the four problems of the comparison at every other of its tolerances (1e-4 to 1e-10) and the models of the
-events table at rtol 1e-8, by compare_saltus, and five runs of the catalogue by the tool. What starting, reading and building cost is taken away: each
+events table at rtol 1e-8, by compare_saltus, and five runs of the catalogue by the tool; with the models of the events
+table the choice of an integrator beside the one that it takes, whose ratio is printed and has the bound, too. What starting, reading and building cost is taken away: each
 figure is the difference between two runs of the program. compare_saltus goes on with its tolerances
 behind the first one (an integration that is repeated: no derivative is made any more), the tool to a later end.
 
@@ -25,6 +26,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -41,6 +43,7 @@ exec cc "$@"
 EVENTS_TABLE = ("bouncing-ball", "bouncing-ball-fmi", "bridge-rectifier", "buck-converter", "forced-friction", "irma",
                 "relay-feedback", "relay-oscillator", "repressilator", "super-twisting", "suspension-bridge", "twisting",
                 "welander")
+CHOSEN, CHOICE_RTOL = "taylor", "1e-8"  # of `auto` at this tolerance
 REPEATS = 4  # of a tolerance in the events table: compare_saltus integrates five times for each
 
 
@@ -73,6 +76,15 @@ def catalogue(tool, folder):
         yield Figure(f"catalogue: {name}, {Path(model).stem}", integrator, (*start, *long), (*start, *short))
 
 
+def choices(tool):
+    """The choice of an integrator, and the one that it takes where nothing is stiff, on the models of the events table."""
+    for model in EVENTS_TABLE:
+        until = tomllib.loads((ROOT / "models" / f"{model}.toml").read_text(encoding="utf-8"))["simulate"]["until"]
+        for integrator in ("auto", CHOSEN):
+            start = (tool, "simulate", model, "--quiet", "--rtol", CHOICE_RTOL, "--set", "simulate.native=on", "--integrator", integrator)
+            yield Figure(f"choice: {model}", integrator, start, (*start, "--until", repr(1e-3 * until)))
+
+
 def figures(build, folder):
     """All figures, with the model files that they need in a folder."""
     program, tool = build / "benchmarks" / "compare" / "compare_saltus", build / "bin" / "saltus"
@@ -92,6 +104,7 @@ def figures(build, folder):
             start = (program, ROOT / "models" / f"{model}.toml", method, "trajectory", "0")
             yield Figure(f"events: {model}", method, (*start, *["1e-8"] * (1 + REPEATS)), (*start, "1e-8"))
     yield from catalogue(tool, folder)
+    yield from choices(tool)
 
 
 def instructions(command, environment):
@@ -127,6 +140,15 @@ def measure(build, only, jobs):
 
         with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
             return list(pool.map(row, wanted))
+
+
+def compare_choices(rows, bound):
+    """Prints what the choice costs; returns the exit code."""
+    counts = {(name, integrator): count for name, integrator, count in rows if name.startswith("choice: ")}
+    ratios = {name: counts[name, "auto"] / counts[name, CHOSEN] for name, _ in counts}
+    for name, ratio in ratios.items():
+        print(f"{ratio:7.4f}  {name}: auto / {CHOSEN}")
+    return 1 if any(ratio > bound for ratio in ratios.values()) else 0
 
 
 def write(file, rows):
@@ -176,7 +198,8 @@ def main():
     file = RECORDED if arguments.record else arguments.out
     if file:
         write(file, rows)
-    return compare(rows, recorded, arguments.bound) if recorded is not None else 0
+    failed = compare_choices(rows, arguments.bound)
+    return max(failed, compare(rows, recorded, arguments.bound)) if recorded is not None else failed
 
 
 if __name__ == "__main__":

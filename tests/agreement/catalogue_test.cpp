@@ -1,9 +1,11 @@
 // Every model of the catalogue against its reference: event times, kinds, surfaces, modes, end state.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -57,6 +59,18 @@ std::vector<Accuracy> accuracies(const ReferenceProblem& problem) {
   return is_stiff(problem) ? std::vector{implicit} : std::vector{standard, fine, implicit, series};
 }
 
+/// The last event of each time, where what is within some roundings is one time.
+std::vector<Event> instants_of(const Result& result) {
+  constexpr double roundings = 1e-13;
+  std::vector<Event> instants;
+  for (const Event& event : result.events) {
+    const bool is_later = instants.empty() || event.t - instants.back().t > roundings * std::max(1.0, event.t);
+    if (!is_later) instants.pop_back();
+    instants.push_back(event);
+  }
+  return instants;
+}
+
 class Catalogue : public testing::TestWithParam<ReferenceProblem> {};
 
 TEST_P(Catalogue, AgreesToNineDigits) {
@@ -85,6 +99,46 @@ TEST_P(Catalogue, AgreesByItsOwnChoice) {
   const Simulator model = Simulator::from_reference(GetParam());
   const auto automatic = pipeline::Integrator::automatic;
   expect_reference(model.run(with(model.options(), {automatic, fine.rtol, fine.atol})), GetParam(), 1e-9);
+}
+
+TEST_P(Catalogue, TheChoiceHasTheBitsOfItsExplicitMethod) {
+  if (is_stiff(GetParam())) return;
+  const Simulator model = Simulator::from_reference(GetParam());
+  using enum pipeline::Integrator;
+  for (const auto& [rtol, integrator] : {std::pair{1e-4, dopri5}, std::pair{1e-6, dopri5}, std::pair{1e-8, taylor}}) {
+    const Result chosen = model.run(with(model.options(), {automatic, rtol, 1e-2 * rtol}));
+    const Result named = model.run(with(model.options(), {integrator, rtol, 1e-2 * rtol}));
+    expect_identical(chosen, named);
+    EXPECT_EQ(chosen.statistics.steps, named.statistics.steps);
+    EXPECT_EQ(chosen.statistics.rhs_evaluations, named.statistics.rhs_evaluations);
+  }
+}
+
+// Two events that a rounding separates are one instant: both belts of two-belts, by radau13.
+TEST_P(Catalogue, TheChoiceAgreesWithEveryIntegratorThatIsNamed) {
+  using enum pipeline::Integrator;
+  constexpr double rtol = 1e-10, bound = 100.0 * rtol;
+  const Simulator model = Simulator::from_reference(GetParam());
+  const Result chosen = model.run(with(model.options(), {automatic, rtol, 1e-2 * rtol}));
+  ASSERT_EQ(chosen.status.termination, result::Termination::completed) << chosen.status.message;
+  const auto expected = instants_of(chosen);
+  for (const auto integrator : {dopri5, dop853, taylor, radau5, radau9, radau13}) {
+    if (is_stiff(GetParam()) && (integrator == dopri5 || integrator == dop853 || integrator == taylor)) continue;
+    SCOPED_TRACE(ode::name(pipeline::named_method(integrator)));
+    const Result named = model.run(with(model.options(), {integrator, rtol, 1e-2 * rtol}));
+    ASSERT_EQ(named.status.termination, result::Termination::completed) << named.status.message;
+    const auto found = instants_of(named);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const std::string what = "instant " + std::to_string(i + 1);
+      EXPECT_EQ(found[i].mode_after, expected[i].mode_after) << what;
+      EXPECT_EQ(found[i].regions_after, expected[i].regions_after) << what;
+      expect_near(found[i].t, expected[i].t, bound, what);
+      expect_near(found[i].x_after, expected[i].x_after, bound, what);
+    }
+    EXPECT_EQ(named.final.mode, chosen.final.mode);
+    expect_near(named.final.x, chosen.final.x, bound, "end state");
+  }
 }
 
 TEST_P(Catalogue, AgreesWithTaylor) {
@@ -148,6 +202,27 @@ TEST_P(Catalogue, ScalingPsiByOtherFactorsStaysWithinTenTolerances) {
 
 INSTANTIATE_TEST_SUITE_P(Models, Catalogue, testing::ValuesIn(references()),
                          [](const auto& instance) { return test_name(instance.param); });
+
+// In the geometric mean over the catalogue the choice takes no more evaluations than either pair, at any tolerance.
+TEST(CatalogueFiles, TheChoiceTakesNoMoreEvaluationsThanEitherPair) {
+  using enum pipeline::Integrator;
+  for (const double rtol : {1e-4, 1e-6, 1e-8, 1e-10}) {
+    double of_dopri5 = 0.0, of_dop853 = 0.0;  // logarithms, summed
+    for (const ReferenceProblem& problem : references()) {
+      if (is_stiff(problem)) continue;
+      const Simulator model = Simulator::from_reference(problem);
+      const auto evaluations = [&](pipeline::Integrator integrator) {
+        const Result result = model.run(with(model.options(), {integrator, rtol, 1e-2 * rtol}));
+        return std::log(static_cast<double>(std::max<std::int64_t>(1, result.statistics.rhs_evaluations)));
+      };
+      const double chosen = evaluations(automatic);
+      of_dopri5 += chosen - evaluations(dopri5);
+      of_dop853 += chosen - evaluations(dop853);
+    }
+    EXPECT_LE(of_dopri5, 0.0) << rtol;
+    EXPECT_LE(of_dop853, 0.0) << rtol;
+  }
+}
 
 TEST(CatalogueFiles, StiffModelsEarnTheirMark) {
   for (const std::string& name : stiff_models) {

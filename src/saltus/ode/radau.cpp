@@ -31,7 +31,8 @@ RadauSteps<Tableau>::RadauSteps(int n)
 
 template <class Tableau>
 void RadauSteps<Tableau>::restart() {
-  started_ = converged_ = previous_.known = jacobian_known_ = factors_.known = false;
+  started_ = previous_.known = jacobian_known_ = factors_.known = false;
+  outcome_ = Stages::undefined;
   failures_ = 0;
   rate_ = 0.0;
 }
@@ -42,11 +43,13 @@ Attempt RadauSteps<Tableau>::attempt(const RadauTrial& trial, double* x_new, dou
   if (systems_.use(trial.pattern)) jacobian_known_ = factors_.known = false;
   begin(trial);
   h_ = trial.h;
-  converged_ = solve(trial) == Outcome::converged;
-  if (!converged_) return Attempt::undefined;
+  outcome_ = solve(trial);
+  if (outcome_ != Stages::found) return Attempt::undefined;
   for (linalg::Index i = 0; i < n_; ++i) x_new[i] = trial.x[i] + z_(i, last);
-  converged_ = all_finite(x_new, static_cast<std::size_t>(n_));
-  if (!converged_) return Attempt::undefined;
+  if (!all_finite(x_new, static_cast<std::size_t>(n_))) {
+    outcome_ = Stages::undefined;
+    return Attempt::undefined;
+  }
   error_norm_ = estimate(trial, x_new);
   work_.argument = linalg::ConstView(x_new, n_);
   return evaluate(trial, trial.t + trial.h, work_.argument, slope_new) ? Attempt::finite : Attempt::undefined;
@@ -59,7 +62,8 @@ void RadauSteps<Tableau>::begin(const RadauTrial& trial) {
   if (retaken) return;
   // NOTE: the state may have been projected onto a sliding surface in between, the time is that of the step's end.
   const double end = t_ + h_;
-  const bool follows = started_ && converged_ && std::abs(trial.t - end) <= 8.0 * radau_epsilon * std::abs(end);
+  const bool follows =
+      started_ && outcome_ == Stages::found && std::abs(trial.t - end) <= 8.0 * radau_epsilon * std::abs(end);
   previous_.known = follows;
   if (follows) {
     previous_.h = h_;
@@ -74,27 +78,28 @@ void RadauSteps<Tableau>::begin(const RadauTrial& trial) {
 }
 
 template <class Tableau>
-auto RadauSteps<Tableau>::solve(const RadauTrial& trial) -> Outcome {
-  if (!jacobian_known_ && !differentiate(trial)) return Outcome::undefined;
-  if (!factorize(trial.h)) return Outcome::undefined;
+auto RadauSteps<Tableau>::solve(const RadauTrial& trial) -> Stages {
+  if (!jacobian_known_ && !differentiate(trial)) return Stages::no_jacobian;
+  if (!factorize(trial.h)) return Stages::singular;
   start_values(trial.h);
-  Outcome outcome = iterate(trial);
-  if (outcome != Outcome::converged && (previous_.known || !jacobian_here_)) {
+  Stages outcome = iterate(trial);
+  if (outcome != Stages::found && (previous_.known || !jacobian_here_)) {
     // What came from earlier steps did not help: once more without it.
-    if (!jacobian_here_ && !differentiate(trial)) return Outcome::undefined;
-    if (!factorize(trial.h)) return Outcome::undefined;
+    if (!jacobian_here_ && !differentiate(trial)) return Stages::no_jacobian;
+    if (!factorize(trial.h)) return Stages::singular;
     z_.set_zero();
     w_.set_zero();
     outcome = iterate(trial);
   }
-  if (outcome == Outcome::failed && trial.jacobian != nullptr && ++failures_ == most_failures) {
+  if (outcome == Stages::not_found && trial.jacobian != nullptr && ++failures_ == most_failures) {
     // Differences see nothing of what changes within the rounding of a state.
-    if (!differentiate(trial) || !factorize(trial.h)) return Outcome::undefined;
+    if (!differentiate(trial)) return Stages::no_jacobian;
+    if (!factorize(trial.h)) return Stages::singular;
     z_.set_zero();
     w_.set_zero();
     outcome = iterate(trial);
   }
-  if (outcome == Outcome::converged) return outcome;
+  if (outcome == Stages::found) return outcome;
   // The domain of f may move with t, or what it is steep in, and a state that stays behind be outside of it.
   for (linalg::Index j = 0; j <= last; ++j) {
     for (linalg::Index i = 0; i < n_; ++i) z_(i, j) = Tableau::c[at(j)] * trial.h * trial.slope[i];

@@ -34,6 +34,8 @@ class Radau {
   /// Returns the spectral radius of the Jacobian, after two more products with it than at the last call; infinite where
   /// that is not known.
   [[nodiscard]] virtual double spectral_radius() = 0;
+  /// Returns what has become of the stages in the last attempt.
+  [[nodiscard]] virtual Stages stages_of_attempt() const = 0;
   /// Returns the rate of convergence of the last iteration.
   [[nodiscard]] virtual double contraction() const = 0;
   /// Forgets the Jacobian and the steps before: the right-hand side has changed.

@@ -34,26 +34,26 @@ inline double natural_size(const Tolerances& tolerances) {
 
 /// Iterates until the next correction would be a rounding, or corrections are rounding and no longer fall.
 template <class Tableau>
-auto RadauSteps<Tableau>::iterate(const RadauTrial& trial) -> Outcome {
+auto RadauSteps<Tableau>::iterate(const RadauTrial& trial) -> Stages {
   const double stagnation = std::clamp(1e-2 * trial.tolerances.rtol, 1e3 * radau_epsilon, 1e-8);
   double previous = 0.0;
   rate_ = 0.0;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    if (!stage_slopes(trial)) return Outcome::undefined;
+    if (!stage_slopes(trial)) return Stages::undefined;
     const double size = correct(trial);
-    if (!std::isfinite(size)) return Outcome::undefined;
-    if (size <= radau_epsilon) return Outcome::converged;
+    if (!std::isfinite(size)) return Stages::singular;
+    if (size <= radau_epsilon) return Stages::found;
     if (iteration > 0) {
       const double rate = size / previous;
       if (previous > half_digits) rate_ = std::max(rate_, rate);
-      if (rate < 1.0 && next_ <= radau_epsilon * (1.0 - rate)) return Outcome::converged;
-      if (rate > 0.5 && size <= stagnation) return Outcome::converged;
-      if (rate >= 2.0 || (rate >= 1.0 && iteration > 2)) return Outcome::failed;
-      if (rate > renew_rate && !jacobian_here_ && size > stagnation) return Outcome::failed;
+      if (rate < 1.0 && next_ <= radau_epsilon * (1.0 - rate)) return Stages::found;
+      if (rate > 0.5 && size <= stagnation) return Stages::found;
+      if (rate >= 2.0 || (rate >= 1.0 && iteration > 2)) return Stages::not_found;
+      if (rate > renew_rate && !jacobian_here_ && size > stagnation) return Stages::not_found;
     }
     previous = size;
   }
-  return Outcome::failed;
+  return Stages::not_found;
 }
 
 template <class Tableau>
@@ -121,12 +121,19 @@ double RadauSteps<Tableau>::correct(const RadauTrial& trial) {
 
 template <class Tableau>
 bool RadauSteps<Tableau>::differentiate(const RadauTrial& trial) {
-  const bool is_known = failures_ >= most_failures && trial.jacobian != nullptr &&
-                        (*trial.jacobian)(trial.t, start_.data(), systems_.entries());
-  if (!is_known && !take_differences(trial)) return false;
+  const bool failed = failures_ >= most_failures;
+  const bool is_known =
+      (failed && take_derivatives(trial)) || take_differences(trial) || (!failed && take_derivatives(trial));
+  if (!is_known) return false;
   jacobian_known_ = jacobian_here_ = true;
   factors_.known = false;
   return true;
+}
+
+template <class Tableau>
+bool RadauSteps<Tableau>::take_derivatives(const RadauTrial& trial) {
+  return trial.jacobian != nullptr && (*trial.jacobian)(trial.t, start_.data(), systems_.entries()) &&
+         systems_.all_finite();
 }
 
 /// Takes forward differences, each into the direction in which the solution goes: a domain that ends at the start is

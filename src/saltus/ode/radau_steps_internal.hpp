@@ -31,26 +31,27 @@ class RadauSteps final : public Radau {
   [[nodiscard]] double error_norm() const override { return error_norm_; }
   void dense(double* coefficients) const override;
   [[nodiscard]] double spectral_radius() override;
+  [[nodiscard]] Stages stages_of_attempt() const override { return outcome_; }
   [[nodiscard]] double contraction() const override { return rate_; }
   void restart() override;
 
  private:
-  enum class Outcome { converged, failed, undefined };
   using Matrix = linalg::Matrix;
   using Vector = linalg::Vector;
   static constexpr std::size_t stages = Tableau::stages;
   static constexpr auto last = static_cast<linalg::Index>(stages) - 1;
 
   void begin(const RadauTrial& trial);
-  Outcome solve(const RadauTrial& trial);
+  Stages solve(const RadauTrial& trial);
   void start_values(double h);
   void transform_start();
   [[nodiscard]] bool factorize(double h);
-  Outcome iterate(const RadauTrial& trial);
+  Stages iterate(const RadauTrial& trial);
   bool stage_slopes(const RadauTrial& trial);
   void solve_systems(double h);
   double correct(const RadauTrial& trial);
   bool differentiate(const RadauTrial& trial);
+  bool take_derivatives(const RadauTrial& trial);
   bool take_differences(const RadauTrial& trial);
   [[nodiscard]] double increment(const RadauTrial& trial, linalg::Index column, double largest) const;
   bool difference(const RadauTrial& trial, const std::vector<std::size_t>& columns, double direction);
@@ -62,8 +63,8 @@ class RadauSteps final : public Radau {
   double error_norm_ = 0.0;
 
   // The start of the step, and the last length tried from it.
-  bool started_ = false;    ///< false after restart()
-  bool converged_ = false;  ///< the last attempt: z_ is its solution
+  bool started_ = false;                ///< false after restart()
+  Stages outcome_ = Stages::undefined;  ///< of the last attempt; `found`: z_ is its solution
   double t_ = 0.0;
   double h_ = 0.0;
   Vector start_;

@@ -68,6 +68,22 @@ int dense_degree(Method method) {
   __builtin_unreachable();
 }
 
+std::string_view reason(Stages stages) {
+  switch (stages) {
+    case Stages::found:
+      return "";
+    case Stages::undefined:
+      return "its iterates leave where the right-hand side is defined";
+    case Stages::no_jacobian:
+      return "the derivative of the right-hand side by the states is not finite";
+    case Stages::singular:
+      return "its linear systems are singular";
+    case Stages::not_found:
+      return "its iteration does not converge";
+  }
+  __builtin_unreachable();
+}
+
 Stepper::Stepper(Method method, int n)
     : pair_(method == Method::taylor ? Method::dop853 : method),
       n_(n),
@@ -184,6 +200,8 @@ double Stepper::stability_ratio_of_explicit() {
   return std::abs(h_) * radau_->spectral_radius() / dop853_stability_limit;
 }
 
+Stages Stepper::stages() const { return radau_ ? radau_->stages_of_attempt() : Stages::found; }
+
 double Stepper::contraction() const { return radau_->contraction(); }
 
 double Stepper::change(const Tolerances& tolerances) const {
@@ -238,7 +256,9 @@ Attempt Stepper::dense(RightHandSide f, DenseStep& output) {
   output.coefficients_.resize(n * static_cast<std::size_t>(dense_degree(method()) + 1));
   if (explicit_ != nullptr) {
     const StageWork work{f, evaluations_, x_new_.data(), stages_.data(), argument_.data()};
-    return explicit_->dense(explicit_step(), work, output.coefficients_.data()) ? Attempt::finite : Attempt::undefined;
+    const bool finite = explicit_->dense(explicit_step(), work, output.coefficients_.data()) &&
+                        all_finite(output.coefficients_.data(), output.coefficients_.size());
+    return finite ? Attempt::finite : Attempt::undefined;
   }
   std::copy_n(start_.begin(), n, output.coefficients_.begin());
   if (radau_) radau_->dense(output.coefficients_.data() + n);

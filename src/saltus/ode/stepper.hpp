@@ -91,6 +91,17 @@ enum class Attempt {
               ///< step
 };
 
+/// Says what has become of the stages of a Radau method in an attempt.
+enum class Stages {
+  found,
+  undefined,    ///< the right-hand side is, at one of them
+  no_jacobian,  ///< the Jacobian is not finite
+  singular,     ///< a matrix of Newton's iteration is
+  not_found,    ///< it does not converge
+};
+/// Returns why there are none, in words that go on behind "finds no stages: ".
+[[nodiscard]] std::string_view reason(Stages stages);
+
 class Radau;
 class Series;
 struct ExplicitMethod;
@@ -171,6 +182,8 @@ class Stepper {
   /// spectral radius of its Jacobian, which is found better from call to call (power iteration). Cost: two products
   /// with the Jacobian.
   [[nodiscard]] double stability_ratio_of_explicit();
+  /// Returns, of a Radau method, what has become of its stages in the last attempt; of others `found`.
+  [[nodiscard]] Stages stages() const;
   /// Returns, of a Radau method, the rate of convergence of Newton's iteration in the last attempt; 0 where corrections
   /// were roundings at once.
   [[nodiscard]] double contraction() const;

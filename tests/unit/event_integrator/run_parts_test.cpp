@@ -218,8 +218,19 @@ TEST(MethodChoice, StaysWhereItIsNamedOrNewtonFails) {
   MethodChoice choice(options, here);
   choice.begin_mode();
   take_steps(choice, here, 1e4, 3.3e-4, 300);
-  for (int attempt = 0; attempt < 6; ++attempt) choice.failed();
-  EXPECT_EQ(choice.method(), ode::Method::dopri5);
+  const auto fail = [&](ode::Stages stages) {
+    for (int attempt = 0; attempt < 6; ++attempt) choice.failed(stages);
+    EXPECT_EQ(choice.method(), ode::Method::dopri5);
+  };
+  // Where the right-hand side is undefined is a place, and no property of the mode.
+  fail(ode::Stages::undefined);
+  EXPECT_FALSE(choice.failure().has_value());
+  take_steps(choice, here, 1e4, 3.3e-4, 300);
+  EXPECT_TRUE(ode::is_implicit(choice.method()));
+  fail(ode::Stages::not_found);
+  ASSERT_TRUE(choice.failure().has_value());
+  EXPECT_EQ(choice.failure()->t, here.t);
+  EXPECT_EQ(choice.failure()->stages, ode::Stages::not_found);
   take_steps(choice, here, 1e4, 3.3e-4, 300);
   EXPECT_EQ(choice.method(), ode::Method::dopri5);
   EXPECT_TRUE(choice.stiff_at().has_value());

@@ -133,6 +133,62 @@ TEST_P(EachRadauMethod, ADomainThatMovesWithTimeIsNotLeft) {
   }
 }
 
+// Differences are undefined in both directions; where the derivatives are known, these serve.
+TEST_P(EachRadauMethod, SaysThatItHasNoJacobian) {
+  const auto field = [](double, const double* x, double* f) {
+    f[0] = 0.0;
+    f[1] = -x[1] + std::sqrt(x[0] - 1.0) + std::sqrt(1.0 - x[0]);
+  };
+  const auto derivatives = [](double, const double*, double* entries) {
+    entries[0] = entries[1] = entries[2] = 0.0;
+    entries[3] = -1.0;
+    return true;
+  };
+  const JacobianFunction jacobian(derivatives);
+  const double x[] = {1.0, 1.0}, slope[] = {0.0, -1.0};
+  Stepper stepper(GetParam(), 2);
+  for (const double h : {0.1, 1e-9}) {
+    EXPECT_EQ(stepper.attempt(field, 0.0, x, slope, h, {}), Attempt::undefined);
+    EXPECT_EQ(stepper.stages(), Stages::no_jacobian);
+  }
+  ASSERT_EQ(stepper.attempt(field, 0.0, x, slope, 0.1, {}, {.functions = {}, .jacobian = &jacobian}), Attempt::finite);
+  EXPECT_EQ(stepper.stages(), Stages::found);
+  EXPECT_NEAR(stepper.x_new()[1], std::exp(-0.1), 1e-7);
+}
+
+// gamma / h is an eigenvalue of the Jacobian, exactly: the increment of the difference is a power of two.
+TEST_P(EachRadauMethod, SaysThatItsSystemsAreSingular) {
+  constexpr double h = 0.125;
+  const double gamma = GetParam() == Method::radau5   ? Radau5Tableau::gamma
+                       : GetParam() == Method::radau9 ? Radau9Tableau::gamma
+                                                      : Radau13Tableau::gamma;
+  const auto field = [&](double, const double* x, double* f) {
+    f[0] = gamma / h * x[0];
+    f[1] = -x[1];
+  };
+  const double x[] = {0.0, 1.0}, slope[] = {0.0, -1.0};
+  const Tolerances tolerances{0x1p-20, 0x1p-30};
+  const JacobianPattern diagonal{.start = {0, 1, 2}, .row = {0, 1}};
+  for (const JacobianPattern* pattern : {static_cast<const JacobianPattern*>(nullptr), &diagonal}) {
+    Stepper stepper(GetParam(), 2);
+    RightHandSideStages stages;
+    stages.pattern = pattern;
+    EXPECT_EQ(stepper.attempt(field, 0.0, x, slope, h, tolerances, stages), Attempt::undefined);
+    EXPECT_EQ(stepper.stages(), Stages::singular);
+    ASSERT_EQ(stepper.attempt(field, 0.0, x, slope, 0.5 * h, tolerances, stages), Attempt::finite);
+    EXPECT_EQ(stepper.x_new()[0], 0.0);
+  }
+}
+
+// The stages of a jump that is met from both sides do not exist.
+TEST_P(EachRadauMethod, SaysThatItsIterationDoesNotConverge) {
+  const auto field = [](double, const double* x, double* f) { f[0] = x[0] > 0.0 ? -1.0 : 1.0; };
+  const double x = 0.0, slope = 1.0;
+  Stepper stepper(GetParam(), 1);
+  EXPECT_EQ(stepper.attempt(field, 0.0, &x, &slope, 0.1, {}), Attempt::undefined);
+  EXPECT_EQ(stepper.stages(), Stages::not_found);
+}
+
 // x' = -L (x - cos t) - sin t: x = cos t is reached at once and followed, whatever L.
 TEST(Radau5, stiff_linear_problem_takes_steps_of_the_smooth_solution) {
   int steps[2];

@@ -103,9 +103,8 @@ CompactIntegration Run::finish() {
   // Beside a two-fold point steps are short for another reason.
   const bool limited = result.status.termination != result::Termination::outside_class;
   if (const auto stiff_at = steps_.choice().stiff_at(); limited && stiff_at) {
-    result.status.message += fmt::format(
-        "{}the model looks stiff from t = {:.6g} on: integrator = \"auto\" or \"radau5\" may need far fewer steps",
-        result.status.message.empty() ? "" : "; ", *stiff_at);
+    result.status.message += fmt::format("{}the model looks stiff from t = {:.6g} on: {}",
+                                         result.status.message.empty() ? "" : "; ", *stiff_at, advice_on_stiffness());
   }
   result.status.time_reached = here.t;
   result.statistics = statistics_;
@@ -118,6 +117,14 @@ CompactIntegration Run::finish() {
   result.chosen = choices_.begin_at_choice(result.recording, result.statistics);
   result.pieces = run_.rows.take_pieces(result.recording.row_times);
   return result;
+}
+
+/// What may help where explicit steps are limited by stability; of a choice, what it has tried.
+std::string Run::advice_on_stiffness() const {
+  const auto& failure = steps_.choice().failure();
+  if (!failure) return "integrator = \"auto\" or \"radau5\" may need far fewer steps";
+  return fmt::format("{} was tried, and found no stages at t = {:.6g}: {}; steps are explicit from there on",
+                     ode::name(failure->method), failure->t, ode::reason(failure->stages));
 }
 
 /// What may help where all steps are used up.

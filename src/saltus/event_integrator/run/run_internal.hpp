@@ -133,6 +133,7 @@ class Run : private ResolverClient {
   void start_step();
   bool too_many_events();
   [[nodiscard]] std::string advice_on_steps();
+  [[nodiscard]] std::string advice_on_stiffness() const;
   void accumulates();
   bool stopped_by_two_fold();
   bool stopped_by_singularity();

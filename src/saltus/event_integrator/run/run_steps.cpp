@@ -129,6 +129,13 @@ void Run::leave_undefined() {
                     function, run_.where()));
   }
   if (hold_unresolved()) return;
+  if (const ode::Stages stages = steps_.stepper().stages(); stages != ode::Stages::found) {
+    return run_.end(
+        Termination::step_size_too_small,
+        fmt::format("{} finds no stages beyond {}, however short the step: {}; integrator = \"auto\" goes on "
+                    "with explicit steps where that is so, \"dopri5\" takes no others",
+                    ode::name(steps_.method()), run_.where(), ode::reason(stages)));
+  }
   run_.end(
       Termination::step_size_too_small,
       fmt::format("events cannot be told apart beyond {}, however short the step: a switching function or guard is no "
@@ -202,7 +209,7 @@ void Run::come_to_end_of_step(double h) {
 /// An attempt has met points where the right-hand side is undefined: what is there, or a shorter attempt.
 Run::Step Run::beside_undefined(double t_new) {
   steps_.note_undefined();
-  steps_.choice().failed();
+  steps_.choice().failed(steps_.stepper().stages());
   auto located = zeros_.any_ending() ? zeros_.ahead(t_new) : std::nullopt;
   // Not on the way of a long step, which has others to look at.
   constexpr double short_way = 1e3;

@@ -24,7 +24,7 @@ Method lower(Method method) { return method == Method::radau13 ? Method::radau9 
 }  // namespace
 
 Method first_method(std::size_t states, const ode::Tolerances& tolerances) {
-  constexpr double loose = 1e-8;
+  constexpr double loose = 1e-6;
   constexpr std::size_t many = 64;  // from here on local steps pay, of explicit pairs
   if (tolerances.rtol >= loose) return Method::dopri5;
   return states < many ? Method::taylor : Method::dop853;
@@ -95,9 +95,12 @@ void MethodChoice::look_at_implicit(ode::Stepper& stepper) {
   if (wanted != now_.method) change_to(wanted);
 }
 
-void MethodChoice::failed() {
+void MethodChoice::failed(ode::Stages stages) {
   if (!chooses_ || !ode::is_implicit(now_.method) || ++failures_ < most_failures) return;
-  now_.may_be_implicit = false;
+  if (stages != ode::Stages::undefined) {
+    now_.may_be_implicit = false;
+    if (!failure_) failure_ = Failure{here_.t, now_.method, stages};
+  }
   change_to(first_);
 }
 

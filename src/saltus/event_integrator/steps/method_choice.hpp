@@ -14,8 +14,9 @@
 
 namespace saltus::event_integrator {
 
-/// Returns the explicit method to begin with: dopri5 down to rtol = 1e-8, where it costs as much as dop853; below,
-/// taylor (dop853 in modes that are not affine), or for many states, of which a switch moves few, dop853.
+/// Returns the explicit method to begin with: dopri5 down to rtol = 1e-6, where dop853 takes about as many evaluations
+/// in modes that are not affine; below, taylor, which is dop853 there, or for many states, of which a switch moves few,
+/// dop853.
 [[nodiscard]] ode::Method first_method(std::size_t states, const ode::Tolerances& tolerances);
 
 /// A MethodChoice watches accepted steps. An explicit method that stability limits gives way to a Radau method, whose
@@ -39,9 +40,16 @@ class MethodChoice {
   /// Notes an accepted step that ends here.
   /// @param watched  whether its length says something: it is not as long as it may be
   void accepted(ode::Stepper& stepper, const ode::Tolerances& tolerances, bool watched);
-  /// Notes an attempt in which Newton's iteration found no stages. A mode in which that goes on is left to the explicit
-  /// method for good.
-  void failed();
+  /// Notes an attempt in which a Radau method found no stages. Where that goes on the mode is left to the explicit
+  /// method; for good, but where the right-hand side is undefined, which is so at a place.
+  void failed(ode::Stages stages);
+  /// Returns where that was first so for good.
+  struct Failure {
+    double t;
+    ode::Method method;
+    ode::Stages stages;
+  };
+  [[nodiscard]] const std::optional<Failure>& failure() const { return failure_; }
   /// Returns how many steps were taken by which method, and how much time passed in them; empty if it was named.
   [[nodiscard]] std::vector<result::IntegratorUse> uses() const;
 
@@ -72,6 +80,7 @@ class MethodChoice {
   int age_ = 0;           ///< steps since the order was changed
   int failures_ = 0;      ///< in a row
   std::optional<double> stiff_at_;
+  std::optional<Failure> failure_;
   std::array<result::IntegratorUse, ode::methods> uses_;
 };
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "saltus/base/at.hpp"
@@ -22,6 +23,12 @@ bool RadauSystems<pairs>::use(const JacobianPattern* pattern) {
   sparse_real_.use(*pattern, elimination_);
   for (Pair& pair : pairs_) pair.sparse.use(*pattern, elimination_);
   return true;
+}
+
+template <std::size_t pairs>
+bool RadauSystems<pairs>::all_finite() const {
+  if (pattern_ == nullptr) return jacobian_.all_finite();
+  return std::all_of(entries_.begin(), entries_.end(), [](double entry) { return std::isfinite(entry); });
 }
 
 template <std::size_t pairs>

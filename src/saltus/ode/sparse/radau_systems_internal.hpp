@@ -37,6 +37,7 @@ class RadauSystems {
 
   /// Returns the entries of J, in the order of the pattern or column by column.
   [[nodiscard]] double* entries() { return pattern_ != nullptr ? entries_.data() : jacobian_.data(); }
+  [[nodiscard]] bool all_finite() const;  ///< of J
   /// Sets column j of J from the difference of slopes that its group gives; false where an entry is not finite.
   [[nodiscard]] bool set_column(linalg::Index column, const Vector& difference, double increment);
   /// Computes the product of J and a vector.
