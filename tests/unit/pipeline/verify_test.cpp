@@ -276,6 +276,19 @@ TEST(VerifyTest, TwoSurfacesThatTheSolutionMeetsAtOnce) {
   EXPECT_GT(verified(problem_of(model, 2.0), path).interval_defect, 0.009);
 }
 
+/// v' = sign(v): nodes are a rounding beside the surface that the solution stays on.
+TEST(VerifyTest, NodesARoundingBesideASurfaceThatRepels) {
+  Builder model("repels");
+  const SX v = model.state("v", {0.0});
+  model.dynamics("v", model.sign(v));
+  auto path = path_of(2.0, {{0.0}, {1e-24}, {-1e-20}}, {{}, {}});
+  path.state_max = {1.0};
+  result::Event event;
+  event.mode_after = result::Mode{0};
+  path.events = {event};
+  EXPECT_LT(verified(problem_of(model, 2.0), path).interval_defect, exact);
+}
+
 TEST(VerifyTest, NodesBesideASurfaceOnWhichTheSolutionSlides) {
   // x' = 1/2 - sign(x) from 1/4: on the surface from t = 1/2 on.
   Builder model("sliding");

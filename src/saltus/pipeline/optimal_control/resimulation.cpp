@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "saltus/base/at.hpp"
+#include "saltus/linalg/factors.hpp"
 #include "saltus/linalg/spectra.hpp"
 #include "saltus/model/ocp.hpp"
 #include "saltus/pipeline/optimal_control/resimulation_internal.hpp"
@@ -31,6 +32,8 @@ constexpr std::size_t most_drawn_rows = 1000;
 constexpr double difference_step = 1e-5;
 /// Of an interval: switches so near to its start are there, to what switching times are found to.
 constexpr double at_start = 1e-6;
+/// Of switching functions that a solution slides on: what its equations leave of them.
+constexpr double on_surface = 1e-7;
 
 /// The mode of the solution at the start of interval k, over the columns of the result; nullopt if no event says it.
 std::optional<result::Mode> mode_at_start(const OptimizedPath& path, std::size_t k) {
@@ -158,9 +161,31 @@ std::vector<std::pair<int, int>> Resimulation::forced_mode(const Integration& ru
   return forced;
 }
 
+/// A surface that repels is left at once by a state that is a rounding beside it.
+void Resimulation::put_on_surfaces(double t, const result::Mode& mode, std::vector<double>& x) const {
+  const std::vector<double> alpha(at(kernel_.switching_functions()), 0.5);
+  std::vector<double> values(at(kernel_.event_functions()));
+  kernel_.functions(t, x.data(), alpha.data(), values.data());
+  linalg::Matrix rows = linalg::Matrix::zero(index(mode.size()), index(x.size()));
+  linalg::Vector beside = linalg::Vector::zero(index(mode.size()));
+  std::vector<double> row(x.size());
+  for (std::size_t c = 0; c < mode.size(); ++c) {
+    const int function = system_.columns[c].function;
+    if (mode[c] != 0 || !(std::abs(values[at(function)]) <= on_surface)) continue;
+    double rate = 0.0;
+    kernel_.gradient(function, t, x.data(), alpha.data(), row.data(), &rate);
+    rows.row(index(c)) = linalg::ConstView(row);
+    beside[index(c)] = values[at(function)];
+  }
+  const linalg::Vector change = linalg::least_squares(rows, beside);
+  if (!change.all_finite()) return;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= change[index(i)];
+}
+
 Resimulation::Piece Resimulation::piece(std::vector<double> start, IntegrationOptions options,
                                         const std::optional<result::Mode>& wanted,
                                         const std::function<bool()>& is_interrupted) {
+  if (wanted) put_on_surfaces(options.from, *wanted, start);
   kernel_.set_initial_state(start);
   Piece piece{std::move(start), options, {run(options, is_interrupted), false, false}};
   piece.segment.is_complete = is_complete(piece.segment.run, options);

@@ -59,6 +59,8 @@ class Resimulation {
   /// In the wanted mode if that is one of those that are possible.
   [[nodiscard]] Piece piece(std::vector<double> start, event_integrator::IntegrationOptions options,
                             const std::optional<result::Mode>& wanted, const std::function<bool()>& is_interrupted);
+  /// Puts a state onto the surfaces that the mode slides on, if they are no farther than what equations leave.
+  void put_on_surfaces(double t, const result::Mode& mode, std::vector<double>& x) const;
   [[nodiscard]] event_integrator::Integration run(const event_integrator::IntegrationOptions& options,
                                                   const std::function<bool()>& is_interrupted);
   /// NaN if the run from `start` does not come to the end of interval k.
