@@ -82,7 +82,7 @@ def table_card(title: str, text: str) -> str:
     """What the tool prints, below a title."""
     return (
         "<div style='font:13px/1.45 system-ui,sans-serif;max-width:900px'>"
-        f"<b>{html.escape(title)}</b><pre style='overflow-x:auto;font-family:monospace'>{html.escape(text.rstrip())}</pre></div>"
+        f"<b>{html.escape(title)}</b><pre style='white-space:pre;overflow-x:auto;font-family:monospace'>{html.escape(text.rstrip())}</pre></div>"
     )
 
 

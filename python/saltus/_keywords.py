@@ -90,6 +90,7 @@ class OrderOptions(typing.TypedDict, total=False):
     """Keywords of a study of errors over steps."""
 
     from_: typing.Union[Real, None]
+    begun: typing.Union[typing.Literal["none"], Real, None]
     method: typing.Union[typing.Literal["event", "smoothed", "fesd", "timestepping"], None]
     rtol: typing.Union[Real, None]
     atol: typing.Union[Real, None]
@@ -144,6 +145,7 @@ class SweepOptions(typing.TypedDict, total=False):
     """Keywords of many simulations: of most several values are swept."""
 
     from_: typing.Union[Real, Several, None]
+    begun: typing.Union[typing.Literal["none"], Real, Several, None]
     method: typing.Union[typing.Literal["event", "smoothed", "fesd", "timestepping"], Several, None]
     rtol: typing.Union[Real, Several, None]
     atol: typing.Union[Real, Several, None]

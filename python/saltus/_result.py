@@ -171,6 +171,8 @@ class Result(Recorded):
             times = np.atleast_1d(np.asarray(t, dtype=float)).ravel()
         except (TypeError, ValueError):
             raise ValueError(f"t={t!r}: expected a time, or a list of times") from None
+        if np.ndim(t) > 1:
+            raise ValueError(f"t: expected a time, or a list of times, found an array of shape {np.shape(t)}")
         with own_results():
             if self._between is None:
                 raise ValueError(
@@ -440,6 +442,11 @@ def continued(
         )
     settings = {**{name: known[name] for name in states if name in known}, **(set or {})}
     changed: dict[str, typing.Any] = {"from_": result.final.t, **options}
+    stored = result.options
+    # Periods of jumps count from the start of the first run; what was due at the end of the last one has happened.
+    if "from_" not in options and str(options.get("method", method)) in ("event", "smoothed") and "simulate.from" in stored:
+        begun = stored.get("simulate.begun", "none")
+        changed.setdefault("begun", stored["simulate.from"] if begun == "none" else begun)
     names = result.switching_functions
     others = {name: value for name, value in result.parameters.items() if parameters.get(name, value) != value}
     others = {name: value for name, value in others.items() if name not in (set or {})}

@@ -78,6 +78,8 @@ def text_of(value: Value, name: str = "") -> str:
             f"{name}=[{{…}}]: a setting changes numbers of a model, it adds no tables",
             f"write {table} into the text, saltus.Model.from_text(text), or use saltus.Builder{_STATED.get(name, '')}",
         )
+    if isinstance(value, np.ndarray) and value.ndim > 1:
+        raise refuse(f"{name}: expected a list of values, found an array of shape {value.shape}", f"{name}=values.ravel()")
     if is_list(value) or isinstance(value, np.ndarray):
         bad = next((i for i, entry in enumerate(value) if isinstance(entry, float) and not math.isfinite(entry)), None)
         if bad is not None:
@@ -93,7 +95,8 @@ def text_of(value: Value, name: str = "") -> str:
             f"{name}: a function of Python is called at no time of a run",
             'an expression does, "0.5*sin(t)" (if(t < 1, 0, 2) for pieces); or its values, (times, [f(t) for t in times])',
         )
-    raise TypeError(f"a number, a text or a list of numbers is expected, found {type(value).__name__}")
+    found = type(value).__name__
+    raise TypeError(f"{name}{': ' * bool(name)}a number, a text or a list of numbers is expected, found {found}")
 
 
 def settings_of(values: Settings | None) -> list[str]:
@@ -134,6 +137,8 @@ def _one_value(name: str, value: Value) -> Value:
     """What a setting can be: of a name of the model one number or expression."""
     if value is None:
         raise refuse(f"{name}=None: that is no value", f"leave {name} out, or write a number or an expression")
+    if "." not in name and isinstance(value, (bool, np.bool_)):
+        raise refuse(f"{name}={value}: expected a number or an expression", f"0 and 1 are numbers: {name}={int(value)}")
     if "." not in name and not isinstance(value, str) and np.ndim(value) > 0:
         shown = _shown(value, name) if np.size(value) < 10 else f"[… {np.size(value)} values]"
         raise refuse(f"{name}={shown}: expected one value", f"many values are for a sweep: m.sweep({name}=[…])")
@@ -174,7 +179,13 @@ def last_of_times(options: typing.Mapping[str, Value]) -> float | None:
     """The last of the times at which rows are asked for; None where no times are given."""
     output = options.get("output")
     times = options.get("times", output.get("times") if isinstance(output, typing.Mapping) else None)
-    return float(max(times)) if times is not None and is_list(times) and len(times) else None
+    if times is None or not is_list(times) or not len(times):
+        return None
+    try:
+        return float(np.max(times))
+    except (TypeError, ValueError):
+        found = type(times[0]).__name__
+        raise refuse(f"times: expected numbers, found {found}", "write them in the unit of t, counted from its 0") from None
 
 
 def option_of(name: str, value: Value) -> Option:
@@ -366,7 +377,7 @@ def parameters_among(options: typing.Mapping[str, Value], known: typing.Containe
         if name in known and not is_option(name, method):
             raise refuse(
                 f"'{name}' is a name of the model, not an option",
-                f'write set={{"{name}": {_shown(options[name])}}}; in a sweep {name}=[…] has its values',
+                f'write set={{"{name}": {_shown(options[name], name)}}}; in a sweep {name}=[…] has its values',
             )
 
 
@@ -376,7 +387,7 @@ def names_no_keys(options: typing.Mapping[str, Value], known: typing.Container[s
         if name in _ELSEWHERE_IN_OPTIMIZE and name not in known:
             raise refuse(f"'{name}' is no option of an optimisation", f"write {_ELSEWHERE_IN_OPTIMIZE[name]}")
         if name in known and name not in _OPTIMIZE:
-            raise refuse(f"'{name}' is a name of the model, not an option", f'write set={{"{name}": {_shown(options[name])}}}')
+            raise refuse(f"'{name}' is a name of the model, not an option", f'write set={{"{name}": {_shown(options[name], name)}}}')
 
 
 def _shown(value: Value, name: str = "") -> str:

@@ -92,7 +92,7 @@ def bifurcation(
 ) -> typing.Any:
     """Points: a column at events over what was swept; other parameters and sorts of events have looks of their own.
 
-    A run that goes on after `after` without any event is drawn by its end, one that stopped early by a cross at the foot.
+    A run that goes on after `after` without such an event is drawn by its end, one that stopped early by a cross at the foot.
     """
     if "kind" not in s.table:
         raise ValueError('a bifurcation diagram is made of events: sweep(…, keep="events")')
@@ -106,14 +106,15 @@ def bifurcation(
     x, others = _axes(s, over)
     axis, is_own = _axis(axis), axis is None
     values, label_of_row = _other_values(s, others)
-    ends = _quiet_ends(s, name, after)
+    ends = _quiet_ends(s, name, after, np.isin(sort_of_row, wanted))
     looks = _looks(s, [sorts[i] for i in wanted], [sort_of_row == i for i in wanted], label_of_row, values, after)
     if not looks:
         _warn_of_nothing(s["t"][np.isin(sort_of_row, wanted)], ", ".join(events), after, len(ends[0]))
     before = _drawn_before(axis)
     for rows, style in looks:
         _draw_points(axis, s[x][rows], s[name][rows], style, before, label, color)
-    _draw_ends(s, x, ends, label_of_row, len(values), axis)
+    without = f"at the end, without {', '.join(events) or 'events'}"
+    _draw_ends(s, x, ends, label_of_row, (len(values), without), axis)
     _mark_lost_runs(s, x, axis)
     # One sort of points alone needs no words; some runs that are drawn otherwise do.
     handles = axis.get_legend_handles_labels()[1]
@@ -206,23 +207,25 @@ def _looks(
     return looks
 
 
-def _quiet_ends(s: Sweep, name: str, after: float) -> tuple[Array, Array]:
-    """Rows and values at the end of runs that were done and have no event after a time; none of older tables."""
+def _quiet_ends(s: Sweep, name: str, after: float, chosen: Array) -> tuple[Array, Array]:
+    """Rows and values at the end of runs that were done and have no chosen event after a time; none of older tables.
+
+    `chosen` says of every row whether it is one."""
     column = name.removesuffix("(after)") + "(end)"
     if column not in s.table or name == "t":
         return np.array([], dtype=int), np.array([])
-    moves = (s["event"] > 0) & (s["kind"] != "start") & (s["t"] > after)
+    moves = chosen & (s["event"] > 0) & (s["kind"] != "start") & (s["t"] > after)
     first = np.unique(s["run"], return_index=True)[1]
     quiet = ~np.isin(s["run"][first], s["run"][moves]) & np.isin(s["status"][first], _DONE) & (s["t(end)"][first] > after)
     return first[quiet], s[column][first[quiet]]
 
 
 def _draw_ends(
-    s: Sweep, x: str, ends: tuple[Array, Array], label_of_row: Array, count: int, axis: typing.Any
+    s: Sweep, x: str, ends: tuple[Array, Array], label_of_row: Array, shown: tuple[int, str], axis: typing.Any
 ) -> None:
     """Open diamonds in the colours of the points; one of them has the words."""
     rows, heights = ends
-    words = "at the end, without events"
+    count, words = shown
     label: dict[str, typing.Any] = {"label": words} if words not in axis.get_legend_handles_labels()[1] else {}
     for k in np.unique(label_of_row[rows]).tolist():
         chosen = label_of_row[rows] == k

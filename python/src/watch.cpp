@@ -52,6 +52,8 @@ void Watch::tell(const nb::object& function, double done, double total) {
 
 void Watch::raise_what_came(const nb::object& result) {
   if (!came_) return;
+  // A second Ctrl-C meanwhile says the same: it must not take the place of the exception that has the result.
+  if (PyErr_CheckSignals() != 0) PyErr_Clear();
   const nb::object exception = nb::borrow(came_->value());
   exception.attr("result") = result;
   throw nb::python_error(std::move(*came_));

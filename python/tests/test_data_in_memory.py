@@ -231,3 +231,34 @@ def test_times_are_exactly_the_rows(brake):
     assert len(stopped.t) == 1 and not stopped.status.done  # where it stopped
     assert json.loads(json.dumps(r.to_dict()))["trajectory"]["t"] == [0, 0.5, 4]
     assert brake.simulate(until=5, times=[1, 2]).frame().index.tolist() == [1, 2]
+
+
+DOSES = """
+[model]
+name = "doses"
+[states]
+c = 0
+doses = 0
+[dynamics]
+c = "-0.5*c"
+doses = 0
+[[jumps]]
+name = "dose"
+when
+set = { c = "c + 1", doses = "doses + 1" }
+"""
+
+
+@pytest.mark.parametrize("when", ["every = 0.2", "at = [0.5, 1.0, 1.5]"])
+@pytest.mark.parametrize("parts", [(0.5,), (1.0,), (1.2,), (0.7, 1.0), (0.3, 0.5, 1.5)])
+def test_a_run_in_parts_has_the_jumps_of_the_whole(when, parts, tmp_path):
+    m = saltus.Model.from_text(DOSES.replace("when", when))
+    whole = m.simulate(until=2.05)
+    r = m.simulate(until=parts[0])
+    for until in (*parts[1:], 2.05):
+        r.save(tmp_path / "part.json")
+        r = m.simulate(until=until, start=tmp_path / "part.json")
+    assert r.final["doses"] == whole.final["doses"]
+    assert r.final["c"] == pytest.approx(whole.final["c"], rel=1e-9)
+    # At another time it is another run.
+    assert m.simulate(until=2.05, start=r, from_=0).final["doses"] == 2 * whole.final["doses"]

@@ -240,3 +240,34 @@ def test_conditions_of_casadi(m):
     own = saltus.Expression("q", owner=m)
     assert repr(saltus.if_(q > 0, own, 1)) == "if(0<q,q,1)"
     assert repr((own < 2) & (q > 0)) == "q<2 and 0<q"
+
+
+@pytest.mark.parametrize("call, said", [
+    (lambda m: m.simulate(until=2, times=np.ones((2, 2))), "times: expected a list of values, found an array of shape (2, 2)"),
+    (lambda m: m.simulate(until=2, set={"mu": True}), "mu=True: expected a number"),
+    (lambda m: m.simulate(until=2, set={"mu": 1j}), "mu: a number, a text or a list of numbers is expected, found complex"),
+    (lambda m: m.sweep(mu=(value for value in (1, 2)), until=1), "mu"),
+    (lambda m: m.simulate(until=2)(np.ones((2, 2))), "found an array of shape (2, 2)"),
+])
+def test_values_of_another_shape_or_type_are_told_with_their_names(brake, call, said):
+    with pytest.raises((saltus.ModelError, TypeError, ValueError)) as refused:
+        call(brake)
+    assert said in str(refused.value)
+
+
+def test_times_of_a_calendar_are_refused(brake):
+    pandas = pytest.importorskip("pandas")
+    times = pandas.date_range("2026-01-01", periods=3)
+    without_end = saltus.Model.from_text('[model]\nname = "m"\n[states]\nx = 1\n[dynamics]\nx = "-x"\n')
+    for model in brake, without_end:
+        with pytest.raises((saltus.ModelError, TypeError), match="times: .*numbers.* found Timestamp"):
+            model.simulate(times=times)
+
+
+def test_files_with_another_name_are_not_meant(tmp_path):
+    (tmp_path / "B3e.toml").write_text("")
+    (tmp_path / "brakes.toml").write_text("")
+    for name, meant in ("nope", ""), ("brake", "brakes.toml"):
+        with pytest.raises(saltus.ModelError) as refused:
+            saltus.Model(tmp_path / f"{name}.toml")
+        assert ("did you mean" in str(refused.value)) == bool(meant) and meant in str(refused.value)

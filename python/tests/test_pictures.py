@@ -444,7 +444,7 @@ def test_cards_of_what_is_more_than_one_run():
     for r, word in (compared, "timestepping"), (studied, "radau_iia"):
         html = r._repr_html_()
         xml.etree.ElementTree.fromstring(html)
-        assert word in html and "<pre" in html and "<svg" not in html
+        assert word in html and "<pre style='white-space:pre;" in html and "<svg" not in html
     runs = len(compared.comparison["runs"])
     assert repr(compared) == f"<saltus.Result 'stick-slip': comparison of {runs} runs; print(…) shows them>"
     assert "errors of fixed steps" in repr(studied)
@@ -459,3 +459,26 @@ def test_the_card_of_a_sweep():
     assert rows[0] == list(s.table) and len(rows) == 9
     assert [float(row[5]) for row in rows[1:]] == pytest.approx(s["q"][:8], rel=1e-5)
     assert "9 runs over belt: 9 completed" in s._repr_html_() and "and 1 more row:" in s._repr_html_()
+
+
+def test_runs_with_other_events_only_are_drawn_by_their_end():
+    m = saltus.Model.from_text("""
+        [model]
+        name = "peaks of some"
+        [parameters]
+        a = 0
+        [states]
+        x = 0
+        [dynamics]
+        x = "1"
+        [[events]]
+        name = "early"
+        when = "x > 1"
+        [[events]]
+        name = "peak"
+        when = "x > 1.5 + a"
+    """)
+    s = m.sweep(a=[0, 1], until=2, keep="events")
+    axis = s.bifurcation("x", event="peak")
+    ends = next(line for line in axis.lines if line.get_label() == "at the end, without peak")
+    assert (ends.get_xdata().tolist(), ends.get_ydata().tolist()) == ([1], pytest.approx([2]))

@@ -115,6 +115,30 @@ def test_control_c():
     signal.signal(signal.SIGINT, before)
 
 
+def test_a_second_control_c_keeps_what_was_found(block):
+    sent = []
+
+    def stop(number, frame):
+        if not sent:
+            threading.Timer(0.003, os.kill, (os.getpid(), signal.SIGINT)).start()
+        sent.append(time.perf_counter())
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, stop)
+    threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT)).start()
+    found = []
+    try:
+        try:
+            block.optimize(control_intervals=300)
+        except KeyboardInterrupt as stopped:
+            found.append(stopped)
+        time.sleep(1)
+    except KeyboardInterrupt:
+        pass
+    signal.signal(signal.SIGINT, before)
+    assert len(sent) == 2 and found[0].result.status == "stopped_by_user"
+
+
 @pytest.mark.parametrize("long_run", [
     lambda: saltus.Model.from_text(LONG).simulate(until=3000, points=2, max_events=10**9),
     lambda: saltus.Model.from_text(LONG).simulate(until=1000, method="fesd", steps=2000, max_events=10**9),

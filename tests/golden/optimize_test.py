@@ -269,6 +269,40 @@ plant = { push = 0.15 }
 """
 
 
+HOIST = """
+[model]
+name = "hoist with two gears"
+[parameters]
+F = 0.4
+[states]
+q = 0
+v = 0
+[controls]
+u = { lower = -1, upper = 1 }
+[dynamics]
+q = "v"
+v = "if(v > 0.8, 0.6, 1.2)*u - F*sign(v) - 0.2*v"
+[optimize]
+horizon = { free = true, initial = 4, lower = 0.5, upper = 12 }
+control_intervals = 12
+minimize_time = true
+terminal_constraints = ["q == 2", "v == 0"]
+closed_loop = true
+plant = { F = 0.45 }
+"""
+
+
+class Infeasible(tool.ToolTest):
+    def test_each_row_is_named_once_and_what_is_not_known_is_no_error(self):
+        text = HOIST.replace("{ free = true, initial = 4, lower = 0.5, upper = 12 }", "0.1").replace("minimize_time = true", 'running_cost = "u^2"')
+        self.write("m.toml", text.replace("= 12\n", "= 4\n"))
+        out, _ = self.run_tool("optimize", "m.toml", "--out", "r.json", code=3)
+        message = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))["status"]["message"]
+        named = [part.rsplit(" (by", 1)[0] for part in message.partition(": ")[2].split("), ")]
+        self.assertEqual(len(named), len(set(named)), message)
+        self.assertNotIn("unknown error", out)
+
+
 class SeveralStarts(tool.ToolTest):
     def test_the_best_is_taken_and_all_are_listed(self):
         out, _ = self.run_tool("optimize", "turbo-car", "--set", "optimize.mpcc.starts=3", "--out", "r.json", code=0)
@@ -310,6 +344,35 @@ class ClosedLoop(tool.ToolTest):
         self.assertLess(ends["tracking"], 1e-3)
         _, err = self.run_tool("optimize", "m.toml", "--set", "optimize.feedback=none", code=2)
         self.assertIn("tracking", err)
+
+    def test_elements_that_start_where_the_horizon_ends_are_not_corrected(self):
+        self.write("m.toml", HOIST)
+        for intervals in (7, 12):
+            result = self.optimised("optimize.feedback=tracking", f"optimize.control_intervals={intervals}")
+            rows = result["verification"]["closed_loop"]
+            self.assertEqual(rows["termination"], "completed")
+            self.assertEqual(rows["t"][-1], result["grid"][-1])
+        for settings, plant in (["optimize.plant={}"], {}), (["optimize.plant={ v = 0.1 }"], {"v": 0.1}), \
+                (["optimize.plant.v=0.1"], {"F": 0.45, "v": 0.1}):
+            result = self.optimised("optimize.control_intervals=4", *settings)
+            self.assertEqual(result["verification"].get("plant", {}), plant)
+
+    def test_gains_are_in_the_result(self):
+        """With the states of a linear system between bounds the control is linear in them: K is a matrix of its problem."""
+        self.write("m.toml", UNSTABLE)
+        result = self.optimised("optimize.closed_loop=true", "optimize.plant.x=1.001")
+        loop = result["verification"]["closed_loop"]
+        gains = loop["gains"]
+        self.assertEqual([gain["interval"] for gain in gains], list(range(len(result["u"]))))
+        self.assertEqual([gain["t"] for gain in gains], result["grid"][:-1])
+        for gain in gains:
+            self.assertEqual([len(row) for row in gain["K"]], [1])
+        self.assertEqual(gains[0]["K"], [[0.0]])
+        self.assertLess(gains[1]["K"][0][0], 0)
+        self.run_tool("report", "r.json", code=0)
+        loop["gains"][1]["K"][0].append(1.0)
+        self.write("bad.json", json.dumps(result))
+        self.assertIn("gains/1/K", self.run_tool("report", "bad.json", code=2)[1])
 
     def test_tracking_corrects_where_elements_start(self):
         """Inside of intervals, too: at the node it would be too late for the controls that there are."""

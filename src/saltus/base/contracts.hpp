@@ -1,14 +1,20 @@
 // Contract checks for our own mistakes (lane 1 of the three error lanes).
 #pragma once
 
-#include <cstdio>
-#include <cstdlib>
+#include <stdexcept>
 
 namespace saltus {
-[[noreturn]] inline void contract_violation(const char* what, const char* file, int line) {
-  std::fprintf(stderr, "saltus: internal error: %s (%s:%d)\n", what, file, line);
-  std::abort();
-}
+
+/// Is thrown where a contract is violated: a mistake of this program, not of its input. Whoever calls the library may
+/// go on; what was computed is lost.
+class InternalError : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+  ~InternalError() override;
+};
+
+[[noreturn]] void contract_violation(const char* what, const char* file, int line);
+
 }  // namespace saltus
 
 #if defined(SALTUS_NO_CONTRACTS)

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/contracts.hpp"
 #include "saltus/base/version.hpp"
 #include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
@@ -145,13 +146,16 @@ ExitCode run(int argc, char** argv) {
 
 }  // namespace
 
-/// A violated contract has said what it is and calls std::abort: its exit code is that of an internal error, too.
+/// What calls std::abort, in a library or where an exception cannot pass, has the exit code of an internal error, too.
 extern "C" void end_as_internal_error(int) { std::_Exit(static_cast<int>(ExitCode::internal_error)); }
 
 int run_tool(int argc, char** argv) {
   std::signal(SIGABRT, end_as_internal_error);
   try {
     return static_cast<int>(run(argc, argv));
+  } catch (const InternalError& failure) {
+    print_error(failure.what());
+    return static_cast<int>(ExitCode::internal_error);
   } catch (const std::exception& failure) {
     print_error(fmt::format("internal error: {}\n  please report this with the model file", failure.what()));
     return static_cast<int>(ExitCode::internal_error);

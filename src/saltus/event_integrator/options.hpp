@@ -48,6 +48,9 @@ struct IntegrationOptions {
   ode::Tolerances tolerances;
   double from = 0.0;
   double until = 1.0;
+  /// Start of the first run where this one goes on at the end of another: periods of jumps count from there, and what
+  /// was due by `from` has happened.
+  std::optional<double> begun;
   std::optional<double> max_step;
   OutputTimes output;
   long max_steps = 1000000;

@@ -52,18 +52,20 @@ std::vector<fs::path> plotly_places() {
 Expected<fs::path> path_or_nearest(const fs::path& path) {
   std::error_code none;
   if (fs::exists(path, none)) return path;
-  std::vector<std::string> there;
+  std::vector<std::string> near;
   const auto folder = path.parent_path();
   for (fs::directory_iterator file(folder.empty() ? fs::path(".") : folder, none), end; !none && file != end;
        file.increment(none)) {
     std::error_code broken;
     if (file->path().extension() != path.extension() || !fs::exists(file->path(), broken)) continue;
-    there.push_back((folder / file->path().filename()).string());
+    // What all of them share, folder and ending, makes no names alike.
+    if (nearest_names(path.stem().string(), {file->path().stem().string()}).empty()) continue;
+    near.push_back((folder / file->path().filename()).string());
   }
-  std::sort(there.begin(), there.end());
-  if (nearest_names(path.string(), there).empty()) return path;
+  if (near.empty()) return path;
+  std::sort(near.begin(), near.end());
   return tl::unexpected(
-      Error{ErrorCode::io_failure, "there is no such file", suggest(path.string(), there), {path.string(), 0, 0}, {}});
+      Error{ErrorCode::io_failure, "there is no such file", suggest(path.string(), near), {path.string(), 0, 0}, {}});
 }
 
 }  // namespace

@@ -45,8 +45,9 @@ Expected<std::vector<std::string>> range_values(const std::string& typed, std::s
   }
   std::vector<std::string> values;
   for (double i = 0.0; i < *count; i += 1.0) {
-    const double share = *count > 1.0 ? i / (*count - 1.0) : 0.0;
-    values.push_back(fmt::format("{}", i + 1.0 == *count ? *last : *first + (*last - *first) * share));
+    // As numpy.linspace has it, to the last bit.
+    const double step = *count > 1.0 ? (*last - *first) / (*count - 1.0) : 0.0;
+    values.push_back(fmt::format("{}", i + 1.0 == *count ? *last : i * step + *first));
   }
   return values;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -96,7 +97,19 @@ class Workshop {
     }
   }
 
+  /// What is thrown ends all threads, and is thrown by outcome() again.
+  void work_or_note() {
+    try {
+      work();
+    } catch (...) {
+      const std::lock_guard guard(mutex_);
+      thrown_ = std::current_exception();
+      failed_ = true;
+    }
+  }
+
   [[nodiscard]] Expected<SweepOutcome> outcome() && {
+    if (thrown_) std::rethrow_exception(thrown_);
     for (std::size_t i = 0; i < begun_; ++i) {
       if (!runs_[i].result.states.empty()) continue;
       // Another thread had taken it when the interruption came, and has not begun it.
@@ -178,6 +191,7 @@ class Workshop {
   std::size_t begun_ = 0;  ///< all before this one have been begun, but for an interruption
   std::optional<Error> error_;
   std::size_t failed_run_ = 0;
+  std::exception_ptr thrown_;
 };
 
 }  // namespace
@@ -201,9 +215,9 @@ Expected<SweepOutcome> sweep(const SweepOptions& options, StateRun state, const 
   Workshop workshop(options, state, observers);
   std::vector<std::thread> helpers;
   for (std::size_t k = 1; k < std::min(options.jobs, options.runs); ++k) {
-    helpers.emplace_back([&workshop] { workshop.work(); });
+    helpers.emplace_back([&workshop] { workshop.work_or_note(); });
   }
-  workshop.work();
+  workshop.work_or_note();
   for (auto& helper : helpers) helper.join();
   return std::move(workshop).outcome();
 }

@@ -28,15 +28,17 @@ std::string counted(int count, std::string_view one) {
 
 Finding residuals(const result::Certificate& certificate, double tolerance) {
   const auto within = [tolerance](double residual) { return std::abs(residual) <= tolerance; };  // false for NaN
-  const auto piece = [&](double residual, std::string_view good, std::string_view bad) {
+  const auto piece = [&](double residual, std::string_view what, std::string_view good, std::string_view bad) {
+    if (!std::isfinite(residual)) return fmt::format("{} NOT known", what);
     return fmt::format("{} {}", within(residual) ? good : bad, error_text(residual));
   };
   const double primal = certificate.primal_infeasibility, stationarity = certificate.stationarity;
   const double complementarity = certificate.complementarity_residual;
   const bool all = within(primal) && within(complementarity) && within(stationarity);
-  auto text = fmt::format("{}; {}; {}", piece(primal, "feasible to", "NOT feasible: a bound or row is violated by"),
-                          piece(complementarity, "complementarity", "complementarity NOT reached:"),
-                          piece(stationarity, "stationary to", "NOT stationary: the gradient of the Lagrangian is"));
+  auto text = fmt::format(
+      "{}; {}; {}", piece(primal, "feasibility", "feasible to", "NOT feasible: a bound or row is violated by"),
+      piece(complementarity, "complementarity", "complementarity", "complementarity NOT reached:"),
+      piece(stationarity, "stationarity", "stationary to", "NOT stationary: the gradient of the Lagrangian is"));
   text.front() = text.front() == 'f' ? 'F' : text.front();
   return {good_if(all), text + (all ? "." : fmt::format(" (allowed {:.2g}).", tolerance))};
 }

@@ -81,6 +81,13 @@ struct ConstraintMultiplier {
   std::vector<double> range{};  ///< the least and the greatest, where it is not unique; not finite: without a limit
 };
 
+/// Holds how controls are corrected from a time on, until the next one or the end of the interval.
+struct FeedbackGain {
+  double t = 0.0;
+  int interval = 0;
+  std::vector<std::vector<double>> K;  ///< a row per control, a column per state of the result
+};
+
 /// Holds the controls over the whole horizon, from the start on.
 struct OpenLoop {
   double end_state_error = 0.0;  ///< max over states, scaled like interval defects
@@ -90,6 +97,7 @@ struct OpenLoop {
   double amplification = 0.0;  ///< 2-norm of d x(T) / d x(from) of the discretisation; NaN if it is not known
   std::vector<double> t;       ///< rows of the simulation, for the picture
   std::vector<std::vector<double>> x;
+  std::vector<FeedbackGain> gains;  ///< of a simulation with feedback
 };
 
 /// Says how deep bodies are in each other: the largest -gap of all contacts, 0 without any.

@@ -41,6 +41,7 @@ void share_out(const Place& own, const SolveOptions& options, int count, Functio
   constexpr auto between_questions = std::chrono::milliseconds(20);
   for (auto& thread : threads) {
     while (thread.wait_for(between_questions) != std::future_status::ready) static_cast<void>(ask());
+    thread.get();  // what it has thrown
   }
 }
 

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <ctime>
 #include <map>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "run_model.hpp"
@@ -14,6 +16,7 @@ namespace {
 using casadi::SX;
 using model::Builder;
 using model::Condition;
+using model::JumpOptions;
 
 /// One more state, which a jump sets to what is asked for.
 struct Asked {
@@ -143,6 +146,70 @@ TEST(JumpValues, OnWhatIsSlidOn) {
   asked.ask("friction", asked.builder.sign(v));
   asked.builder.jump_at({2.0}, asked.set);
   expect_near(asked.run(3.0, ode::Method::dop853), {0, 1, 1, 0.2});
+}
+
+/// How often a state has been counted up by jumps.
+double count_every(double period, double from, double until, std::optional<double> begun = {}) {
+  Builder builder("doses");
+  const SX n = builder.discrete_state("n", 0.0);
+  builder.jump_every(period, {{"n", n + 1.0}});
+  IntegrationOptions options;
+  options.from = from;
+  options.until = until;
+  options.begun = begun;
+  return run_model(builder, options).final.x.front();
+}
+
+TEST(GivenTimes, PeriodsThatEndWithTheRunButForRoundingAreInIt) {
+  for (const auto& [period, until, times] : {std::tuple(0.2, 1.2, 6.0),
+                                             {0.1, 0.3, 3.0},
+                                             {0.1, 1.7, 17.0},
+                                             {0.05, 0.6, 12.0},
+                                             {0.01, 0.35, 35.0},
+                                             {1.0 / 3.0, 7.0 / 3.0, 7.0},
+                                             {0.1, 0.29, 2.0},
+                                             {0.1, 0.3 - 1e-12, 2.0}}) {
+    EXPECT_EQ(count_every(period, 0.0, until), times) << period << " until " << until;
+  }
+  EXPECT_EQ(count_every(0.1, -1.0, -0.1), 9.0);
+}
+
+TEST(GivenTimes, ARunThatGoesOnKeepsThePhaseAndRepeatsNothing) {
+  EXPECT_EQ(count_every(0.2, 0.5, 2.05, 0.0), 8.0);
+  EXPECT_EQ(count_every(0.2, 1.2, 2.05, 0.0), 4.0);
+  EXPECT_EQ(count_every(0.2, 0.5, 2.05), 7.0);
+  for (const bool goes_on : {false, true}) {
+    Builder builder("doses");
+    const SX n = builder.discrete_state("n", 0.0), m = builder.discrete_state("m", 0.0);
+    builder.jump_at({0.5, 1.0, 1.5}, {{"n", n + 1.0}});
+    builder.jump(model::greater(n, -1.0), {{"m", m + 1.0}}, {.at_start = true});
+    IntegrationOptions options;
+    options.from = 1.0;
+    options.until = 2.0;
+    if (goes_on) options.begun = 0.0;
+    EXPECT_EQ(run_model(builder, options).final.x, (goes_on ? std::vector{1.0, 0.0} : std::vector{2.0, 1.0}));
+  }
+}
+
+/// What a sample every period has read of a state that is kicked at a time, with a larger priority.
+TEST(GivenTimes, PrioritiesDecideWhereTimesAreTheSameButForRounding) {
+  for (const auto& [period, kick] : {std::pair(0.3, 0.9), {0.1, 0.3}, {0.2, 0.6}, {0.7, 2.1}, {0.25, 0.75}}) {
+    for (const double priority : {1.0, -1.0}) {
+      Builder builder("sampled");
+      const SX x = builder.discrete_state("x", 1.0);
+      builder.discrete_state("y", 0.0);
+      JumpOptions sample;
+      sample.values = model::JumpValues::at_execution;
+      builder.jump_every(period, {{"y", x}}, sample);
+      builder.jump_at({kick}, {{"x", SX(5.0)}}, {.priority = SX(priority)});
+      IntegrationOptions options;
+      options.until = kick + 0.01;
+      const auto run = run_model(builder, options);
+      EXPECT_EQ(run.final.x, (std::vector{5.0, priority > 0.0 ? 5.0 : 1.0})) << period;
+      EXPECT_EQ(run.events[run.events.size() - 1].t, kick);
+      EXPECT_EQ(run.events[run.events.size() - 2].t, kick);
+    }
+  }
 }
 
 /// Seconds of the processor for each jump of n neurons, each of which jumps for itself.

@@ -86,6 +86,8 @@ TEST(JsonOptimization, WhatIsNotKnownIsNull) {
   optimization.certificate.stationarity = std::numeric_limits<double>::quiet_NaN();
   optimization.verification->interval = -1;
   optimization.verification->open_loop.amplification = std::numeric_limits<double>::quiet_NaN();
+  optimization.verification->closed_loop = optimization.verification->open_loop;
+  optimization.verification->closed_loop->gains = {{0.5, 1, {{-2.0, 0.1}}}};
   optimization.speed_of_time.assign(20, 2.0);
   const auto text = to_json(original);
   const auto json = ordered_json::parse(text);
@@ -100,6 +102,9 @@ TEST(JsonOptimization, WhatIsNotKnownIsNull) {
   EXPECT_EQ(read->optimization->certificate.b_stationary, std::nullopt);
   EXPECT_EQ(read->optimization->verification->interval, -1);
   EXPECT_EQ(read->optimization->speed_of_time.size(), 20U);
+  EXPECT_EQ(json["verification"]["closed_loop"]["gains"][0]["K"], ordered_json::array({{-2.0, 0.1}}));
+  EXPECT_EQ(read->optimization->verification->closed_loop->gains.front().K,
+            (std::vector<std::vector<double>>{{-2.0, 0.1}}));
 }
 
 TEST(JsonOptimization, AnUnfinishedOneHasNoVerificationAndPerhapsNoControls) {

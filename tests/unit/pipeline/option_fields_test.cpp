@@ -17,6 +17,7 @@ SimulateOptions uncommon_options() {
   SimulateOptions options;
   options.until = 3.0;
   options.from = -1.0;
+  options.begun = -2.5;
   options.rtol = 1e-3;
   options.atol = 0.0;
   options.native = Native::off;

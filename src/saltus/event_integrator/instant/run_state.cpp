@@ -20,7 +20,7 @@ RunState::RunState(evaluation::ModelKernel& model, const IntegrationOptions& wan
       ledger(kernel),
       search(kernel, field, ledger, options.method, tolerances.step()),
       user_events(kernel),
-      jumps(kernel, options.from),
+      jumps(kernel, {options.from, options.until, options.begun}),
       contacts(kernel),
       holding(kernel),
       recorder(kernel),

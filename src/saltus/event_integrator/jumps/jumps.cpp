@@ -32,19 +32,35 @@ std::optional<std::string> compared_at_jumps_only(const model::Layout& layout, i
   return std::nullopt;
 }
 
-Jumps::Jumps(const evaluation::ModelKernel& kernel, double from)
+Jumps::Jumps(const evaluation::ModelKernel& kernel, const JumpSpan& span)
     : kernel_(kernel),
       layout_(kernel.layout()),
-      from_(from),
+      span_(span),
+      origin_(span.begun.value_or(span.from)),
       truth_(layout_.jumps.size(), 0U),
       steps_(layout_.jumps.size()),
       times_passed_(layout_.jumps.size(), 0),
       values_(at(kernel.event_functions())),
       next_time_(never) {
   for (std::size_t k = 0; k < layout_.jumps.size(); ++k) {
-    const auto& times = layout_.jumps[k].times;
-    times_passed_[k] = std::lower_bound(times.begin(), times.end(), from) - times.begin();
+    times_passed_[k] = passed_before_start(static_cast<int>(k));
   }
+}
+
+/// How many given times the run does not come to: at its start only those that happen there.
+long Jumps::passed_before_start(int jump) const {
+  const double from = span_.from;
+  const bool goes_on = span_.begun.has_value();
+  const auto is_over = [&](double time) {
+    return goes_on ? has_come(time, from) : time < from && !is_same(time, from);
+  };
+  const auto& entry = layout_.jumps[at(jump)];
+  if (!(entry.every > 0.0))
+    return std::partition_point(entry.times.begin(), entry.times.end(), is_over) - entry.times.begin();
+  if (!goes_on) return 0;
+  long passed = std::max(0L, static_cast<long>((from - origin_) / entry.every) - 1);
+  while (is_over(origin_ + static_cast<double>(passed + 1) * entry.every)) ++passed;
+  return passed;
 }
 
 bool Jumps::is_discrete_guard(int function) const { return kernel_.is_discrete_guard(function); }
@@ -65,16 +81,21 @@ double Jumps::time_of(int jump) const {
   if (entry.trigger != JumpTrigger::times) return never;
   const long passed = times_passed_[at(jump)];
   // A multiple of the period, not a sum of periods: nothing accumulates.
-  if (entry.every > 0.0) return from_ + static_cast<double>(passed + 1) * entry.every;
+  if (entry.every > 0.0) return origin_ + static_cast<double>(passed + 1) * entry.every;
   return passed < static_cast<long>(entry.times.size()) ? entry.times[at(passed)] : never;
 }
 
 void Jumps::find_next_time() {
-  next_time_ = never;
+  double first = never;
+  for (std::size_t k = 0; k < layout_.jumps.size(); ++k) first = std::min(first, time_of(static_cast<int>(k)));
+  for (const auto& execution : queue_) first = std::min(first, execution.t);
+  next_time_ = first;
+  // A time that is written comes before one that is computed.
   for (std::size_t k = 0; k < layout_.jumps.size(); ++k) {
-    next_time_ = std::min(next_time_, time_of(static_cast<int>(k)));
+    const double time = time_of(static_cast<int>(k));
+    if (!layout_.jumps[k].times.empty() && is_same(time, first)) next_time_ = time;
   }
-  for (const auto& execution : queue_) next_time_ = std::min(next_time_, execution.t);
+  if (is_same(span_.until, first)) next_time_ = span_.until;
 }
 
 /// Pointwise as written: signs of continuous guards are known just behind this time, discrete ones are exact.
@@ -115,7 +136,7 @@ unsigned Jumps::truth(int jump, const JumpPoint& point) const {
 }
 
 void Jumps::begin(const JumpPoint& point) {
-  for (std::size_t k = 0; k < truth_.size(); ++k) truth_[k] = layout_.jumps[k].at_start ? 0U : ~0U;
+  for (std::size_t k = 0; k < truth_.size(); ++k) truth_[k] = layout_.jumps[k].at_start && !span_.begun ? 0U : ~0U;
   update(point);
 }
 
@@ -128,7 +149,7 @@ void Jumps::update(const JumpPoint& point) {
     const bool became_true = (now & ~truth_[k]) != 0U;
     truth_[k] = now;
     if (became_true) trigger(jump, point);
-    while (time_of(jump) <= point.t) {
+    while (has_come(time_of(jump), point.t)) {
       ++times_passed_[k];
       trigger(jump, point);
     }
@@ -171,7 +192,8 @@ void Jumps::trigger(int jump, const JumpPoint& point) {
 }
 
 bool Jumps::due(double t) const {
-  return std::any_of(queue_.begin(), queue_.end(), [t](const Execution& execution) { return execution.t <= t; });
+  return std::any_of(queue_.begin(), queue_.end(),
+                     [&](const Execution& execution) { return has_come(execution.t, t); });
 }
 
 int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
@@ -179,7 +201,7 @@ int Jumps::execute(const JumpPoint& point, std::vector<double>& x) {
   auto chosen = queue_.end();
   double largest = 0.0;
   for (auto entry = queue_.begin(); entry != queue_.end(); ++entry) {
-    if (entry->t > point.t) continue;
+    if (!has_come(entry->t, point.t)) continue;
     const double priority = kernel_.jump_priority(entry->jump, point.t, point.x.data(), alpha.data());
     if (std::isnan(priority)) {
       problem_ = fmt::format("the priority of the jump '{}' is not a number at t = {:.17g}",

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "saltus/base/same_time.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
 #include "saltus/model/layout.hpp"
 
@@ -23,14 +24,21 @@ struct JumpPoint {
 /// without.
 [[nodiscard]] std::optional<std::string> compared_at_jumps_only(const model::Layout& layout, int state);
 
+/// Holds the span of a run.
+struct JumpSpan {
+  double from = 0.0;
+  double until = 0.0;
+  std::optional<double> begun;  ///< of a run that goes on at the end of another: see IntegrationOptions
+};
+
 /// Follows the truth of all conditions and the queue of executions (rules 1 to 5 of the model file's [[jumps]]). Knows
 /// no modes and takes no steps; it is asked at events only.
 class Jumps {
  public:
-  Jumps(const evaluation::ModelKernel& kernel, double from);
+  Jumps(const evaluation::ModelKernel& kernel, const JumpSpan& span);
 
   [[nodiscard]] bool none() const { return layout_.jumps.empty(); }
-  /// Begins at the start: every condition counts as true before it, with at_start as false.
+  /// Begins at the start: every condition counts as true before it, with at_start as false, unless the run goes on.
   void begin(const JumpPoint& point);
   /// Reads all conditions and times anew: what became true, and times that have come, are triggered; waiting executions
   /// of jumps with persistent = false whose condition is false are dropped.
@@ -39,8 +47,8 @@ class Jumps {
   /// Reads the conditions without triggering: those that came true at a limit where their jumps change nothing.
   void accept(const std::vector<int>& jumps, const JumpPoint& point);
 
-  /// Returns when the next given or delayed time comes; infinity without. Exact: the very double of `at`, from + k
-  /// every, or t + delay.
+  /// Returns when the next given or delayed time comes; infinity without. All times that are the same but for
+  /// rounding come together: at the end of the run, else at that of `at`, else at the first one.
   [[nodiscard]] double next_time() const { return next_time_; }
   [[nodiscard]] bool due(double t) const;
   /// Applies the `set` of the due execution with the largest priority (ties: order in the file, then of triggering) to
@@ -75,11 +83,15 @@ class Jumps {
   [[nodiscard]] std::vector<double> at_instant(const JumpPoint& point) const;
   void trigger(int jump, const JumpPoint& point);
   [[nodiscard]] double time_of(int jump) const;
+  [[nodiscard]] bool is_same(double a, double b) const { return is_same_time(a, b, origin_); }
+  [[nodiscard]] bool has_come(double time, double t) const { return time <= t || is_same(time, t); }
+  [[nodiscard]] long passed_before_start(int jump) const;
   void find_next_time();
 
   const evaluation::ModelKernel& kernel_;
   const model::Layout& layout_;
-  double from_;
+  JumpSpan span_;
+  double origin_;  ///< periods count from there
   std::vector<unsigned> truth_;
   mutable std::vector<std::vector<double>> steps_;  ///< of the guards of every condition, as they were read last
   std::vector<long> times_passed_;                  ///< of every jump with given times

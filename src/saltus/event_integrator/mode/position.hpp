@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "saltus/base/rounding_unit.hpp"
+#include "saltus/base/same_time.hpp"
 #include "saltus/event_integrator/mode/mode_change.hpp"
 #include "saltus/event_integrator/mode/mode_state.hpp"
 
@@ -38,9 +38,7 @@ struct Position {
   }
 
   /// Returns the smallest step that is still seen in t.
-  [[nodiscard]] double smallest_step() const {
-    return std::max(4.0 * rounding_unit * std::abs(t), std::numeric_limits<double>::min());
-  }
+  [[nodiscard]] double smallest_step() const { return std::max(time_rounding(t), std::numeric_limits<double>::min()); }
 };
 
 }  // namespace saltus::event_integrator

@@ -258,7 +258,7 @@ std::optional<Run::Step> Run::first_event(double t_new) {
   if (run_.rows.asks_for_lines()) run_.rows.write_lines(located->t, steps_.dense());
   // A requested time that is a break but for its rounding belongs to the cell behind it.
   const bool ends_cell = reaches_cell_end(run_.search, *located);
-  rows_until(ends_cell ? located->t - 4.0 * rounding_unit * std::abs(located->t) : located->t);
+  rows_until(ends_cell ? located->t - time_rounding(located->t) : located->t);
   come_to(*located);
   return Step::taken;
 }

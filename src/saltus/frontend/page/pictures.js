@@ -81,14 +81,14 @@ saltus.eventPicture = (page, colours) => {
   const {table, state} = page;
   const rows = saltus.chosenRows(page, table.eventRows)
                    .filter((row) => table.kindOf(row) === state.kind && table.columns.t[row] > state.after);
-  const ends = saltus.chosenRows(page, saltus.quietRuns(table, state.after)).flatMap((row) => {
+  const ends = saltus.chosenRows(page, saltus.quietRuns(table, state.kind, state.after)).flatMap((row) => {
     const value = saltus.endValue(table, state.value, row);
     return value === null ? [] : [[row, value]];
   });
   const stopped = saltus.chosenRows(page, table.runRows).filter((row) => !table.isDone(row));
   const after = state.after > -Infinity ? ` after t = ${saltus.sweepNumber(state.after)}` : "";
   const plot = {x: state.x, rows, yOf: (row) => table.at(state.value, row), colourOf: colours.colourOf, joined: false, stopped, ends};
-  const endLegend = ends.length === 0 ? [] : [saltus.element("span", {class: "quiet"}, "◇ at the end, where a run has no events")];
+  const endLegend = ends.length === 0 ? [] : [saltus.element("span", {class: "quiet"}, `◇ at the end, where a run has no "${state.kind}"`)];
   return {
     title: `${state.value} at every event "${state.kind}"${after}`,
     legend: [...colours.legend, ...endLegend],

@@ -38,7 +38,7 @@ saltus.pointsPicture = (table, title, width, plot, zoom, yName) => {
   for (const [row, value] of ends) {
     const [px, py] = [place(row), frame.y(value)];
     const look = {d: `M${px} ${py - 4}l4 4l-4 4l-4 -4z`, fill: panel, stroke: colourOf(row), "stroke-width": 1.4};
-    const label = `${saltus.sweepNumber(table.at(x, row))}: ${saltus.sweepNumber(value)} at the end, without events before it`;
+    const label = `${saltus.sweepNumber(table.at(x, row))}: ${saltus.sweepNumber(value)} at the end, without such events before it`;
     frame.inside.append(saltus.runMark(table, row, "path", {...look, class: "run end"}, label));
   }
   for (const row of first.values()) {

@@ -77,10 +77,10 @@ saltus.runCommand = (table, data, row) => {
 /** Value at the end of a run, of a table of events; null where it is not known. */
 saltus.endValue = (table, name, row) => name === "t" ? null : table.columns[`${name.replace(/\(after\)$/, "")}(end)`]?.[row] ?? null;
 
-/** Rows of runs that came to their end without any event after a time: the state rests there, or moves without events. */
-saltus.quietRuns = (table, after) => {
-  const moving = new Set(table.eventRows.filter((row) => table.columns.kind[row] !== "start" && table.columns.t[row] > after)
-                             .map((row) => table.columns.run[row]));
+/** Rows of runs that came to their end without an event of a kind after a time: the state rests, or moves without them. */
+saltus.quietRuns = (table, kind, after) => {
+  const isOne = (row) => table.kindOf(row) === kind && table.columns.kind[row] !== "start" && table.columns.t[row] > after;
+  const moving = new Set(table.eventRows.filter(isOne).map((row) => table.columns.run[row]));
   const isThere = (row) => table.isDone(row) && (table.columns["t(end)"]?.[row] ?? -Infinity) > after;
   return table.runRows.filter((row) => isThere(row) && !moving.has(table.columns.run[row]));
 };

@@ -293,12 +293,18 @@ struct RecordMembers<result::Certificate> {
 };
 
 template <>
+struct RecordMembers<result::FeedbackGain> {
+  using R = result::FeedbackGain;
+  static constexpr auto list = std::make_tuple(field("t", &R::t), field("interval", &R::interval), field("K", &R::K));
+};
+
+template <>
 struct RecordMembers<result::OpenLoop> {
   using R = result::OpenLoop;
   static constexpr auto list = std::make_tuple(
       field("end_state_error", &R::end_state_error), field("terminal_violation", &R::terminal_violation),
       field("termination", &R::termination), field("amplification", &R::amplification), field("message", &R::message),
-      field("t", &R::t), field("x", &R::x));
+      field("t", &R::t), field("x", &R::x), field("gains", &R::gains, Presence::if_any));
 };
 
 template <>

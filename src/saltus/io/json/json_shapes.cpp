@@ -142,6 +142,11 @@ void check_optimization(JsonReader& reader, const std::string& path, const resul
   if (!optimization.verification->closed_loop) return;
   const auto& closed_loop = *optimization.verification->closed_loop;
   check_rows(reader, path + "/verification/closed_loop/x", closed_loop.x, closed_loop.t.size(), result.states.size());
+  for (std::size_t k = 0; k < closed_loop.gains.size(); ++k) {
+    const auto& gain = closed_loop.gains[k];
+    check_rows(reader, fmt::format("{}/verification/closed_loop/gains/{}/K", path, k), gain.K, result.controls.size(),
+               result.states.size());
+  }
 }
 
 }  // namespace

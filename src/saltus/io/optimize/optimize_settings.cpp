@@ -103,8 +103,11 @@ Expected<void> set_optimize(ModelFile& model, std::string_view key, std::string_
   const auto place = place_of_setting(key);
   const auto path = key.substr(std::min(optimize_root.size(), key.size()));
   if (!model.optimize) return set_optimize_option(model, key, value, place);
-  if ((path == "horizon" || path == "mpcc" || path == "plant") && is_table_text(value))
+  if ((path == "horizon" || path == "mpcc" || path == "plant") && is_table_text(value)) {
+    // What the model says of the plant is that table.
+    if (path == "plant") model.description.optimize->plant.clear();
     return set_table(model, key, value);
+  }
   if (path.starts_with(plant_root)) return set_plant(model, path.substr(plant_root.size()), value, place);
   if (path == "horizon.free") return set_truth(key, value, model.description.optimize->horizon.free);
   if (path == "initial_guess.result") {

@@ -69,7 +69,9 @@ std::vector<Correction> corrections_of(const OptimizedPath& path, const std::vec
     last.behind = &start.x;
     if (gains[e].size() > 0) last.gain = &gains[e];
   }
-  std::erase_if(list, [](const Correction& one) { return one.gain == nullptr; });
+  // What is corrected where the horizon ends would have no time to act.
+  const double end = path.times.back() - rounding;
+  std::erase_if(list, [end](const Correction& one) { return one.gain == nullptr || one.t >= end; });
   return list;
 }
 
@@ -103,6 +105,18 @@ std::vector<double> corrected_controls(const model::Ocp& ocp, const OptimizedPat
 }
 
 }  // namespace
+
+std::vector<result::FeedbackGain> used_gains(const OptimizedPath& path, const std::vector<linalg::Matrix>& gains) {
+  std::vector<result::FeedbackGain> list;
+  for (const auto& one : corrections_of(path, gains)) {
+    auto& gain = list.emplace_back(result::FeedbackGain{one.t, static_cast<int>(one.interval), {}});
+    for (linalg::Index i = 0; i < one.gain->rows(); ++i) {
+      auto& row = gain.K.emplace_back();
+      for (linalg::Index k = 0; k < one.gain->cols(); ++k) row.push_back((*one.gain)(i, k));
+    }
+  }
+  return list;
+}
 
 Expected<Resimulation::Segment> simulate_closed_loop(const model::Ocp& ocp, const OptimizedPath& path,
                                                      const std::vector<linalg::Matrix>& gains,

@@ -81,6 +81,10 @@ class Resimulation {
                                                                    const std::vector<linalg::Matrix>& gains,
                                                                    const std::function<bool()>& is_interrupted);
 
+/// Returns the gains that simulate_closed_loop uses, by time.
+[[nodiscard]] std::vector<result::FeedbackGain> used_gains(const OptimizedPath& path,
+                                                           const std::vector<linalg::Matrix>& gains);
+
 /// Returns options so sharp that defects of 1e-9 of the range are those of the solution; `rows` + 1 rows of equal
 /// distance.
 [[nodiscard]] event_integrator::IntegrationOptions resimulation_options(double from, double until, std::size_t rows);

@@ -292,6 +292,7 @@ Expected<Verification> verify(const Ocp& ocp, const OptimizedPath& path, const V
   if (!closed_loop) return tl::unexpected(closed_loop.error());
   verification.closed_loop = open_loop_of(ocp, path, checks.scales(), std::move(*closed_loop));
   verification.closed_loop->amplification = not_known;
+  verification.closed_loop->gains = used_gains(path, wanted.gains);
   verification.plant = differing_values(ocp);
   return verification;
 }

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
 namespace saltus::pipeline {
@@ -18,6 +19,7 @@ namespace {
 // Access to a member, for reading and writing alike: the only place that names it.
 constexpr auto until_of = [](auto& o) -> auto& { return o.until; };
 constexpr auto from_of = [](auto& o) -> auto& { return o.from; };
+constexpr auto begun_of = [](auto& o) -> auto& { return o.begun; };
 constexpr auto method_of = [](auto& o) -> auto& { return o.method; };
 constexpr auto rtol_of = [](auto& o) -> auto& { return o.rtol; };
 constexpr auto atol_of = [](auto& o) -> auto& { return o.atol; };
@@ -199,6 +201,9 @@ constexpr std::array fields{
                 set_number<until_of, SimulateOptions>,
                 record_until},
     number_field<from_of>("from", any_number, "Start of the simulation."),
+    number_or_none_field<begun_of, none_word>(
+        "begun", any_number,
+        "Of a run that goes on: start of the first one. `every` counts from there; what was due by `from` is done."),
     choice_field<method_of, methods>(
         "method", "Event-driven; regularised; finite elements with switch detection; the same without it.",
         name_integrator),
@@ -346,10 +351,14 @@ double number_of_rows(const OutputGrid& grid, double begin, double end) {
   return at == nullptr ? 0.0 : static_cast<double>(at->times.size());
 }
 
-std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
-  const auto problem = [](std::string key, std::string message, std::string remedy) {
-    return OptionProblem{std::move(key), {ErrorCode::invalid_option, std::move(message), std::move(remedy), {}, {}}};
-  };
+namespace {
+
+OptionProblem problem(std::string key, std::string message, std::string remedy) {
+  return {std::move(key), {ErrorCode::invalid_option, std::move(message), std::move(remedy), {}, {}}};
+}
+
+/// Of the times between which it is simulated.
+std::optional<OptionProblem> find_problem_of_span(const SimulateOptions& options) {
   if (!options.until) {
     return problem("until", "no end time", "write until = T in [simulate], or give --until T on the command line");
   }
@@ -357,9 +366,35 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
     return problem("until", fmt::format("until ({}) is not after from ({})", *options.until, options.from),
                    "choose until > from");
   }
+  if (options.begun && *options.begun > options.from) {
+    return problem("begun", fmt::format("begun ({}) is after from ({})", *options.begun, options.from),
+                   "a run goes on at the end of one that began before");
+  }
+  if (!std::isfinite(*options.until - options.from)) {
+    return problem("until", fmt::format("from {} to {} is longer than any number", options.from, *options.until),
+                   "choose other units of time");
+  }
+  return std::nullopt;
+}
+
+std::optional<OptionProblem> find_problem_of_tolerances(const SimulateOptions& options) {
+  if ((options.rtol > 0.0 && options.rtol < rounding_unit) || options.rtol >= 1.0) {
+    return problem("rtol",
+                   fmt::format("rtol = {}: with 1 no digit is right, and doubles carry {:.2g} of a number",
+                               options.rtol, rounding_unit),
+                   "choose what lies between, e.g. rtol = 1e-8");
+  }
   if (!(options.rtol + options.atol > 0.0)) {
     return problem("atol", "rtol and atol are both 0", "one of them must be positive, e.g. rtol = 1e-8");
   }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
+  if (auto found = find_problem_of_span(options)) return found;
+  if (auto found = find_problem_of_tolerances(options)) return found;
   if (options.method == Method::fesd && options.fesd.elements < 2) {
     return problem("fesd.elements", "switch detection needs at least 2 elements in a simulation step",
                    "choose elements = 2 or more, or method = \"timestepping\"");
@@ -375,10 +410,6 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
   if (options.method == Method::smoothed && !options.initial_mode.empty()) {
     return problem("method", "initial_mode has no meaning for method \"smoothed\", which decides no modes",
                    "leave initial_mode out, or use method = \"event\"");
-  }
-  if (!std::isfinite(*options.until - options.from)) {
-    return problem("until", fmt::format("from {} to {} is longer than any number", options.from, *options.until),
-                   "choose other units of time");
   }
   const double rows = number_of_rows(options.output, options.from, *options.until);
   if (!(rows <= most_rows)) {

@@ -94,6 +94,7 @@ struct ElementOptions {
 struct SimulateOptions {
   std::optional<double> until{};
   double from = 0.0;
+  std::optional<double> begun{};  ///< start of the first run, where this one goes on at the end of another
   Method method = Method::event;
   double rtol = 1e-8;
   double atol = 1e-10;

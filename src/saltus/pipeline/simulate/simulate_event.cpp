@@ -88,6 +88,12 @@ class Trajectories {
   IntegrationOptions options_;
 };
 
+/// Where no decision is known, elements may go on: theirs are solutions of equations. They have no jumps.
+void mention_elements(const model::System& system, result::Status& status) {
+  if (status.termination != result::Termination::outside_class || !system.jumps.empty()) return;
+  status.message += "; --method fesd may go on";
+}
+
 }  // namespace
 
 IntegrationOptions event_options(const Simulation& asked, Integrator method) {
@@ -97,6 +103,7 @@ IntegrationOptions event_options(const Simulation& asked, Integrator method) {
   integration.method = named_method(method);
   integration.from = options.from;
   integration.until = *options.until;
+  integration.begun = options.begun;
   integration.tolerances = {options.rtol, options.atol};
   integration.max_step = options.event.max_step;
   integration.local_steps = options.event.local_steps;
@@ -120,6 +127,7 @@ Expected<result::Result> simulate_event(const Simulation& asked, KernelStore& ke
   Trajectories trajectories(asked, kept->kernel, watch);
   auto result = follow_branches([&](const Path& path, const Count& count) { return trajectories.follow(path, count); },
                                 {options.event.trajectories, options.event.members});
+  mention_elements(asked.system, result.status);
   kernels.give_back(std::move(*kept));
   return result;
 }

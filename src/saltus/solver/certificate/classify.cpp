@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -136,9 +138,12 @@ std::string worst_rows(mpcc::Problem& problem, ConstVectorView w, double toleran
   }
   std::stable_sort(violations.begin(), violations.end(),
                    [](const auto& a, const auto& b) { return a.amount > b.amount; });
+  // Rows of a discretisation may share a name.
+  std::set<std::string_view> named;
   std::string text;
-  for (std::size_t i = 0; i < std::min<std::size_t>(violations.size(), 3); ++i) {
-    text += fmt::format("{}{} (by {:.3g})", i > 0 ? ", " : "", violations[i].name, violations[i].amount);
+  for (const auto& [amount, name] : violations) {
+    if (named.size() == 3 || !named.insert(name).second) continue;
+    text += fmt::format("{}{} (by {:.3g})", text.empty() ? "" : ", ", name, amount);
   }
   return text;
 }
