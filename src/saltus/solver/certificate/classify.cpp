@@ -1,10 +1,12 @@
 #include "saltus/solver/certificate/classify.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -19,8 +21,11 @@ namespace {
 using result::StationarityType;
 
 struct Violation {
+  enum Kind { bound, row, pair };
+  Kind kind;
   double amount;
   std::string name;
+  bool is_worst_of_kind = false;
 };
 
 /// Calls back with every bound that is violated: the amount relative to the bound, and which variable or row it is.
@@ -122,28 +127,35 @@ std::string worst_rows(mpcc::Problem& problem, ConstVectorView w, double toleran
   const int pairs = problem.pairs();
   std::vector<Violation> violations;
   for_violations(w, problem.variable_bounds(), [&](double amount, int i) {
-    if (amount > tolerance) violations.push_back({amount, fmt::format("a bound of {}", problem.name(i))});
+    if (amount > tolerance)
+      violations.push_back({Violation::bound, amount, fmt::format("a bound of {}", problem.name(i))});
   });
   for_violations(c.head(n_g), problem.constraint_bounds(), [&](double amount, int i) {
-    if (amount > tolerance) violations.push_back({amount, problem.row_name(i)});
+    if (amount > tolerance) violations.push_back({Violation::row, amount, problem.row_name(i)});
   });
   for (int side = 0; side < 2 * pairs; ++side) {
-    if (-c[n_g + side] > tolerance) violations.push_back({-c[n_g + side], problem.row_name(n_g + side)});
+    if (-c[n_g + side] > tolerance)
+      violations.push_back({Violation::pair, -c[n_g + side], problem.row_name(n_g + side)});
   }
   for (int pair = 0; pair < pairs; ++pair) {
     const double residual = std::min(std::abs(c[n_g + pair]), std::abs(c[n_g + pairs + pair]));
     if (!(residual > tolerance)) continue;
     const std::string G = problem.row_name(n_g + pair), H = problem.row_name(n_g + pairs + pair);
-    violations.push_back({residual, G == H ? "complementarity of " + G : fmt::format("{} _|_ {}", G, H)});
+    violations.push_back(
+        {Violation::pair, residual, G == H ? "complementarity of " + G : fmt::format("{} _|_ {}", G, H)});
   }
   std::stable_sort(violations.begin(), violations.end(),
                    [](const auto& a, const auto& b) { return a.amount > b.amount; });
+  // Amounts of different kinds cannot be compared: what no selection can meet is a row, however far the pairs are off.
+  std::array<bool, 3> seen{};
+  for (auto& one : violations) one.is_worst_of_kind = !std::exchange(seen[one.kind], true);
+  std::stable_partition(violations.begin(), violations.end(), [](const auto& one) { return one.is_worst_of_kind; });
   // Rows of a discretisation may share a name.
   std::set<std::string_view> named;
   std::string text;
-  for (const auto& [amount, name] : violations) {
-    if (named.size() == 3 || !named.insert(name).second) continue;
-    text += fmt::format("{}{} (by {:.3g})", text.empty() ? "" : ", ", name, amount);
+  for (const auto& one : violations) {
+    if (named.size() == 3 || !named.insert(one.name).second) continue;
+    text += fmt::format("{}{} (by {:.3g})", text.empty() ? "" : ", ", one.name, one.amount);
   }
   return text;
 }
