@@ -228,11 +228,18 @@ std::optional<Transition> leave_at_once(const SwitchingContext& s, const ModeSta
   return left;
 }
 
-/// Surfaces are met whose gradients depend on those of the others.
-Transition meet_dependent(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point) {
+/// Surfaces whose gradients depend on each other are met or left.
+Transition decide_about_dependent(const SwitchingContext& s, const ModeState& before,
+                                  const SwitchingPoint& switching_point) {
   std::string problem;
-  if (auto next = decide_dependent(s, before, switching_point, problem)) return std::move(*next);
-  return failed(switching_point, before, s, "others are met, and " + problem);
+  auto next = decide_dependent(s, before, switching_point, problem);
+  if (!next) return failed(switching_point, before, s, problem);
+  std::vector<int> left;
+  for (const int j : before.sliding) {
+    if (next->state.mode[at(j)] != 0) left.push_back(j);
+  }
+  if (!left.empty()) next->reason = fmt::format("{}: no selection holds them any more", names(s.layout, left));
+  return std::move(*next);
 }
 
 /// A surface is crossed behind which no selections hold the set any more.
@@ -380,11 +387,7 @@ Transition decide_from_higher_order(const SwitchingContext& s, const ModeState& 
     if (!contains(before.sliding, j)) met.push_back(j);
   }
   if (is_dependent(before)) {
-    // Functions that move nothing are no reason to decide about those that are held.
-    const auto acting = acting_surfaces(s, before, switching_point);
-    const bool acts = std::any_of(met.begin(), met.end(), [&](int j) { return contains(acting, j); });
-    if (acts || (!met.empty() && exits.empty())) return meet_dependent(s, before, switching_point);
-    if (!exits.empty()) return leave_balances(s, before, switching_point, x);
+    if (!met.empty() || !exits.empty()) return decide_about_dependent(s, before, switching_point);
   }
   if (met.size() > 1 || (!met.empty() && !exits.empty())) {
     return failed(switching_point, before, s, "several things happen at once");
