@@ -279,5 +279,25 @@ TEST(Coupled, TheOtherRootOfAModeIsAnAlternativeWhereAScalingDecidesToo) {
   }
 }
 
+TEST(Coupled, OfThreeDependentSurfacesThoseAreLeftThatCannotBeHeldBehindTheExit) {
+  // Two blocks that stick to the ground and to each other. The force on the first one grows until that slips: nothing
+  // then holds it to the other one either, which stays where it is, by the ground alone.
+  for (const auto method : testing::every_method) {
+    Builder b("stick of two blocks");
+    const SX first = b.state("v0", {0}), second = b.state("v1", {0});
+    b.dynamics("v0", b.time() - b.sign(first));
+    b.dynamics("v1", -0.4 * b.sign(second) - 0.3 * b.sign(second - first));
+    IntegrationOptions options;
+    options.method = method;
+    options.until = 2;
+    const auto result = testing::run_model(b, options);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    ASSERT_EQ(result.events.size(), 2U);
+    EXPECT_NEAR(result.events.back().t, 1.0, 1e-10);
+    EXPECT_NEAR(result.final.x[0], 0.5, 1e-7);
+    EXPECT_NEAR(result.final.x[1], 0.0, 1e-14);
+  }
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator

@@ -130,5 +130,53 @@ TEST(Nested, WhereSurfacesAndAKinkInsideAKinkMeetTheHiddenDynamicsLeavesAll) {
   EXPECT_GT(-result.final.x[0] - result.final.x[1], 0.0);
 }
 
+TEST(Nested, AKinkThatIsZeroAllAlongASurfaceFollowsIt) {
+  // A controller that stops integrating where it saturates slides on u = L, where its saturation has a kink. Written as
+  // a condition the saturation has no kink of its own.
+  const auto run = [](ode::Method method, bool as_kink) {
+    Builder b("anti-windup");
+    const SX integral = b.state("I", {0}), x = b.state("x", {0.2}), v = b.state("v", {-0.9});
+    const double limit = 1.2;
+    const SX error = 1.125 * SX::sin(1.7 * b.time()) - x, u = 0.3 * error + integral;
+    const auto above = model::greater(u, limit), below = model::greater(-limit, u);
+    const SX output = as_kink ? b.min(b.max(u, -limit), limit) : b.if_(above, limit, b.if_(below, -limit, u));
+    b.dynamics("I", b.if_(above, b.if_(model::greater(error, 0), 0, error),
+                          b.if_(below, b.if_(model::greater(0, error), 0, error), error)));
+    b.dynamics("x", v);
+    b.dynamics("v", 1.25 * output - 2 * v - 0.6 * x);
+    IntegrationOptions options;
+    options.method = method;
+    options.until = 20;
+    return testing::run_model(b, options);
+  };
+  for (const auto method : testing::every_method) {
+    const auto found = run(method, true), expected = run(method, false);
+    ASSERT_EQ(found.status.termination, Termination::completed) << found.status.message;
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found.final.x[i], expected.final.x[i], 1e-7);
+    EXPECT_EQ(found.events.size(), expected.events.size());
+    for (const auto& event : found.events) EXPECT_EQ(event.unique, true) << event.t;
+  }
+}
+
+TEST(Nested, CyclesEndAtRestWhereAKinkInsideTheControlHasBothSigns) {
+  // A relay behind a dead zone, and dry friction: the control jumps from one end of the dead zone to the other with the
+  // relay. At the limit of the switches it is any number between: the state rests.
+  for (const auto method : testing::every_method) {
+    Builder b("dead zone");
+    const SX x = b.state("x", {1}), v = b.state("v", {0});
+    const SX u = -x - 0.6 * b.sign(x) - 0.3 * v, used = u - b.max(b.min(u, 0.15), -0.15);
+    b.dynamics("x", v);
+    b.dynamics("v", 3 * used - 0.8 * v - 0.4 * b.sign(v));
+    IntegrationOptions options;
+    options.method = method;
+    options.until = 10;
+    const auto result = testing::run_model(b, options);
+    ASSERT_EQ(result.status.termination, Termination::completed) << result.status.message;
+    EXPECT_EQ(result.events.back().kind, result::EventKind::accumulation);
+    EXPECT_NEAR(result.final.x[0], 0.0, 1e-9);
+    EXPECT_NEAR(result.final.x[1], 0.0, 1e-9);
+  }
+}
+
 }  // namespace
 }  // namespace saltus::event_integrator

@@ -151,5 +151,13 @@ TEST(Surfaces, ThresholdsOfIrma) {
   EXPECT_TRUE(system.multi_affine);
 }
 
+TEST(Surfaces, AJumpBesideAKinkOfOneFunctionAroundASignIsListed) {
+  const System system =
+      built({.states = {{"x", "0.2"}, {"y", "0"}},
+             .dynamics = {{"x", "max(y + x + 0.15*sign(x), -1)"}, {"y", "if(y + x + 0.15*sign(x) < -1, 0, x)"}}});
+  ASSERT_EQ(system.switching.size(), 2U);
+  for (const auto& function : system.switching) EXPECT_EQ(function.role, SwitchingRole::listed) << function.name;
+}
+
 }  // namespace
 }  // namespace saltus::model

@@ -69,7 +69,12 @@ bool Decider::fail(result::Termination termination, std::string message) {
 
 Transition Decider::run() {
   base_ = before_;
-  const auto groups = groups_of(s_.kernel, switching_point_, switching_point_.at_zero);
+  std::vector<int> deciding = switching_point_.at_zero;
+  std::erase_if(deciding, [&](int j) { return contains(followers_, j); });
+  const auto groups = groups_of(s_.kernel, switching_point_, deciding);
+  for (const int j : followers_) {
+    if (before_.mode[at(j)] == 0) set_surface(transition_.state, j, 1, 1.0);
+  }
   // Nested functions that flip change the fields for everything else: decide again until nothing flips.
   for (int pass = 0; pass < 8; ++pass) {
     decisions_.clear();

@@ -147,6 +147,17 @@ Motion Decider::motion_from(int j, ModeField& field, const std::vector<double>& 
   return motion;
 }
 
+/// A kink at zero is on the side to which the others take it; on either one while they keep it there.
+void Decider::follow(int kink, const Motion& motion) {
+  auto& state = transition_.state;
+  const int side = static_cast<int>(motion.side.drift);
+  transition_.zero_order[at(kink)] = side == 0 ? 2 : std::min(motion.order, 2);
+  if (side == 0) return;
+  set_surface(state, kink, side, side > 0 ? 1.0 : 0.0);
+  if (state.sliding.empty()) return;
+  for (auto& corner : state.corner_alpha) corner[at(kink)] = state.alpha[at(kink)];
+}
+
 /// A function at zero moves to the side that the new mode says.
 bool Decider::check_side(int j, ModeField& field, const std::vector<double>& xdot) {
   const int mode = transition_.state.mode[at(j)];
@@ -156,6 +167,10 @@ bool Decider::check_side(int j, ModeField& field, const std::vector<double>& xdo
     return true;
   }
   const Motion motion = motion_from(j, field, xdot);
+  if (contains(followers_, j)) {
+    follow(j, motion);
+    return true;
+  }
   const bool is_kink = s_.layout.surfaces[at(j)].role == model::SwitchingRole::kink;
   if (is_kink && motion.side.drift == switching::Drift::stays) {
     // A state at rest there: both sides are the same.

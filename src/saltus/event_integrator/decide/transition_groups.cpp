@@ -7,6 +7,7 @@
 
 #include "saltus/base/components.hpp"
 #include "saltus/event_integrator/decide/transition_internal.hpp"
+#include "saltus/event_integrator/mode/kept_by_sliding.hpp"
 #include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/switching/selections/selection_root.hpp"
 
@@ -41,6 +42,22 @@ std::vector<std::vector<int>> groups_of(const evaluation::ModelKernel& kernel, c
   const std::vector<int> nested = nested_away_from_zero(kernel, switching_point);
   return components_of(
       surfaces, [&](int a, int b) { return depends_on(kernel, nested, a, b) || depends_on(kernel, nested, b, a); });
+}
+
+/// Kinks at zero whose gradients are combinations of those of the other surfaces there: f is one and the same on both
+/// sides, so that there is nothing to decide, and where the motion leads follows from the others.
+void Decider::find_followers() {
+  const auto& at_zero = switching_point_.at_zero;
+  ModeState others = before_;
+  others.sliding.clear();
+  for (const int j : at_zero) {
+    (s_.layout.surfaces[at(j)].role == model::SwitchingRole::kink ? followers_ : others.sliding).push_back(j);
+  }
+  std::erase_if(followers_, [&](int kink) {
+    const auto is_around = [&](int j) { return contains(s_.kernel.inner(j), kink); };
+    return std::any_of(at_zero.begin(), at_zero.end(), is_around) ||
+           !is_kept_by_sliding(s_.kernel, others, kink, switching_point_.t, switching_point_.x);
+  });
 }
 
 SurfaceDecision Decider::ask_selection(const switching::CornerTable& table, int surface) {

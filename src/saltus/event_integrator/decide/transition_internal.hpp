@@ -148,6 +148,7 @@ class Decider {
     transition_.state = before;
     transition_.zero_order.assign(before.mode.size(), 0);
     scale_.assign(before.mode.size(), 0.0);
+    find_followers();
   }
 
   Transition run();
@@ -155,6 +156,8 @@ class Decider {
   Transition run_crossing(int jumping);
 
  private:
+  void find_followers();
+  void follow(int kink, const Motion& motion);
   bool decide(const std::vector<int>& group);
   [[nodiscard]] bool regions_meet(const std::vector<int>& group) const;
   [[nodiscard]] bool slides_past_exit(const std::vector<int>& group, const switching::GroupDecision& decision) const;
@@ -233,6 +236,7 @@ class Decider {
   std::vector<RegionChoice> region_choices_;
   std::string undecided_part_;  ///< of a large group: which and why
   std::vector<double> scale_;   ///< by surface: largest normal component where its group was decided
+  std::vector<int> followers_;  ///< kinks that are zero where the others are
   std::vector<int> standing_;   ///< surfaces that psi does not leave, without consequence for the field
 };
 

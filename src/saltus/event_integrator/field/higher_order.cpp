@@ -15,6 +15,14 @@ constexpr double velocity_digits = 1e-8;
 
 }  // namespace
 
+void read_nested(const std::vector<NestedSelection>& nested, std::vector<double>& alpha) {
+  for (const auto& [function, inside, selections] : nested) {
+    std::size_t region = 0;
+    for (std::size_t i = 0; i < inside.size(); ++i) region |= std::size_t{alpha[at(inside[i])] > 0.5} << i;
+    alpha[at(function)] = selections[region];
+  }
+}
+
 HigherOrderField::HigherOrderField(const evaluation::ModelKernel& kernel)
     : kernel_(kernel),
       functions_(kernel),
@@ -41,14 +49,20 @@ void HigherOrderField::enter(const HigherOrderSet& set, const std::vector<int>& 
   velocities_.assign(corners, 0.0);
 }
 
+/// The selections of a region that meets at the surfaces of a balance, into trial_.
+void HigherOrderField::set_corner(const Balance& balance, std::size_t corner) {
+  for (std::size_t i = 0; i < balance.rows.size(); ++i) {
+    trial_[at(sliding_[balance.rows[i]])] = selection(corner, i);
+  }
+  read_nested(set_.nested, trial_);
+}
+
 void HigherOrderField::evaluate(const Balance& balance, BalanceRange& range, double t, const double* x) {
   const std::size_t corners = std::size_t{1} << balance.rows.size();
   range = {};
   trial_ = functions_.alpha();
   for (std::size_t corner = 0; corner < corners; ++corner) {
-    for (std::size_t i = 0; i < balance.rows.size(); ++i) {
-      trial_[at(sliding_[balance.rows[i]])] = selection(corner, i);
-    }
+    set_corner(balance, corner);
     kernel_.field(t, x, trial_.data(), corners_[corner].data());
     const double velocity = functions_.velocity(balance.functions.front(), corners_[corner]);
     velocities_[corner] = velocity;
@@ -92,19 +106,23 @@ bool HigherOrderField::hold_one(std::size_t b, double t, const double* x) {
   // Gradients by differences leave five digits less.
   range.exactness = set_.functions[balance.functions.front()].order == 0 ? 1.0 : 0x1p17;
   const double share = range.min / (range.min - range.max);
-  for (std::size_t i = 0; i < balance.rows.size(); ++i) {
-    const double low = selection(range.lowest, i);
-    alpha_[at(sliding_[balance.rows[i]])] = low + share * (selection(range.highest, i) - low);
-  }
+  set_corner(balance, range.lowest);
+  low_ = trial_;
+  set_corner(balance, range.highest);
+  const auto place = [&](int j) { alpha_[at(j)] = low_[at(j)] + share * (trial_[at(j)] - low_[at(j)]); };
+  for (const std::size_t row : balance.rows) place(sliding_[row]);
+  for (const auto& nested : set_.nested) place(nested.function);
   ranges_.push_back(range);
-  if (const std::size_t function = balance.functions.front(); functions_.is_beside_root(function)) {
+  // Between two regions f of the selections is not on the line between theirs where nested ones multiply those inside.
+  const std::size_t function = balance.functions.front();
+  if (functions_.is_beside_root(function) || !set_.nested.empty()) {
     auto& jump = jumps_.emplace_back(Jump{function, range.max - range.min, corners_[range.highest]});
     for (std::size_t i = 0; i < jump.field.size(); ++i) jump.field[i] -= corners_[range.lowest][i];
   }
   return determines(balance, range);
 }
 
-/// As ModeField does where nothing is held with higher order.
+/// As ModeField does where nothing is held with higher order, and where selections multiply each other.
 void HigherOrderField::balance_beside_roots() {
   for (const auto& jump : jumps_) {
     const double factor = functions_.velocity(jump.function, motion_) / jump.velocity;

@@ -24,6 +24,17 @@ using switching::Balance;
 /// Velocities of held functions are good to about ten digits where their gradients are differences.
 inline constexpr double velocity_accuracy = 1e-9;
 
+/// Says which selection a function away from zero has in each of the regions that meet at the held surfaces inside it:
+/// bit i of a region is the side of the i-th of these.
+struct NestedSelection {
+  int function = 0;
+  std::vector<int> inside;
+  std::vector<double> alpha;  ///< by region
+};
+
+/// Sets them for the regions that the selections of the held surfaces are those of; inner functions come first.
+void read_nested(const std::vector<NestedSelection>& nested, std::vector<double>& alpha);
+
 /// Says where a solution slides with higher order: psi_I = 0, the derivatives of these that no selection enters, and
 /// the balances that hold them. Of surfaces whose gradients depend on each other the functions are independent ones.
 /// The motion is the field at any selections in the cube that fulfil the balances, which is one and the same for all of
@@ -32,6 +43,7 @@ struct HigherOrderSet {
   std::vector<HeldFunction> functions;  ///< gradients independent; by order
   std::vector<Balance> balances;
   std::vector<int> undetermined;  ///< surfaces whose selections are not determined: several in one balance, or none
+  std::vector<NestedSelection> nested = {};  ///< of functions that have both signs there, inner ones first
 };
 
 /// Holds the range of a balance over the corners of its selections, in one direction where it has several functions;
@@ -86,6 +98,7 @@ class HigherOrderField {
   void balance_beside_roots();
   bool hold_several(std::size_t b, double t, const double* x);
   void evaluate(const Balance& balance, BalanceRange& range, double t, const double* x);
+  void set_corner(const Balance& balance, std::size_t corner);
   [[nodiscard]] bool determines(const Balance& balance, const BalanceRange& range) const;
   void find_jumps(const Balance& balance, linalg::Matrix& jumps, double t, const double* x);
   void take_selections(std::size_t b);
@@ -96,7 +109,7 @@ class HigherOrderField {
   std::vector<int> sliding_;
   HeldFunctions functions_;
   std::vector<BalanceRange> ranges_;
-  std::vector<double> alpha_, trial_, motion_, x_, base_, f_;
+  std::vector<double> alpha_, trial_, low_, motion_, x_, base_, f_;
   std::vector<std::vector<double>> corners_;  ///< f of the current balance
   std::vector<double> velocities_;
   std::vector<Coupled> coupled_;  ///< by balance

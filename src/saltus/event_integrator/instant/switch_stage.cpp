@@ -1,14 +1,19 @@
 #include "saltus/event_integrator/instant/switch_stage.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "saltus/base/at.hpp"
 #include "saltus/event_integrator/decide/continuations.hpp"
+#include "saltus/event_integrator/decide/projected_fields.hpp"
 #include "saltus/event_integrator/decide/tied_indicators.hpp"
 #include "saltus/event_integrator/instant/rest_stage.hpp"
 #include "saltus/event_integrator/mode/at_surface.hpp"
+#include "saltus/event_integrator/mode/kept_by_sliding.hpp"
 
 namespace saltus::event_integrator {
 namespace {
@@ -30,6 +35,24 @@ bool jumps_while_sliding(RunState& run, int surface) {
 void insert_ascending(std::vector<int>& list, int surface) {
   const auto behind = std::lower_bound(list.begin(), list.end(), surface);
   if (behind == list.end() || *behind != surface) list.insert(behind, surface);
+}
+
+/// Kinks that are zero all along what is slid on: they are there, too, where that ends or another one is met.
+void add_kinks_kept(const RunState& run, SwitchingPoint& point) {
+  const auto& state = run.here.state;
+  if (state.sliding.empty()) return;
+  std::vector<double> values;
+  std::optional<ProjectedFields> fields;
+  for (int j = 0; j < run.kernel.switching_functions(); ++j) {
+    if (run.switching.layout.surfaces[at(j)].role != model::SwitchingRole::kink || contains(point.at_zero, j)) continue;
+    if (!fields) {
+      fields.emplace(run.kernel, point);
+      values.resize(at(run.kernel.event_functions()));
+      run.kernel.functions(point.t, point.x, state.alpha.data(), values.data());
+    }
+    const bool is_zero = std::abs(values[at(j)]) <= fields->noise(j);
+    if (is_zero && is_kept_by_sliding(run.kernel, state, j, point.t, point.x)) insert_ascending(point.at_zero, j);
+  }
 }
 
 }  // namespace
@@ -55,6 +78,7 @@ bool collect_surfaces(const InstantContext& c, const Located& located, double lo
     insert_ascending(point.at_zero, function.index);
     point.touched.push_back(function.index);
   }
+  if (!point.touched.empty()) add_kinks_kept(run, point);
   return true;
 }
 

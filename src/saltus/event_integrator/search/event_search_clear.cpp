@@ -40,10 +40,12 @@ bool EventSearch::is_confirmed(const ode::DenseStep& step, const Hit& hit) {
   return hit.sign * rate.value < turned * hit.sign * hit.slope;
 }
 
-/// Whether a zero of a user function is one of its roundings, as the surfaces that are slid on keep it.
+/// Whether a zero of a user function or a kink is one of its roundings, as the surfaces that are slid on keep it.
 bool EventSearch::is_rounding(const ode::DenseStep& step, const Hit& hit) {
   const auto& function = mode_.functions[hit.function];
-  if (function.kind != FunctionKind::user || mode_.state.sliding.empty() || !may_be_an_error(step, hit)) return false;
+  const bool is_kink = function.kind == FunctionKind::surface && kernel_.layout().surfaces[at(function.index)].is_kink;
+  const bool holds_nothing = is_kink || function.kind == FunctionKind::user;
+  if (!holds_nothing || mode_.state.sliding.empty() || !may_be_an_error(step, hit)) return false;
   step.evaluate(hit.theta, x_.data());
   return is_kept_by_sliding(kernel_, mode_.state, function.index, step.t + hit.theta * step.h, x_.data());
 }

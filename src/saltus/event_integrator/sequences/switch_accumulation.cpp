@@ -40,18 +40,20 @@ void SwitchAccumulation::note(const ModeChange& change) {
   note_rates(alpha_);
 }
 
-/// Of all surfaces whose mode changes; false where one of them does not hold a solution: a kink, or a time.
+/// Of all surfaces whose mode changes, but for kinks, which hold no solution: those that switch with others are none of
+/// the sequence. False where nothing else does, or a time.
 bool SwitchAccumulation::find_labels(const ModeState& before) {
   labels_.clear();
   slid_.clear();
   bool holds = true;
   for_each_difference(before.mode, here_.state.mode, [&](std::size_t j) {
     const auto role = switching_context_.layout.surfaces[j].role;
+    if (role == model::SwitchingRole::kink) return;
     holds = holds && (role == model::SwitchingRole::listed || role == model::SwitchingRole::region);
     labels_.push_back(label_of(static_cast<int>(j), here_.state.mode[j]));
     slid_.push_back(before.mode[j] == 0);
   });
-  return holds;
+  return holds && !labels_.empty();
 }
 
 /// How short cycles of the last switch may get.

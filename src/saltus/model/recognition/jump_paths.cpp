@@ -30,6 +30,7 @@ bool is_continuous(const Tape& whole, const Surface& surface, int node, std::siz
   for (int k = 0; k < end_of_tiny; k = k + 1 == usual_starts ? first_tiny : k + 1) {
     std::vector<double> scale;
     Point point = start_point(tape, variables, k);
+    profile.hold_others(point);  // psi may hold some: with others the point is not on the surface
     if (!projection.onto(0.0, point, scale)) continue;
     profile.at(point, scale);
     const auto jumps = profile.exceeds(0, jump_of);

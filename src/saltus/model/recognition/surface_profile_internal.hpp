@@ -36,6 +36,8 @@ class SurfaceProfile {
   SurfaceProfile(const Tape& tape, const Surface& surface, std::span<const int> targets, bool with_cells,
                  OtherSelections others = OtherSelections::signs);
 
+  /// Gives the selections of the other surfaces their values at a point.
+  void hold_others(Point& point);
   /// @param scale  sizes of the coordinates of psi, 0 for the others
   void at(Point point, const std::vector<double>& scale);
 
@@ -47,7 +49,6 @@ class SurfaceProfile {
  private:
   enum class Rounding { bounded, ignored };
 
-  void hold_others(Point& point);
   [[nodiscard]] double triples(Point& point, const std::vector<double>& scale, std::vector<Triple>& triples,
                                Rounding rounding);
 

@@ -1,6 +1,7 @@
 // Which functions are zero on a higher-order set, and what holds them there.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -24,7 +25,8 @@ constexpr std::size_t most_surfaces = 8;
 /// Grows a set function by function.
 class SetSearch {
  public:
-  SetSearch(const SwitchingContext& s, const ModeState& state, double t, std::vector<double>& x, double resolved)
+  SetSearch(const SwitchingContext& s, const ModeState& state, double t, std::vector<double>& x, double resolved,
+            std::vector<NestedSelection> nested)
       : s_(s),
         state_(state),
         sliding_(state.sliding),
@@ -36,6 +38,7 @@ class SetSearch {
         surfaces_(s.kernel) {
     for (const int j : sliding_) alpha_[at(j)] = 0.5;
     corners_.resize(std::size_t{1} << sliding_.size(), std::vector<double>(x.size()));
+    set_.nested = std::move(nested);
   }
 
   std::optional<HigherOrderSet> run() {
@@ -110,6 +113,7 @@ class SetSearch {
       for (std::size_t row = 0; row < sliding_.size(); ++row) {
         trial[at(sliding_[row])] = (corner >> row & 1U) != 0 ? 1.0 : 0.0;
       }
+      read_nested(set_.nested, trial);
       s_.kernel.field(t_, x.data(), trial.data(), corners_[corner].data());
       result[corner] = functions_.velocity(i, corners_[corner]);
       terms = std::max(terms, functions_.velocity_terms(i, corners_[corner]));
@@ -218,6 +222,7 @@ class SetSearch {
       if (!used[row]) set_.undetermined.push_back(sliding_[row]);
     }
     std::sort(set_.undetermined.begin(), set_.undetermined.end());
+    if (!set_.nested.empty() && set_.balances.size() > 1) return refuse("a nested switching function");
     if (!unused_change_nothing(used)) return refuse("the motion depends on a selection that nothing determines");
     HigherOrderField field(s_.kernel);
     field.enter(set_, sliding_, alpha_);
@@ -264,39 +269,57 @@ class SetSearch {
   std::string problem_;
 };
 
-/// Whether a function around held surfaces has the sign of its mode in all regions that meet there: then it changes
-/// nothing.
-bool keeps_its_sign(const evaluation::ModelKernel& kernel, const ModeState& state, int function,
-                    const std::vector<int>& held, double t, const double* x) {
-  if (held.size() > most_surfaces) return false;
-  std::vector<double> values(at(kernel.event_functions()));
-  for (const auto& alpha : corners_at(state, held)) {
-    kernel.functions(t, x, alpha.data(), values.data());
-    if (!(values[at(function)] * state.mode[at(function)] > 0.0)) return false;
-  }
-  return true;
-}
-
-/// What of the surfaces cannot be held: kinks that no other one of them holds the sign of, and those inside functions
-/// that are not held and may be zero there.
-std::string find_obstacle(const SwitchingContext& s, const ModeState& state, double t, const double* x) {
-  const auto& kernel = s.kernel;
-  std::vector<int> inside;
-  for (int j = 0; j < kernel.switching_functions(); ++j) {
-    const auto held = sliding_inside(kernel, state, j);
-    if (held.empty()) continue;
-    if (!contains(state.sliding, j)) {
-      if (!keeps_its_sign(kernel, state, j, held, t, x)) return "a nested switching function";
-      continue;
-    }
-    inside.insert(inside.end(), held.begin(), held.end());
-  }
+/// Kinks that no other function of the held ones holds the sign of, and other surfaces that cannot be held.
+std::string find_obstacle(const SwitchingContext& s, const ModeState& state) {
   for (const int j : state.sliding) {
     const auto role = s.layout.surfaces[at(j)].role;
-    const bool is_held_kink = role == model::SwitchingRole::kink && contains(inside, j);
+    const auto holds = [&](int i) { return contains(s.kernel.inner(i), j); };
+    const bool is_held_kink =
+        role == model::SwitchingRole::kink && std::any_of(state.sliding.begin(), state.sliding.end(), holds);
     if (role != model::SwitchingRole::listed && !is_held_kink) return "a kink";
   }
   return {};
+}
+
+/// The held surfaces inside a function, and inside those inside it that have both signs.
+std::vector<int> held_inside(const evaluation::ModelKernel& kernel, const ModeState& state, int function,
+                             const std::vector<NestedSelection>& nested) {
+  std::vector<int> inside = sliding_inside(kernel, state, function);
+  for (const auto& inner : nested) {
+    if (!contains(kernel.inner(function), inner.function)) continue;
+    for (const int j : inner.inside) {
+      if (!contains(inside, j)) inside.push_back(j);
+    }
+  }
+  return inside;
+}
+
+/// The functions around held surfaces that have both signs in the regions that meet there, away from zero in all of
+/// them; nullopt where one may be zero.
+std::optional<std::vector<NestedSelection>> find_nested(const evaluation::ModelKernel& kernel, const ModeState& state,
+                                                        double t, const double* x) {
+  std::vector<NestedSelection> found;
+  std::vector<double> values(at(kernel.event_functions()));
+  for (int j = 0; j < kernel.switching_functions(); ++j) {
+    if (contains(state.sliding, j)) continue;
+    NestedSelection nested{j, held_inside(kernel, state, j, found), {}};
+    if (nested.inside.empty()) continue;
+    if (nested.inside.size() > most_surfaces) return std::nullopt;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto& alpha : corners_at(state, nested.inside)) {
+      read_nested(found, alpha);
+      kernel.functions(t, x, alpha.data(), values.data());
+      nested.alpha.push_back(values[at(j)] > 0.0 ? 1.0 : 0.0);
+      least = std::min(least, std::abs(values[at(j)]));
+    }
+    const double own = state.mode[at(j)] > 0 ? 1.0 : 0.0;
+    const bool keeps_sign =
+        std::all_of(nested.alpha.begin(), nested.alpha.end(), [&](double alpha) { return alpha == own; });
+    if (!(least > (keeps_sign ? 0.0 : smallest_jump(size_of(kernel, j, t, x, state.alpha.data(), 0.0)))))
+      return std::nullopt;
+    if (!keeps_sign) found.push_back(std::move(nested));
+  }
+  return found;
 }
 
 }  // namespace
@@ -310,8 +333,10 @@ std::optional<HigherOrderSet> find_higher_order_set(const SwitchingContext& swit
   };
   if (state.sliding.empty() || state.sliding.size() > most_surfaces) return refuse("too many surfaces");
   if (!switching_context.affine_in_alpha) return refuse("selections do not enter affinely");
-  if (const auto why = find_obstacle(switching_context, state, t, x.data()); !why.empty()) return refuse(why);
-  SetSearch search(switching_context, state, t, x, resolved);
+  if (const auto why = find_obstacle(switching_context, state); !why.empty()) return refuse(why);
+  auto nested = find_nested(switching_context.kernel, state, t, x.data());
+  if (!nested) return refuse("a nested switching function");
+  SetSearch search(switching_context, state, t, x, resolved, std::move(*nested));
   auto found = search.run();
   if (!found) problem = search.take_problem();
   return found;

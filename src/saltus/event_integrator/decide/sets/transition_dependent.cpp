@@ -10,6 +10,7 @@
 
 #include "saltus/event_integrator/decide/transition_internal.hpp"
 #include "saltus/event_integrator/field/higher_order.hpp"
+#include "saltus/event_integrator/mode/resolution.hpp"
 #include "saltus/switching/selections/selection_complementarity.hpp"
 #include "saltus/switching/table/additive_map.hpp"
 
@@ -31,6 +32,24 @@ std::optional<switching::AdditiveMap> additive_velocities(const SwitchingContext
   auto map = switching::additive_map(meeting.size(), velocities);
   if (!map || !map->effects.all_finite() || !map->constant.all_finite()) return std::nullopt;
   return map;
+}
+
+/// Where all of them are slid on and some are about to be left, selections are at their bounds: what they would be
+/// beyond these a little later along what is held decides.
+std::optional<switching::AdditiveMap> velocities_that_decide(const SwitchingContext& s, const ModeState& before,
+                                                             const ModeState& state, const SwitchingPoint& met) {
+  if (!before.higher || met.at_zero != before.sliding) return additive_velocities(s, state, met);
+  HigherOrderField field(s.kernel);
+  field.enter(*before.higher, before.sliding, before.alpha);
+  field.evaluate(met.t, met.x);
+  const double h = look_ahead(met.time_scale);
+  std::vector<double> x(met.x, met.x + s.kernel.states());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * field.motion()[i];
+  SwitchingPoint later = met;
+  later.t += h;
+  static_cast<void>(field.project(later.t, x.data()));
+  later.x = x.data();
+  return additive_velocities(s, state, later);
 }
 
 /// Whether selections in [0, 1] are determined on all sliding surfaces, as usual.
@@ -143,7 +162,7 @@ std::optional<Transition> decide_dependent(const SwitchingContext& s, const Mode
   for (const int j : switching_point.at_zero) {
     if (state.mode[at(j)] == 0 && !contains(meeting, j)) set_surface(state, j, 1, 1.0);
   }
-  const auto velocities = additive_velocities(s, state, met);
+  const auto velocities = velocities_that_decide(s, before, state, met);
   if (!velocities) return std::nullopt;
   const auto solution = switching::solve_complementarity(velocities->effects, velocities->constant, 1e-9);
   for (std::size_t i = 0; i < meeting.size(); ++i) {

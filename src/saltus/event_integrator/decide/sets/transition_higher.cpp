@@ -17,10 +17,21 @@ namespace {
 /// Regions around a higher-order set that are looked at for other continuations.
 constexpr std::size_t most_regions = 16;
 
-/// A state that leaves these surfaces to the sides of a corner (bit i: the i-th of them), if its field agrees.
+/// Leaves surfaces to the sides of a corner (bit i: the i-th of them), and reads those around them anew there.
+void set_region(const SwitchingContext& s, const SwitchingPoint& switching_point, const std::vector<int>& surfaces,
+                std::size_t corner, ModeState& state) {
+  set_to_corner(state, surfaces, corner);
+  const auto alpha = ProjectedFields(s.kernel, switching_point).corner_alpha(state.alpha, surfaces, corner);
+  for (int j = 0; j < s.kernel.switching_functions(); ++j) {
+    const double selection = alpha[at(j)];
+    if (selection != state.alpha[at(j)]) set_surface(state, j, selection > 0.5 ? 1 : -1, selection);
+  }
+}
+
+/// A state that leaves these surfaces to the sides of a corner, if its field agrees.
 std::optional<Transition> leave_to(const SwitchingContext& s, ModeState state, const SwitchingPoint& switching_point,
                                    const std::vector<double>& x, const std::vector<int>& surfaces, std::size_t corner) {
-  set_to_corner(state, surfaces, corner);
+  set_region(s, switching_point, surfaces, corner, state);
   int rooted = -1;
   if (!leads_into_its_region(s, state, switching_point, x, surfaces)) {
     // Explicit steps from a root overshoot.
@@ -101,10 +112,9 @@ std::optional<Transition> leave(const SwitchingContext& s, const ModeState& befo
   state.higher.reset();
   std::optional<Transition> left;
   if (leaving.surfaces.size() < before.sliding.size()) {
-    set_to_corner(state, leaving.surfaces, leaving.corner);
+    set_region(s, switching_point, leaving.surfaces, leaving.corner, state);
     std::vector<double> point = x;
-    left = is_dependent(before) ? hold_dependent(s, state, switching_point, point, problem)
-                                : hold(s, state, switching_point, point, problem);
+    left = hold(s, state, switching_point, point, problem);
     if (left && !leads_into_its_region(s, left->state, switching_point, point, leaving.surfaces)) left.reset();
     if (left) {
       for (const int j : leaving.surfaces) left->zero_order[at(j)] = 2;
@@ -218,11 +228,18 @@ std::optional<Transition> leave_at_once(const SwitchingContext& s, const ModeSta
   return left;
 }
 
-/// Surfaces are met whose gradients depend on those of the others.
-Transition meet_dependent(const SwitchingContext& s, const ModeState& before, const SwitchingPoint& switching_point) {
+/// Surfaces whose gradients depend on each other are met or left.
+Transition decide_about_dependent(const SwitchingContext& s, const ModeState& before,
+                                  const SwitchingPoint& switching_point) {
   std::string problem;
-  if (auto next = decide_dependent(s, before, switching_point, problem)) return std::move(*next);
-  return failed(switching_point, before, s, "others are met, and " + problem);
+  auto next = decide_dependent(s, before, switching_point, problem);
+  if (!next) return failed(switching_point, before, s, problem);
+  std::vector<int> left;
+  for (const int j : before.sliding) {
+    if (next->state.mode[at(j)] != 0) left.push_back(j);
+  }
+  if (!left.empty()) next->reason = fmt::format("{}: no selection holds them any more", names(s.layout, left));
+  return std::move(*next);
 }
 
 /// A surface is crossed behind which no selections hold the set any more.
@@ -370,11 +387,7 @@ Transition decide_from_higher_order(const SwitchingContext& s, const ModeState& 
     if (!contains(before.sliding, j)) met.push_back(j);
   }
   if (is_dependent(before)) {
-    // Functions that move nothing are no reason to decide about those that are held.
-    const auto acting = acting_surfaces(s, before, switching_point);
-    const bool acts = std::any_of(met.begin(), met.end(), [&](int j) { return contains(acting, j); });
-    if (acts || (!met.empty() && exits.empty())) return meet_dependent(s, before, switching_point);
-    if (!exits.empty()) return leave_balances(s, before, switching_point, x);
+    if (!met.empty() || !exits.empty()) return decide_about_dependent(s, before, switching_point);
   }
   if (met.size() > 1 || (!met.empty() && !exits.empty())) {
     return failed(switching_point, before, s, "several things happen at once");
