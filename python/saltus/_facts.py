@@ -182,7 +182,7 @@ class Facts(Columns):
     def penetration(self) -> float | None:
         """With contacts: the largest depth of all rows, 0 without any.
 
-        >>> saltus.catalogue("falling-rod").simulate(until=2).penetration
+        >>> round(saltus.catalogue("falling-rod").simulate(until=2).penetration, 12)
         0.0
         """
         return self._facts.get("penetration")

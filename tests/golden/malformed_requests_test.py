@@ -100,8 +100,6 @@ class CommandLine(RequestTest):
         ("simulate", "m.toml", "--until", "nan"): ["--until nan"],
         ("simulate", "m.toml", "--until", "-1"): ["until (-1) is not after from (0)"],
         ("simulate", "m.toml", "--until=1,5"): ["--until 1,5"],
-        ("simulate", "m.toml", "--rtol", "10"): ["rtol = 10: with 1 no digit is right", "e.g. rtol = 1e-8"],
-        ("simulate", "m.toml", "--rtol", "1e-300"): ["doubles carry 2.2e-16"],
         ("simulate", "m.toml", "--rtol", "0"): ["--rtol 0: error: expected a finite number > 0, found 0"],
         ("simulate", "m.toml", "--method", "euler"): ['expected "event"', 'found "euler"'],
         ("simulate", "m.toml", "--integrator", "rk4"): ['"dopri5", "dop853", "radau5", "radau9", "radau13" or "taylor"', 'found "rk4"'],

@@ -189,7 +189,7 @@ class Diagram(Page):
         ends = "[...document.querySelector('section svg').querySelectorAll('.end')].map((one) => one.dataset.run)"
         self.assertEqual(self.value(ends), ["2"])
         self.assertIn("after t = 5", self.value("document.querySelector('section h2').textContent"))
-        self.assertIn("where a run has no events", self.value("document.querySelector('section header').textContent"))
+        self.assertIn("where a run has no \"peak\"", self.value("document.querySelector('section header').textContent"))
         # Nothing is drawn of times that no run reaches.
         self.value("(() => { const box = document.querySelector('.after'); box.value = '50';"
                    " box.dispatchEvent(new Event('change')); })()")

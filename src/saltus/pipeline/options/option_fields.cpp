@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
-#include "saltus/base/rounding_unit.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
 namespace saltus::pipeline {
@@ -378,12 +377,6 @@ std::optional<OptionProblem> find_problem_of_span(const SimulateOptions& options
 }
 
 std::optional<OptionProblem> find_problem_of_tolerances(const SimulateOptions& options) {
-  if ((options.rtol > 0.0 && options.rtol < rounding_unit) || options.rtol >= 1.0) {
-    return problem("rtol",
-                   fmt::format("rtol = {}: with 1 no digit is right, and doubles carry {:.2g} of a number",
-                               options.rtol, rounding_unit),
-                   "choose what lies between, e.g. rtol = 1e-8");
-  }
   if (!(options.rtol + options.atol > 0.0)) {
     return problem("atol", "rtol and atol are both 0", "one of them must be positive, e.g. rtol = 1e-8");
   }
