@@ -45,7 +45,7 @@ class StretchPoints {
       t += length;
     }
     std::erase_if(list, [](const Points& points) { return points.empty(); });
-    for (auto& points : list) points.front().variable = points.back().variable = -1;
+    for (auto& points : list) points.back().variable = -1;
     return list;
   }
 

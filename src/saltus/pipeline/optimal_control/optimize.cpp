@@ -127,10 +127,11 @@ Expected<result::Result> judged_result(const model::Ocp& ocp, const OptimizeOpti
   return result;
 }
 
-/// Whether the motion itself is another one than the solution's.
-bool differs(const result::Result& result) {
-  return result.status.termination == Termination::verification_failed &&
-         std::isfinite(result.optimization->verification->interval_defect);
+/// The interval in which the motion itself is farthest from the solution, where that is too far.
+std::optional<int> differing_interval(const result::Result& result) {
+  if (result.status.termination != Termination::verification_failed) return std::nullopt;
+  const auto& verification = *result.optimization->verification;
+  return std::isfinite(verification.interval_defect) ? std::optional(verification.interval) : std::nullopt;
 }
 
 /// Of the objective, relative: what costs more is another motion.
@@ -165,20 +166,21 @@ Expected<result::Result> optimize(const model::Ocp& ocp, const OptimizeOptions& 
   if (!found) return tl::unexpected(found.error());
   const double objective = found->result.optimization->objective;
   const double most = objective + worth_a_distance * std::abs(objective);
-  for (auto last = *found; differs(last.result) && !ocp.physical;) {
+  auto missed_in = differing_interval(found->result);
+  while (missed_in && !ocp.physical) {
     OptimizeOptions rest = asked;
     rest.mpcc.time_limit = solver::time_left(asked.mpcc, whole.seconds());
-    if (!keep_off_touched(rest, observers, last.result.optimization->verification->interval, *solved)) break;
+    if (!keep_off_touched(rest, observers, *missed_in, *solved)) break;
     auto next = judged(ocp, asked, observers, *solved);
     if (!next) return tl::unexpected(next.error());
-    last = std::move(*next);
-    if (!(last.result.optimization->objective <= most)) break;
-    if (!is_done(last.result.status.termination)) continue;
-    last.warnings.push_back(fmt::format(
+    if (!(next->result.optimization->objective <= most)) break;
+    missed_in = differing_interval(next->result);
+    if (!is_done(next->result.status.termination)) continue;
+    next->warnings.push_back(fmt::format(
         "what the solution would only touch it is kept off by up to {:.2g}, so that its motion does not switch between "
         "two stages; without that the objective is {:.6g}",
         solved->distance, objective));
-    found = last;
+    found = std::move(next);
   }
   for (const auto& warning : found->warnings) observers.on_warning(warning);
   auto& result = found->result;

@@ -199,10 +199,11 @@ Resimulation::Piece Resimulation::piece(std::vector<double> start, IntegrationOp
   return piece;
 }
 
-Resimulation::Segment Resimulation::in_pieces(std::size_t k, const IntegrationOptions& options, Restart restart,
+Resimulation::Segment Resimulation::in_pieces(std::size_t k, Piece last, Restart restart,
                                               const std::function<bool()>& is_interrupted) {
   const double rounding = at_start * (path_->times[k + 1] - path_->times[k]);
-  Piece last = piece(path_->nodes[k], options, mode_at_start(*path_, k), is_interrupted);
+  IntegrationOptions options = last.options;
+  options.initial_mode.clear();  // that of its start
   std::optional<Integration> before;
   std::vector<double> off(path_->nodes[k].size(), 0.0);
   bool was_chosen = last.segment.was_chosen;
@@ -230,12 +231,14 @@ Resimulation::Segment Resimulation::in_pieces(std::size_t k, const IntegrationOp
 
 Resimulation::Segment Resimulation::from_node(std::size_t k, const IntegrationOptions& options, Restart restart,
                                               const IsNear& is_near, const std::function<bool()>& is_interrupted) {
-  auto whole = piece(path_->nodes[k], options, mode_at_start(*path_, k), is_interrupted).segment;
-  if (whole.run.status.termination == Termination::stopped_by_user) return whole;
-  if (whole.is_complete && is_near(whole.run.final.x)) return whole;
-  auto pieces = in_pieces(k, options, restart, is_interrupted);
+  auto whole = piece(path_->nodes[k], options, mode_at_start(*path_, k), is_interrupted);
+  const auto& [run, is_complete, was_chosen, moved] = whole.segment;
+  if (run.status.termination == Termination::stopped_by_user || (is_complete && is_near(run.final.x))) {
+    return std::move(whole.segment);
+  }
+  auto pieces = in_pieces(k, whole, restart, is_interrupted);
   const bool is_nearer = pieces.is_complete && pieces.was_chosen && is_near(pieces.run.final.x);
-  return is_nearer ? std::move(pieces) : std::move(whole);
+  return is_nearer ? std::move(pieces) : std::move(whole.segment);
 }
 
 Resimulation::Segment Resimulation::interval(std::size_t k, const IsNear& is_near,

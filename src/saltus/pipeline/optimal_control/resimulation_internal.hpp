@@ -54,7 +54,8 @@ class Resimulation {
   enum class Restart { at_plan, where_it_is };
   [[nodiscard]] Segment from_node(std::size_t k, const event_integrator::IntegrationOptions& options, Restart restart,
                                   const IsNear& is_near, const std::function<bool()>& is_interrupted);
-  [[nodiscard]] Segment in_pieces(std::size_t k, const event_integrator::IntegrationOptions& options, Restart restart,
+  /// @param last  the whole of it, from node k
+  [[nodiscard]] Segment in_pieces(std::size_t k, Piece last, Restart restart,
                                   const std::function<bool()>& is_interrupted);
   /// In the wanted mode if that is one of those that are possible.
   [[nodiscard]] Piece piece(std::vector<double> start, event_integrator::IntegrationOptions options,
