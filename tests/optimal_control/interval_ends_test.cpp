@@ -86,12 +86,13 @@ TEST(OcpIntervalEnds, BlocksStopBeforeAnIntervalEnds) {
   expect_block(2, 0.649, 2, "terminal_cost = \"10*(x - 0.3)^2\"\n", 0.1568443);
 }
 
-/// J = 0.0974 where the block rests at the edge of stick, and does not go back.
+/// J = 0.0974 where the block rests at the edge of stick, and does not go back; 0.0442 where it stops exactly between
+/// the intervals. The best one goes on sliding back, slowly.
 TEST(OcpIntervalEnds, BlocksAreNotHeldAtTheEdgeOfStick) {
   expect_block(1, 0.458, 3,
                "terminal_cost = \"10*(x - 0.3)^2 + 0.5*v^2\"\nreformulation = \"stewart\"\n"
                "[optimize.mpcc]\nfirst = \"relaxed\"\n",
-               0.0442437);
+               0.0421331);
 }
 
 /// A ball that lands exactly where the horizon ends, with J = 0.2406; before, it rests for a while. With three elements

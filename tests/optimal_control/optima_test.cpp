@@ -26,6 +26,59 @@ TEST(OcpOptima, StewartAnitescuFromFiftyStarts) {
   }
 }
 
+/// To do nothing is an optimum, too, of J = 108: from open selections of dry friction nothing else is found.
+TEST(OcpOptima, APendulumWithDryFrictionSwingsUp) {
+  const auto result = optimized(stated(R"toml(
+[model]
+name = "swing-up"
+[states]
+th = 3.141592653589793
+w = 0
+[controls]
+u = { lower = -4, upper = 4 }
+[dynamics]
+th = "w"
+w = "9.81*sin(th) + u - 0.6*sign(w)"
+[optimize]
+horizon = 4
+control_intervals = 20
+elements = 2
+running_cost = "0.1*u^2 + (1 - cos(th)) + 0.05*w^2"
+terminal_cost = "50*(1 - cos(th)) + 5*w^2"
+)toml"));
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_LT(result.optimization->objective, 9.79);
+}
+
+/// With nine intervals an impact at the end of the fifth one: found from the motion of the guessed controls, which costs
+/// as much as any other start. From the first start alone T = 0.8978.
+TEST(OcpOptima, ABlockBouncesOffAWallAndSlidesBackInLeastTime) {
+  const auto result = optimized(stated(R"toml(
+[model]
+name = "wall-bounce"
+[states]
+x = 0
+v = 0
+[controls]
+F = { initial = 10, lower = 0, upper = 20 }
+[mechanics]
+positions = ["x"]
+velocities = ["v"]
+force = { v = "F - 0.6*9.81*sign(v)" }
+[[contacts]]
+name = "wall"
+gap = "1 - x"
+restitution = 0.8
+[optimize]
+horizon = { free = true, initial = 1, lower = 0.2, upper = 3 }
+control_intervals = 9
+minimize_time = true
+terminal_constraints = ["x == 0", "v <= -2"]
+)toml"));
+  EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
+  EXPECT_NEAR(result.optimization->objective, 0.67758, 1e-4);
+}
+
 /// Every element in which the state crosses is a false optimum. Where little is smoothed, the start decides in which
 /// one it ends; strong smoothing leads to one and the same, which is wrong by the order of the steps, too.
 TEST(OcpOptima, StewartAnitescuWithoutSwitchDetectionStopsAtFalseOptima) {

@@ -51,9 +51,9 @@ class ComparedLoops {
 
   /// Where it ended; where it failed, best_start() and last_solved() say where to begin another path.
   [[nodiscard]] PathEnd follow(const Attempt& first, const std::vector<mpcc::NamedStart>& others) {
-    const auto is_cheaper = [&](const mpcc::NamedStart& other) { return has_lower_cost(other.w, first.w); };
-    const bool any_cheaper = std::any_of(others.begin(), others.end(), is_cheaper);
-    if (any_cheaper) compared_ = std::min(compared_, small());
+    // The same states with other selections cost the same, and may lead elsewhere.
+    const auto is_no_dearer = [&](const mpcc::NamedStart& other) { return has_no_higher_cost(other.w, first.w); };
+    if (std::any_of(others.begin(), others.end(), is_no_dearer)) compared_ = std::min(compared_, small());
     best_start_ = first.w;
     std::vector<Attempt> starts, rest;
     add_start(first, sigmas_, starts);
@@ -61,7 +61,7 @@ class ComparedLoops {
     // Many starts are worth more than a second sigma.
     const std::vector<double> sigmas = random_starts > 0 ? std::vector{sigmas_.back()} : sigmas_;
     for (const auto& other : others) {
-      const bool is_compared = random_starts > 0 || is_cheaper(other);
+      const bool is_compared = random_starts > 0 || is_no_dearer(other);
       add_start(beside(first, other.w, other.name), sigmas, is_compared ? starts : rest);
     }
     for (int seed = 1; seed <= random_starts; ++seed) {
@@ -91,8 +91,8 @@ class ComparedLoops {
     run_.problem.functions(w, c);
     return c.all_finite() && std::isfinite(run_.problem.objective(w));
   }
-  [[nodiscard]] bool has_lower_cost(const linalg::Vector& a, const linalg::Vector& b) const {
-    return is_defined(a) && run_.problem.objective(a) < run_.problem.objective(b);
+  [[nodiscard]] bool has_no_higher_cost(const linalg::Vector& a, const linalg::Vector& b) const {
+    return is_defined(a) && run_.problem.objective(a) <= run_.problem.objective(b);
   }
   static Attempt beside(const Attempt& first, const linalg::Vector& w, const std::string& name) {
     Attempt attempt = first;

@@ -25,6 +25,8 @@ namespace {
 
 /// Of each interval.
 constexpr int steps = 5;
+/// Between an impulse and what restitution gives back: a body that comes into contact in a step is stopped in the next.
+constexpr std::size_t delay = 2;
 /// Where multipliers begin.
 constexpr double small = 0.01;
 
@@ -43,7 +45,7 @@ std::vector<int> selections_in(const System& system, const std::vector<SX>& part
 }
 
 /// What is evaluated in a step, by number; behind it the surfaces.
-enum Part : std::size_t { rates, outputs, gaps, velocities, responses, friction, surfaces };
+enum Part : std::size_t { rates, outputs, gaps, velocities, responses, friction, restitution, surfaces };
 
 /// With all contacts open.
 std::vector<SX> parts_of(const System& system) {
@@ -51,16 +53,9 @@ std::vector<SX> parts_of(const System& system) {
   const auto constants = model::Activity().values();
   const SX open =
       SX::repmat(SX(std::vector<double>(constants.begin(), constants.end())), 1, contacts.activities.size2());
-  return SX::substitute(
-      {system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses, contacts.friction},
-      {SX::vec(contacts.activities)}, {SX::vec(open)});
-}
-
-bool is_plastic(const System& system) {
-  const auto values = casadi::Function("restitution", {system.p}, {system.contacts.restitution})(
-      std::vector<casadi::DM>{casadi::DM(system.parameter_values)});
-  const auto all = values.front().get_elements();
-  return std::all_of(all.begin(), all.end(), [](double value) { return value == 0.0; });
+  return SX::substitute({system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses,
+                         contacts.friction, contacts.restitution},
+                        {SX::vec(contacts.activities)}, {SX::vec(open)});
 }
 
 /// @param used  selections
@@ -74,8 +69,7 @@ bool is_known(const Ocp& ocp, const std::vector<int>& used) {
     return role != model::SwitchingRole::discrete && role != model::SwitchingRole::region;
   });
   return has_gaps && are_steps && static_cast<std::ptrdiff_t>(system.jumps.size()) <= of_contacts &&
-         system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() &&
-         ocp.stage_slacks.empty() && is_plastic(system);
+         system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() && ocp.stage_slacks.empty();
 }
 
 }  // namespace
@@ -196,9 +190,13 @@ class Builder {
     const SX &gap = values[gaps], &velocity = values[velocities], &response = values[responses];
     const casadi_int m = gap.numel();
     SX changes = SX::zeros(response.size1());
+    auto& normals = normals_.emplace_back(m, 1);
+    const std::size_t number = normals_.size() - 1;
     for (casadi_int i = 0; i < m; ++i) {
-      const SX normal = multiplier();
+      SX normal = multiplier();
+      normals(i) = normal;
       pair(normal, gap(i));
+      if (number >= delay) normal += values[restitution](i) * normals_[number - delay](i);
       changes += response(casadi::Slice(), i) * normal;
       const auto& contact = contacts.contacts[at(i)];
       if (!contact.has_friction) continue;
@@ -235,7 +233,8 @@ class Builder {
   foreign::Statement statement_;
   casadi::Function functions_;
   SX horizon_, parameters_ = SX(0, 1), initial_state_ = SX(0, 1);
-  SX outputs_;  ///< at the end of the last step
+  SX outputs_;               ///< at the end of the last step
+  std::vector<SX> normals_;  ///< impulses in each step
 };
 
 std::vector<double> ends_of_steps(int intervals) {

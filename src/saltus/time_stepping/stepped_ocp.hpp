@@ -27,11 +27,12 @@ struct Motion {
 /// States a problem with contacts whose steps are implicit Euler's, with impulses p >= 0 and friction b over a step h:
 ///   M (v' - v) = h F + N p + T b,  q' = q + h v',  0 <= p _|_ gap(q') >= 0,
 ///   0 <= b+- _|_ s +- T'v' >= 0,  0 <= s _|_ mu p - sum b >= 0
-/// [stewart1996]. Collisions are plastic, and need no elements of their own; the error is O(h).
+/// [stewart1996]. Collisions need no elements of their own; the error is O(h). Of an impulse p a contact with
+/// restitution e gives e p back two steps later: Poisson's law.
 class SteppedOcp {
  public:
-  /// Returns nothing where there are no contacts, or anything that is not stated so: restitution above 0, other jumps,
-  /// cells, measurements, complementarities of the user's.
+  /// Returns nothing where there are no contacts, or anything that is not stated so: other jumps, cells,
+  /// measurements, complementarities of the user's.
   /// Cost: linear in the number of steps.
   [[nodiscard]] static std::unique_ptr<SteppedOcp> make(const model::Ocp& ocp, int intervals, const Motion& guess);
   ~SteppedOcp();

@@ -73,6 +73,23 @@ TEST(TomlOptimizeSettings, SettingsReachEveryKey) {
   EXPECT_FALSE(model->description.states[0].free);
 }
 
+TEST(TomlOptimizeSettings, ConstraintsAreReplaced) {
+  const auto model = parsed(smallest);
+  ASSERT_TRUE(model.has_value());
+  const auto one = with_setting(*model, "optimize.path_constraints", "v <= 1");
+  ASSERT_TRUE(one.has_value()) << one.error().message;
+  EXPECT_EQ(one->description.optimize->path_constraints.size(), 1U);
+  const auto two = with_setting(*one, "optimize.path_constraints", "[\"v <= 2\", \"v >= -2\"]");
+  ASSERT_TRUE(two.has_value()) << two.error().message;
+  EXPECT_EQ(two->description.optimize->path_constraints.size(), 2U);
+  const auto none = with_setting(*two, "optimize.terminal_constraints", "[]");
+  ASSERT_TRUE(none.has_value()) << none.error().message;
+  EXPECT_TRUE(none->description.optimize->terminal_constraints.empty());
+  const auto at_stages = with_setting(*two, "optimize.path_constraints_at", "stages");
+  ASSERT_TRUE(at_stages.has_value()) << at_stages.error().message;
+  EXPECT_EQ(at_stages->description.optimize->path_constraints_at, model::ConstraintPoints::stages);
+}
+
 TEST(TomlOptimizeSettings, SettingsThatAreWrongAreRefused) {
   const auto model = parsed(smallest);
   ASSERT_TRUE(model.has_value());
@@ -83,7 +100,9 @@ TEST(TomlOptimizeSettings, SettingsThatAreWrongAreRefused) {
   EXPECT_EQ(message("optimize.elements", "0").substr(0, 35), "expected a whole number >= 1 or a l");
   EXPECT_EQ(message("optimize.elemens", "1"), "unknown option optimize.elemens");
   EXPECT_EQ(message("optimize.horizon", "0"), "horizon: expected a length of time > 0, found 0");
-  EXPECT_EQ(message("optimize.path_constraints", "q<=1"), "'path_constraints' cannot be set on the command line");
+  EXPECT_EQ(message("optimize.path_constraints_at", "nodes").substr(0, 8), "expected");
+  EXPECT_EQ(message("optimize.path_complementarities", "q"),
+            "'path_complementarities' cannot be set on the command line");
   EXPECT_EQ(message("states.v.free", "true"), "'v' has no two bounds");
   const auto without = parse_model("[model]\nname = 'm'\n[states]\nx = 0\n[dynamics]\nx = 1\n", "m.toml");
   ASSERT_TRUE(without.has_value());

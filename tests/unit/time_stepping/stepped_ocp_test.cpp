@@ -109,9 +109,22 @@ TEST(SteppedOcp, ItsErrorIsOfFirstOrder) {
   }
 }
 
-TEST(SteppedOcp, RestitutionIsNotStated) {
+/// It comes to the ground with a speed of 2 and leaves it with 1 some two steps later: at 0.1 s again on its top of 0.05.
+TEST(SteppedOcp, RestitutionGivesBack) {
   const auto ocp = ocp_of(falling("restitution = 0.5\n"));
-  EXPECT_FALSE(SteppedOcp::make(ocp, 4, resting(ocp, 4)));
+  double before = 0.0;
+  for (const int intervals : {8, 16, 32}) {
+    double top = 0.0;
+    const auto motion = solved(ocp, intervals);
+    const std::size_t middle = motion.states.size() * 5 / 8;
+    for (std::size_t k = middle; k < motion.states.size(); ++k) top = std::max(top, motion.states[k][1]);
+    const double error = std::abs(top - 0.05);
+    if (before > 0.0) {
+      EXPECT_NEAR(before / error, 2.0, 0.4);
+    }
+    before = error;
+  }
+  EXPECT_LT(before, 3e-3);
 }
 
 TEST(SteppedOcp, StepsAreEquallyManyInEachInterval) {

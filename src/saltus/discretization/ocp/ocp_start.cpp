@@ -158,6 +158,7 @@ void OcpProblem::set_start(const OcpGuessValues& guess) {
 void OcpProblem::add_start(std::string name, const OcpGuessValues& guess) {
   auto& added = implementation_->other_starts.emplace_back(mpcc::NamedStart{std::move(name), implementation_->start});
   StartWriter(*implementation_->structure, guess, added.w).write();
+  if ((added.w - implementation_->start).max_abs() == 0.0) implementation_->other_starts.pop_back();
 }
 
 void OcpProblem::set_start(linalg::Vector w) {

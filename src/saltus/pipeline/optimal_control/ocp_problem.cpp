@@ -201,6 +201,9 @@ Expected<StatedProblem> state_problem(const model::Ocp& ocp, const OptimizeOptio
   if (options.start_from) {
     take_elements(ocp, *dcs, *kernel, *options.start_from, **problem);
   } else {
+    guess.simulated = true;
+    (*problem)->add_start("selections by the signs of the guessed states", guess);
+    guess.simulated = options.start == StartValues::simulated;
     for (auto& [name, states] : begin->others) {
       guess.states = std::move(states);
       (*problem)->add_start(std::move(name), guess);

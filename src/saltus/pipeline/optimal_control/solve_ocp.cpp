@@ -19,8 +19,6 @@ using result::Termination;
 
 /// Times that intervals may get an element more.
 constexpr int most_rounds = 3;
-/// Motions with contacts differ in their collisions, and each order of them has optima of its own.
-constexpr int compared_starts_with_contacts = 4;
 /// Of the objective of time stepping, relative.
 constexpr double error_of_steps = 0.05;
 /// Of the objective: by less an element more is not worth it.
@@ -202,8 +200,6 @@ Expected<SolvedOcp> solve_ocp(const model::Ocp& ocp, const OptimizeOptions& opti
   solver::SolveOptions wanted = one_start(options, observers);
   wanted.threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   wanted.make_workplace = [&] { return another_place(ocp, options); };
-  const bool has_start = options.start_from != nullptr;
-  if (!wanted.compared_starts && ocp.physical && !has_start) wanted.compared_starts = compared_starts_with_contacts;
   const Stopwatch solving;
   if (auto error = solve_either_way(ocp, options, wanted, solved)) return tl::unexpected(std::move(*error));
   if (wanted.time_limit) *wanted.time_limit -= solving.seconds();

@@ -17,7 +17,7 @@ namespace {
 constexpr double last_sigma = 1e-6;
 /// Of constraints, for the same reason.
 constexpr double feasible = 1e-3;
-constexpr int most_of_steps = 1500;  // iterations of one start
+constexpr int most_of_steps = 1500;  // iterations of all starts together
 /// So large that motions hardly know of contacts, and so small that they stay near their start.
 constexpr double large_sigma = 1.0, small_sigma = 0.01;
 
@@ -46,15 +46,18 @@ std::optional<solver::Solution> best_of(const std::vector<Beginning>& beginnings
   adapters::HighsLpcc highs;
   const Stopwatch clock;
   std::optional<solver::Solution> best;
+  int left = std::min(wanted.iteration_limit, most_of_steps);
   for (const auto& [w, sigma] : beginnings) {
-    if (wanted.is_interrupted()) break;
+    if (wanted.is_interrupted() || left <= 0) break;
     solver::SolveOptions one = wanted;
+    one.iteration_limit = left;
     one.sigma_initial = sigma;
     one.time_limit = solver::time_left(wanted, clock.seconds());
     auto solution = solver::solve(problem, ipopt, highs, one, solver::Start{.w = w, .multipliers = {}});
     if (!solution) continue;
     for (const auto& step : solution->homotopy) record.homotopy.push_back(named(step));
     record.iterations += solution->iterations;
+    left -= solution->iterations;
     record.evaluation_seconds += solution->evaluation_seconds;
     record.solver_seconds += solution->solver_seconds;
     const auto& of = solution->certificate;
@@ -84,7 +87,6 @@ std::optional<SteppedStart> stepped_start(const model::Ocp& ocp, const OptimizeO
   if (!stepped) return std::nullopt;
   wanted.crossover = false;
   wanted.schedule.sigma_final = last_sigma;
-  wanted.iteration_limit = std::min(wanted.iteration_limit, most_of_steps);
   wanted.compared_starts = 0;
   wanted.starts = 1;
   wanted.make_workplace = {};

@@ -68,7 +68,7 @@ const std::array fields_of_mpcc{
     number_or_none_field<compared_starts_of, auto_word, SolveOptions>(
         "compared_starts", Numbers{.whole = true, .from = 0.0, .up_to = most_starts},
         "Random starts beside the start whose relaxed problems are compared; the path of the lowest objective goes on "
-        "first (solver = structured, steering = direct). auto: 4 with contacts, else 0."),
+        "first (solver = structured, steering = direct). auto: 0."),
     choice_field<relaxation_of, relaxations, SolveOptions>("method", "How complementarities are relaxed by sigma."),
     choice_field<steering_of, steerings, SolveOptions>(
         "steering", "What makes sigma small: its bound alone, or a price on the sum or the largest of the products."),
