@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "saltus/base/contracts.hpp"
@@ -131,9 +130,8 @@ Attempt Stepper::attempt(RightHandSide f, double t, const double* x, const doubl
   known_ = nullptr;
   if (series_) {
     took_series_ = stages.linear != nullptr;
-    const std::size_t size = n * sizeof(double);
-    series_known_ = series_known_ && took_series_ && t == t_ && std::memcmp(start_.data(), x, size) == 0 &&
-                    std::memcmp(stages_.data(), slope, size) == 0;
+    series_known_ = series_known_ && took_series_ && t == t_ && std::equal(x, x + n, start_.data()) &&
+                    std::equal(slope, slope + n, stages_.data());
   }
   for (std::size_t i = 0; i < n; ++i) start_[i] = x[i];
   for (std::size_t i = 0; i < n; ++i) stages_[i] = slope[i];
