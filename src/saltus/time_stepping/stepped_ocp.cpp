@@ -53,7 +53,7 @@ std::vector<SX> parts_of(const System& system) {
       SX::repmat(SX(std::vector<double>(constants.begin(), constants.end())), 1, contacts.activities.size2());
   return SX::substitute(
       {system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses, contacts.friction},
-      {SX::vec(contacts.activities)}, {SX::vec(open)});
+      {SX::vec(contacts.activities), contacts.forces}, {SX::vec(open), SX::zeros(contacts.forces.size())});
 }
 
 bool is_plastic(const System& system) {
