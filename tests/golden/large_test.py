@@ -1,5 +1,6 @@
 """Large systems: cost by counts, which do not depend on the machine; what is shown of them."""
 
+import itertools
 import json
 import sys
 
@@ -18,6 +19,64 @@ CHAIN_OF_FIVE = (
     0.016588560032445757, 0.15027915983057896, 1.1033939423135588, 1.6068188324285455, 1.8261479022443725,
     2.4283928248715365, 5.82806615651795, 6.9537881341652135, 7.918104800519034, 8.030641902647353, 8.872319622744786,
     13.830418084357017, 14.215681452193769)
+
+
+HEAP = """[model]
+name = "heap"
+[parameters]
+r = 0.2
+mu = 0.3
+e = {e}
+[states]
+{states}
+[mechanics]
+positions = [{positions}]
+velocities = [{velocities}]
+mass = [{mass}]
+potential = "9.81*({heights})"
+{contacts}
+[simulate]
+until = {until}
+"""
+
+
+def contact(name, gap, tangent):
+    row = ", ".join(f'{position} = "{value}"' for position, value in tangent.items())
+    return f'[[contacts]]\nname = "{name}"\ngap = "{gap}"\nfriction = "mu"\nrestitution = "e"\ntangent = {{ {row} }}\n'
+
+
+def pair(i, j):
+    """Discs i and j, with the tangent at a right angle to the line between their centres."""
+    distance = f"sqrt((x{i} - x{j})^2 + (y{i} - y{j})^2)"
+    along, across = f"(y{i} - y{j})/{distance}", f"(x{i} - x{j})/{distance}"
+    tangent = {f"x{i}": along, f"y{i}": f"-{across}", f"x{j}": f"-{along}", f"y{j}": across, f"h{i}": "r", f"h{j}": "r"}
+    return contact(f"c{i}_{j}", f"{distance} - 2*r", tangent)
+
+
+def heap(discs, width, until, e=0.0, out_of_reach=0):
+    """Discs above each other, in rows, fall into a box; further floors far below them touch nothing."""
+    in_a_row = max(2, int(width / 0.45))
+    states, contacts = [], []
+    for i in range(discs):
+        row, place = divmod(i, in_a_row)
+        shift = 0.02 * ((7 * i) % 5 - 2)
+        states.append(f"x{i} = {0.27 + 0.45 * place + 0.3 * shift}\ny{i} = {0.25 + 0.45 * row + abs(shift)}\nh{i} = 0")
+        states.append(f"vx{i} = {5 * shift}\nvy{i} = 0\nw{i} = 0")
+        contacts.append(contact(f"floor{i}", f"y{i} - r", {f"x{i}": "1", f"h{i}": "r"}))
+        contacts.append(contact(f"left{i}", f"x{i} - r", {f"y{i}": "-1", f"h{i}": "r"}))
+        contacts.append(contact(f"right{i}", f"{width} - x{i} - r", {f"y{i}": "1", f"h{i}": "r"}))
+    contacts += [pair(i, j) for i, j in itertools.combinations(range(discs), 2)]
+    contacts += [contact(f"far{k}", f"y0 + {100 + k}", {"x0": "1"}) for k in range(out_of_reach)]
+    names = [(f"x{i}", f"y{i}", f"h{i}") for i in range(discs)], [(f"vx{i}", f"vy{i}", f"w{i}") for i in range(discs)]
+    positions, velocities = ([f'"{name}"' for name in itertools.chain(*groups)] for groups in names)
+    mass = []
+    for i in range(3 * discs):
+        row = ["0"] * (3 * discs)
+        row[i] = '"r^2/2"' if i % 3 == 2 else "1"
+        mass.append("[" + ", ".join(row) + "]")
+    return HEAP.format(e=e, states="\n".join(states), positions=", ".join(positions), velocities=", ".join(velocities),
+                            mass=",\n".join(mass), heights=" + ".join(f"y{i}" for i in range(discs)),
+                            contacts="\n".join(contacts), until=until)
 
 
 def wall(base, until):
@@ -169,6 +228,45 @@ class Large(tool.ToolTest):
                    + "[dynamics]\n" + "".join(f'x{i} = "-x{i}"\n' for i in range(entries)) + "[simulate]\nuntil = 1\n")
         _, error = self.run_tool("simulate", "m.toml", code=2)
         self.assertIn("too large for a model", error)
+
+
+class Heaps(tool.ResultTest):
+    def test_contacts_out_of_reach_change_nothing(self):
+        """With them forces are solved for in numbers; without them they are expressions."""
+        for e, integrator in ((0.0, "auto"), (0.3, "auto"), (0.0, "radau5")):
+            with self.subTest(e=e, integrator=integrator):
+                few, many = (self.result(heap(2, 0.95, 1, e, number), "--integrator", integrator) for number in (0, 12))
+                self.assertEqual([(event["kind"], event["surfaces"]) for event in many["events"]],
+                                 [(event["kind"], event["surfaces"]) for event in few["events"]])
+                for event, other in zip(many["events"], few["events"], strict=True):
+                    self.assertAlmostEqual(event["t"], other["t"], delta=1e-6)
+                for value, other in zip(many["final"]["x"], few["final"]["x"], strict=True):
+                    self.assertAlmostEqual(value, other, delta=1e-6)
+                for name in ("force(floor0)", "friction(floor0)"):
+                    own = few["outputs"].index(name)
+                    self.assertAlmostEqual(many["final"]["outputs"][many["outputs"].index(name)], few["final"]["outputs"][own], delta=1e-6)
+
+    def test_discs_come_to_rest_in_a_box(self):
+        result = self.result(heap(4, 0.95, 2))
+        self.assertEqual(result["status"]["termination"], "completed")
+        self.assertLess(result["penetration"], 1e-9)
+        self.falls(result)
+        velocities = result["final"]["x"][12:]
+        self.assertLess(max(abs(v) for v in velocities), 1.0)
+
+    def test_a_heap_of_twenty_discs_begins_at_once(self):
+        """250 contacts: what is prepared grows with their number, not with its third power."""
+        result = self.result(heap(20, 2.3, 0.15))
+        self.assertEqual(result["status"]["termination"], "completed")
+        self.assertLess(result["penetration"], 1e-9)
+        self.assertTrue(result["events"])
+        self.falls(result)
+
+    def falls(self, result):
+        energy = result["outputs"].index("energy")
+        rows = [row[energy] for row in result["trajectory"]["outputs"]]
+        for before, after in zip(rows, rows[1:]):
+            self.assertLessEqual(after, before + 1e-6)
 
 
 if __name__ == "__main__":

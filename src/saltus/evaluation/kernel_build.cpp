@@ -97,8 +97,9 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
   start.regions = RegionConstants(system, p, parameters);
   start.cells = CellFunctions(system, p, parameters);
   first_activity = parameters.size();
-  p = SX::vertcat({p, SX::vec(system.contacts.activities)});
-  parameters.resize(first_activity + at(system.contacts.activities.numel()));
+  forces = system.contacts.forces;
+  p = SX::vertcat({p, SX::vec(system.contacts.activities), forces});
+  parameters.resize(at(p.numel()));
   start.activities.resize(system.contacts.contacts.size());
   for (std::size_t i = 0; i < start.activities.size(); ++i) start.set_activity(first_activity, i, {});
   places = SymbolPlaces(symbols());
@@ -117,20 +118,6 @@ CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system
   compile_functions(system);
   prepares(compiling, 6, compiled_parts);
   find_layout(system);
-}
-
-/// Guards of contacts are numbers of order 1, in the units of their modes; a gap is a length.
-SX CompiledModel::sizes_of_contact_guards(const model::System& system) const {
-  SX sizes = SX::zeros(phi.numel(), 1);
-  const auto& [contacts, activities] = std::tie(system.contacts.contacts, system.contacts.activities);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const auto guards = static_cast<int>(system.jumps[at(contacts[i].jump)].guards.numel());
-    const SX closed = activities(model::Activity::closed, static_cast<casadi_int>(i));
-    for (int g = 0; g < guards; ++g) {
-      sizes(functions.jumps.guard(contacts[i].jump, g)) = contacts[i].has_gap && g == 0 ? closed : SX(1.0);
-    }
-  }
-  return sizes;
 }
 
 /// Of event functions that are not affine, over t and x; 0 for the others.
@@ -175,25 +162,23 @@ void CompiledModel::compile_functions(const model::System& system) {
   functions.gradients.resize(at(phi.numel()));
   compile_conditions(system);
   start.cells.compile(arguments, system, input);
-  if (const auto& touching = system.contacts; !touching.empty()) {
-    contact_sizes = {touching.gap.numel(), touching.rows.size1(), touching.rows.size2()};
-    const SX acceleration =
-        system.u.numel() == 0 ? touching.acceleration : SX::substitute(touching.acceleration, system.u, input);
-    functions.contact_function = ModelFunction("saltus_contacts", arguments,
-                                               {touching.gap, touching.velocity, touching.rows, touching.responses,
-                                                acceleration, touching.friction, touching.restitution});
-  }
+  if (!system.contacts.empty()) compile_contacts(system);
 }
 
 void CompiledModel::find_structure(const model::System& system) {
   const int n_phi = static_cast<int>(phi.numel());
   affine = affine_entries(phi, symbols());
-  inner = dependencies_of_rows(phi, alpha);
-  const auto on_states = dependencies_of_rows(phi, x);
+  const SX read = with_what_forces_read(phi, system);
+  inner = dependencies_of_rows(read, alpha);
+  const auto on_states = dependencies_of_rows(read, x);
+  if (!forces.is_empty()) {
+    const auto on_forces = dependencies_of_rows(phi, forces);
+    for (std::size_t j = 0; j < affine.size(); ++j) affine[j] = affine[j] && on_forces[j].empty();
+  }
   const auto is_discrete = [&](int state) { return static_cast<bool>(discrete[at(state)]); };
-  if (start.cells.size() > 0) on_cells = start.cells.dependencies(dependencies_of_rows(phi, p));
+  if (start.cells.size() > 0) on_cells = start.cells.dependencies(dependencies_of_rows(read, p));
   discrete_guards.assign(at(n_phi), false);
-  const auto on_time = jump_guards.empty() ? std::vector<std::vector<int>>() : dependencies_of_rows(phi, t);
+  const auto on_time = jump_guards.empty() ? std::vector<std::vector<int>>() : dependencies_of_rows(read, t);
   for (std::size_t k = 0; k < jump_guards.size(); ++k) {
     const auto j = at(first_jump_guard) + k;
     const bool in_cell = !on_cells.empty() && std::any_of(on_cells[j].begin(), on_cells[j].end(), std::identity{});
@@ -202,7 +187,7 @@ void CompiledModel::find_structure(const model::System& system) {
                            return system.switching[at(selection)].role == model::SwitchingRole::discrete;
                          });
   }
-  free.depends = normal_dependencies(free.f);
+  free.depends = normal_dependencies(with_what_forces_read(free.f, system));
   free.neighbours = neighbours_in(free.depends);
 }
 
@@ -232,7 +217,7 @@ const std::optional<ode::JacobianPattern>& CompiledModel::jacobian_pattern() {
 
 const ode::JacobianPattern* ModelKernel::jacobian_pattern() const {
   auto& self = *implementation_;
-  if (self.motion != &self.free || !self.regions.groups().empty()) return nullptr;
+  if (self.motion != &self.free || !self.regions.groups().empty() || self.contact_solve.is_needed()) return nullptr;
   if (!self.free_pattern) {
     const auto& pattern = self.compiled->jacobian_pattern();
     self.free_pattern = pattern ? &*pattern : nullptr;
@@ -241,9 +226,10 @@ const ode::JacobianPattern* ModelKernel::jacobian_pattern() const {
 }
 
 void CompiledModel::compile_field(CompiledMotion& target, const std::string& name) const {
-  const FieldSplit split = split_field(target.f, symbols());
-  target.field = ModelFunction(name, {t, x, split.symbols}, {split.varying});
-  target.constants = ModelFunction(name + "_constants", {p, alpha}, {split.constants});
+  const SX moving = SX::vertcat({x, forces}), fixed = p(casadi::Slice(0, p.numel() - forces.numel()));
+  const FieldSplit split = split_field(target.f, {t, moving, fixed, alpha});
+  target.field = ModelFunction(name, {t, moving, split.symbols}, {split.varying});
+  target.constants = ModelFunction(name + "_constants", {fixed, alpha}, {split.constants});
 }
 
 void CompiledModel::compile_conditions(const model::System& system) {

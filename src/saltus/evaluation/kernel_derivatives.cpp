@@ -52,6 +52,9 @@ const ModelFunction& CompiledModel::gradient(int function) {
 const ModelFunction& CompiledModel::lie_derivative(CompiledMotion& motion, int function, int order) {
   auto& known = motion.lie_derivatives[{function, order}];
   if (known.is_null()) {
+    if (function >= 0 && !forces.is_empty() && SX::depends_on(lie_expression(motion, function, order - 1), forces)) {
+      return known;
+    }
     known = ModelFunction("lie_derivative", {t, x, p, alpha}, {lie_expression(motion, function, order)});
   }
   return known;
@@ -84,6 +87,7 @@ const LinearFieldFunction& CompiledModel::linear(CompiledMotion& motion) {
 const ModelFunction& CompiledModel::jacobian(CompiledMotion& motion, const ode::JacobianPattern* pattern) {
   if (motion.jacobian) return *motion.jacobian;
   motion.jacobian.emplace();
+  if (!forces.is_empty()) return *motion.jacobian;
   constexpr double most_operations = 1e5;
   const auto n = x.numel();
   const auto directions = pattern != nullptr ? ode::column_groups(*pattern).size() : at(n);
@@ -166,12 +170,18 @@ void ModelKernel::gradient(int function, double t, const double* x, const double
     *rate = rows.rate[at(function)];
     return;
   }
-  auto& gradient = self.gradients[at(function)];
+  self.gradient_at(function, t, x, alpha, row, rate);
+}
+
+void ModelKernel::Implementation::gradient_at(int function, double t, const double* x, const double* alpha, double* row,
+                                              double* rate) {
+  auto& gradient = gradients[at(function)];
   if (gradient.is_null()) {
     const SymbolicLock lock;
-    gradient = self.compiled->gradient(function);
+    gradient = compiled->gradient(function);
   }
-  gradient(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
+  gradient(std::array<const double*, 4>{&t, x, parameters_at(t, x, alpha), alpha}, std::array<double*, 2>{row, rate});
+  if (contact_solve.is_needed()) contact_solve.add_to_gradient(function, row, rate);
 }
 
 void ModelKernel::gradient(int function, double t, const double* x, const double* alpha, AffineRow& row) const {
@@ -205,8 +215,10 @@ double ModelKernel::lie_derivative(int function, int order, double t, const doub
     const SymbolicLock lock;
     derivative = self.compiled->lie_derivative(*self.motion->compiled, function, order);
   }
+  if (derivative.is_null()) return turned_by_forces(function, order, t, x, alpha);
   double value = 0.0;
-  derivative(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{&value});
+  derivative(std::array<const double*, 4>{&t, x, self.parameters_at(t, x, alpha), alpha},
+             std::array<double*, 1>{&value});
   return value;
 }
 
@@ -219,7 +231,8 @@ void ModelKernel::lie_gradient(int function, int order, double t, const double* 
     const SymbolicLock lock;
     gradient = self.compiled->lie_gradient(*self.motion->compiled, function, order);
   }
-  gradient(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 2>{row, rate});
+  gradient(std::array<const double*, 4>{&t, x, self.parameters_at(t, x, alpha), alpha},
+           std::array<double*, 2>{row, rate});
 }
 
 bool ModelKernel::is_affine(int function) const { return implementation_->compiled->affine[at(function)]; }
@@ -229,6 +242,7 @@ void ModelKernel::affine_rows(const double* alpha, AffineRows& rows) const {
 
 bool ModelKernel::lie_row(int function, FixedState fixed, const double* alpha, AffineRow& row) const {
   auto& self = *implementation_;
+  if (self.contact_solve.is_needed()) return false;
   const auto [entry, is_new] = self.motion->lie_rows.try_emplace({function, fixed.component});
   if (is_new) {
     const SymbolicLock lock;
@@ -242,6 +256,7 @@ bool ModelKernel::lie_row(int function, FixedState fixed, const double* alpha, A
 const ode::LinearField* ModelKernel::linear_field(const double* alpha, ode::LinearField& own) const {
   auto& self = *implementation_;
   auto& motion = *self.motion;
+  if (self.contact_solve.is_needed()) return nullptr;
   if (motion.linear_always) return &*motion.linear_always;
   if (!motion.linear) {
     const SymbolicLock lock;

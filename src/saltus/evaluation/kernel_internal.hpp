@@ -16,6 +16,7 @@
 
 #include "saltus/evaluation/affine_functions_internal.hpp"
 #include "saltus/evaluation/cell_functions_internal.hpp"
+#include "saltus/evaluation/contacts/contact_solve_internal.hpp"
 #include "saltus/evaluation/field_rows_internal.hpp"
 #include "saltus/evaluation/held_motion_internal.hpp"
 #include "saltus/evaluation/jump_functions_internal.hpp"
@@ -75,8 +76,10 @@ struct Motion {
 struct KernelSymbols {
   explicit KernelSymbols(const model::System& system);
 
-  casadi::SX t, x, p, alpha;  ///< p: parameters, then constants, upper and lower ends of cells, then activities
+  /// p: parameters, then constants, upper and lower ends of cells, then activities, then forces that no expression says
+  casadi::SX t, x, p, alpha;
   casadi::SX phi, outputs, input;
+  casadi::SX forces;           ///< the last of p
   std::vector<bool> discrete;  ///< n_x
   int n_psi = 0;
 };
@@ -106,6 +109,7 @@ struct KernelFunctions {
   std::vector<ModelFunction> conditions;  ///< one per [[events]] entry; null for expressions
   JumpFunctions jumps;
   ModelFunction contact_function;  ///< null without contacts
+  ContactSolve contact_solve;
   AffineRowFunctions affine_rows;
   ModelFunction ranges;                  ///< of those that are not affine; null where all are
   std::vector<ModelFunction> gradients;  ///< d phi_j / d (x, t); null before they are first asked for
@@ -168,7 +172,9 @@ struct CompiledModel : KernelSymbols, KernelStructure {
  private:
   casadi::SX lie_expression(CompiledMotion& motion, int j, int order);
   void compile_field(CompiledMotion& target, const std::string& name) const;
+  void compile_contacts(const model::System& system);
   [[nodiscard]] casadi::SX sizes_of_contact_guards(const model::System& system) const;
+  [[nodiscard]] casadi::SX with_what_forces_read(const casadi::SX& expression, const model::System& system) const;
   void compile_functions(const model::System& system);
   [[nodiscard]] ModelFunction range_function() const;
   void find_structure(const model::System& system);
@@ -185,11 +191,8 @@ struct CompiledModel : KernelSymbols, KernelStructure {
 
 /// Holds the last scales: where something happens they are asked for again and again at the same point.
 struct LastScales {
-  std::array<std::vector<double>, 4> arguments;  ///< t, x, p, alpha; empty before the first call
+  LastPoint point;
   std::vector<double> magnitude, slope;
-
-  /// Returns whether they are those of these arguments, bit by bit, and takes the arguments if they are not.
-  [[nodiscard]] bool are_at(const std::array<std::span<const double>, 4>& point);
 };
 
 /// Holds what the user of a kernel changes, and its work space.
@@ -198,6 +201,7 @@ struct KernelContext : KernelValues {
   FieldConstants constants;          ///< work space of field()
   std::vector<double> slope;         ///< work space of rate()
   std::vector<double> gradient_row;  ///< work space of gradient()
+  std::vector<double> moving;        ///< likewise of field(): x and forces
   /// Of functions that are affine and do not hold selections gradients are constants: these rows, once known.
   std::optional<AffineRows> constant_gradients;
   std::map<int, LimitedFunction> limited;                   ///< by event function
@@ -215,6 +219,16 @@ struct ModelKernel::Implementation : KernelFunctions, KernelContext {
   void take_native_field();
   [[nodiscard]] bool has_small_field() const;
   [[nodiscard]] const FieldRows* rows();
+  [[nodiscard]] PointArguments point(const double* t, const double* x, const double* alpha) const;
+  /// Returns the values of p at a point, with forces.
+  [[nodiscard]] const double* parameters_at(double t, const double* x, const double* alpha) {
+    if (contact_solve.is_needed()) contact_solve.solve(point(&t, x, alpha), activities, parameters);
+    return parameters.data();
+  }
+  /// Returns x and the forces behind each other, which field() is made of.
+  [[nodiscard]] const double* with_forces(double t, const double* x, const double* alpha);
+  void scale_forces(double t, const double* x, const double* alpha);
+  void gradient_at(int function, double t, const double* x, const double* alpha, double* row, double* rate);
   [[nodiscard]] const AffineRows& gradients_of_affine();
   /// Counts an interpreted call that is about to be made.
   void count(const ModelFunction& function) {

@@ -36,6 +36,7 @@ void ModelKernel::prepared_field_anyhow(double t, const double* x, const FieldCo
   ++self.field_use.evaluations;
   if (self.motion->direct != nullptr) return self.motion->direct(t, x, constants.values.data(), xdot);
   self.count(self.motion->field);
+  if (self.contact_solve.is_needed()) x = self.with_forces(t, x, constants.alpha.data());
   self.motion->field(std::array<const double*, 3>{&t, x, constants.values.data()}, std::array<double*, 1>{xdot});
 }
 
@@ -80,7 +81,7 @@ Expected<void> ModelKernel::hold(const std::vector<Hold>& holds) {
 void ModelKernel::hold_pressure(double t, const double* x, const double* alpha, double* pressure) const {
   auto& self = *implementation_;
   SALTUS_ASSERT(!self.motion->pressure.is_null());
-  self.motion->pressure(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+  self.motion->pressure(std::array<const double*, 4>{&t, x, self.parameters_at(t, x, alpha), alpha},
                         std::array<double*, 1>{pressure});
 }
 

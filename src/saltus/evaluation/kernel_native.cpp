@@ -59,6 +59,7 @@ Expected<void> ModelKernel::Implementation::start_native() {
                                          &scales,     &output_function, &input_function};
   for (auto* function : jumps.functions()) all.push_back(function);
   if (!contact_function.is_null()) all.push_back(&contact_function);
+  for (auto* function : contact_solve.functions()) all.push_back(function);
   if (!ranges.is_null()) all.push_back(&ranges);
   const bool has_nesting =
       std::any_of(compiled->inner.begin(), compiled->inner.end(), [](const auto& list) { return !list.empty(); });
@@ -71,6 +72,7 @@ Expected<void> ModelKernel::Implementation::start_native() {
 
 /// Nothing as long as everything is interpreted.
 void ModelKernel::Implementation::take_native_field() {
+  if (contact_solve.is_needed()) return;
   free.direct = reinterpret_cast<DirectField>(native.symbol(name_of_direct(free.field.function())));
   if (free.direct == nullptr || !has_small_field()) return;
   const auto stages = [&](const std::string& name) {

@@ -7,7 +7,7 @@ namespace saltus::evaluation {
 
 const std::shared_ptr<const FieldRows>& CompiledModel::rows(CompiledMotion& motion) {
   const SymbolicLock lock;
-  if (!motion.rows) motion.rows = FieldRows::of(motion.field, motion.constants);
+  if (!motion.rows) motion.rows = forces.is_empty() ? FieldRows::of(motion.field, motion.constants) : nullptr;
   return *motion.rows;
 }
 

@@ -3,13 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <utility>
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/symbolic_lock.hpp"
-#include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 
 namespace saltus::evaluation {
@@ -35,21 +33,11 @@ int ModelKernel::controls() const { return static_cast<int>(implementation_->com
 long ModelKernel::field_evaluations() const { return implementation_->field_use.evaluations; }
 const void* ModelKernel::motion() const { return implementation_->motion; }
 
-bool LastScales::are_at(const std::array<std::span<const double>, 4>& point) {
-  const auto is_kept = [&](std::size_t i) {
-    const auto& now = point[i];
-    return arguments[i].size() == now.size() &&
-           (now.empty() || std::memcmp(arguments[i].data(), now.data(), now.size_bytes()) == 0);
-  };
-  if (!arguments[0].empty() && is_kept(0) && is_kept(1) && is_kept(2) && is_kept(3)) return true;
-  for (std::size_t i = 0; i < point.size(); ++i) arguments[i].assign(point[i].begin(), point[i].end());
-  return false;
-}
-
 void ModelKernel::functions(double t, const double* x, const double* alpha, double* values) const {
   auto& self = *implementation_;
   self.count(self.functions);
-  self.functions(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha}, std::array<double*, 1>{values});
+  self.functions(std::array<const double*, 4>{&t, x, self.parameters_at(t, x, alpha), alpha},
+                 std::array<double*, 1>{values});
 }
 
 void ModelKernel::ranges(double t, const double* x, const double* alpha, const double* radii, double* middle,
@@ -60,19 +48,23 @@ void ModelKernel::ranges(double t, const double* x, const double* alpha, const d
     return;
   }
   self.count(self.ranges);
-  self.ranges(std::array<const double*, 5>{&t, x, self.parameters.data(), alpha, radii},
+  self.ranges(std::array<const double*, 5>{&t, x, self.parameters_at(t, x, alpha), alpha, radii},
               std::array<double*, 2>{middle, radius});
+  for (int j = self.compiled->first_jump_guard; self.contact_solve.is_needed() && j < event_functions(); ++j) {
+    if (self.contact_solve.moves(j)) radius[j] = std::numeric_limits<double>::infinity();
+  }
 }
 
 void ModelKernel::scales(double t, const double* x, const double* alpha, double* magnitude, double* slope) const {
   auto& self = *implementation_;
   auto& last = self.last_scales;
-  const auto& p = self.parameters;
-  if (!last.are_at({{{&t, 1}, {x, at(states())}, p, {alpha, at(switching_functions())}}})) {
+  const double* p = self.parameters_at(t, x, alpha);
+  if (!last.point.is_at(self.point(&t, x, alpha))) {
     last.magnitude.resize(at(event_functions()));
     last.slope.resize(last.magnitude.size());
-    self.scales(std::array<const double*, 4>{&t, x, p.data(), alpha},
+    self.scales(std::array<const double*, 4>{&t, x, p, alpha},
                 std::array<double*, 2>{last.magnitude.data(), last.slope.data()});
+    if (self.contact_solve.is_needed()) self.scale_forces(t, x, alpha);
   }
   std::copy(last.magnitude.begin(), last.magnitude.end(), magnitude);
   std::copy(last.slope.begin(), last.slope.end(), slope);
@@ -80,7 +72,7 @@ void ModelKernel::scales(double t, const double* x, const double* alpha, double*
 
 void ModelKernel::outputs(double t, const double* x, const double* alpha, double* values) const {
   auto& self = *implementation_;
-  self.output_function(std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
+  self.output_function(std::array<const double*, 4>{&t, x, self.parameters_at(t, x, alpha), alpha},
                        std::array<double*, 1>{values});
 }
 
@@ -124,34 +116,6 @@ double ModelKernel::jump_priority(int jump, double t, const double* x, const dou
 double ModelKernel::jump_delay(int jump, double t, const double* x, const double* alpha) const {
   auto& self = *implementation_;
   return self.jumps.delay(jump, {&t, x, self.parameters.data(), alpha});
-}
-
-void ModelKernel::contacts(double t, const double* x, const double* alpha, ContactValues& values) const {
-  auto& self = *implementation_;
-  const auto& [m, r, n] = self.compiled->contact_sizes;
-  values.gap.resize(m);
-  values.velocity.resize(r);
-  values.rows.resize(r, n);
-  values.responses.resize(n, r);
-  values.acceleration.resize(r);
-  values.friction.resize(m);
-  values.restitution.resize(m);
-  self.contact_function(
-      std::array<const double*, 4>{&t, x, self.parameters.data(), alpha},
-      std::array<double*, 7>{values.gap.data(), values.velocity.data(), values.rows.data(), values.responses.data(),
-                             values.acceleration.data(), values.friction.data(), values.restitution.data()});
-}
-
-const std::vector<model::Activity>& ModelKernel::activities() const { return implementation_->activities; }
-
-void ModelKernel::set_activity(int contact, const model::Activity& activity) {
-  auto& self = *implementation_;
-  self.KernelValues::set_activity(self.compiled->first_activity, at(contact), activity);
-  self.constant_gradients.reset();
-}
-
-void ModelKernel::set_activities(const std::vector<model::Activity>& activities) {
-  for (std::size_t i = 0; i < activities.size(); ++i) set_activity(static_cast<int>(i), activities[i]);
 }
 
 const std::vector<RegionRange>& ModelKernel::region_groups() const { return implementation_->regions.groups(); }

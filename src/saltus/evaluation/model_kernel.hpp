@@ -286,6 +286,7 @@ class ModelKernel {
   [[nodiscard]] const void* motion() const;
 
  private:
+  [[nodiscard]] double turned_by_forces(int function, int order, double t, const double* x, const double* alpha) const;
   void prepared_field_anyhow(double t, const double* x, const FieldConstants& constants, double* xdot) const;
 
   struct Implementation;

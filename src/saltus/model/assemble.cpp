@@ -361,9 +361,9 @@ class Assembly {
     for (auto& jump : system_.jumps) all.push_back(&jump.guards);
     for (auto& cell : system_.cells) all.push_back(&cell.argument);
     auto& touching = system_.contacts;
-    all.insert(all.end(),
-               {&touching.gap, &touching.velocity, &touching.rows, &touching.responses, &touching.acceleration,
-                &touching.normal_force, &touching.tangential_force, &touching.friction, &touching.restitution});
+    all.insert(all.end(), {&touching.gap, &touching.velocity, &touching.rows, &touching.responses,
+                           &touching.acceleration, &touching.cone, &touching.normal_force, &touching.tangential_force,
+                           &touching.friction, &touching.restitution});
     KnownExpressions known;
     for (auto* expressions : all) graph_.drop_marks(*expressions, known);
   }

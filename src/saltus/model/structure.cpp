@@ -136,6 +136,12 @@ std::vector<std::uint64_t> structure(const System& system) {
   }
   for (const auto& cell : system.cells) writer.symbols(cell.symbols);
   writer.symbols(SX::vec(system.contacts.activities));
+  if (const auto& touching = system.contacts; !touching.forces.is_empty()) {
+    writer.symbols(touching.forces);
+    for (const SX* part : {&touching.rows, &touching.responses, &touching.acceleration, &touching.cone}) {
+      writer.expression(SX::vec(*part));
+    }
+  }
   writer.write_all(system.discrete_states);
   for (const auto& function : system.switching) {
     writer.write(static_cast<std::uint64_t>(function.role));

@@ -283,7 +283,7 @@ void Regulariser::finish() {
     }
   }
   auto& contacts = system.contacts;
-  for (SX* expression : {&contacts.acceleration, &contacts.normal_force, &contacts.tangential_force}) {
+  for (SX* expression : {&contacts.acceleration, &contacts.cone, &contacts.normal_force, &contacts.tangential_force}) {
     if (expression->numel() > 0) continuous(*expression);
   }
   system.alpha = alpha_.empty() ? SX(0, 1) : SX::vertcat(alpha_);

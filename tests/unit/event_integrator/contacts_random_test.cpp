@@ -1,7 +1,9 @@
 // Random bodies with random contacts: nothing passes through, no energy comes from nowhere, every run ends. Modes that
 // hold are those of all combinations, tried one after the other.
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <optional>
 #include <random>
 #include <set>
 #include <vector>
@@ -9,6 +11,7 @@
 #include "run_model.hpp"
 #include "saltus/event_integrator/contact/contact_forces.hpp"
 #include "saltus/event_integrator/contact/impact.hpp"
+#include "saltus/event_integrator/contact/impact_process_internal.hpp"
 #include "saltus/event_integrator/contact/shared_friction.hpp"
 
 namespace saltus::event_integrator::testing {
@@ -194,6 +197,40 @@ TEST(Impacts, NothingClosesBehindThemAndNoEnergyIsGained) {
     }
   }
   EXPECT_GE(ended, 55);
+}
+
+/// A pile of which no contact does anything to those of another one.
+TEST(Impacts, PartsThatDoNothingToEachOtherHaveTheirOwn) {
+  std::mt19937 dice(5);
+  for (int run = 0; run < 10; ++run) {
+    const std::array piles{falling_pile(2, dice), falling_pile(3, dice)};
+    ContactPoint both;
+    both.influence = linalg::Matrix::zero(10, 10);
+    both.velocity = linalg::Vector::zero(10);
+    std::vector<std::vector<int>> rows{{0, 1, 5, 6}, {2, 3, 4, 7, 8, 9}};
+    for (std::size_t pile = 0; pile < piles.size(); ++pile) {
+      const auto& own = piles[pile];
+      for (std::size_t i = 0; i < rows[pile].size(); ++i) {
+        both.velocity(rows[pile][i]) = own.velocity(index(i));
+        for (std::size_t k = 0; k < rows[pile].size(); ++k) {
+          both.influence(rows[pile][i], rows[pile][k]) = own.influence(index(i), index(k));
+        }
+      }
+      both.friction.insert(both.friction.end(), own.friction.begin(), own.friction.end());
+    }
+    both.restitution.assign(5, 0.0);
+    both.tangents.assign(5, 1);
+    both.has_gap.assign(5, true);
+    EXPECT_EQ(parts_of(both, {0, 1, 2, 3, 4}).size(), 2U);
+    const auto together = impact(both, {0, 1, 2, 3, 4});
+    for (std::size_t pile = 0; pile < piles.size(); ++pile) {
+      const auto alone = impact_of_all(piles[pile], std::nullopt);
+      ASSERT_EQ(together.has_value(), alone.has_value());
+      for (std::size_t i = 0; alone && i < rows[pile].size(); ++i) {
+        EXPECT_EQ((*together)(rows[pile][i]), (*alone)(index(i)));
+      }
+    }
+  }
 }
 
 /// Two feet at one height: of their friction one part is open, and follows the share of one of them.

@@ -18,6 +18,10 @@ using ContactForces = switching::PointSolution;
 /// tangential acceleration. Contacts that are not in `resting` are open. It keeps references to the point.
 [[nodiscard]] switching::PointProblem problem_of(const ContactPoint& point, const std::vector<int>& resting);
 
+/// Finds the forces of contacts at rest (switching::solve_point), in parts that do nothing to each other.
+[[nodiscard]] switching::PointSolutions forces_of(const ContactPoint& point, const std::vector<int>& resting,
+                                                  const switching::FaceHints& hints);
+
 /// Finds the forces in given modes. False where the modes contradict each other.
 [[nodiscard]] bool forces_in(const ContactPoint& point, const std::vector<int>& resting,
                              const std::vector<ContactMode>& modes, ContactForces& result);

@@ -33,6 +33,13 @@ struct ContactPoint {
   }
 };
 
+/// Returns the rows of some contacts, in the order of a point that has these alone.
+[[nodiscard]] std::vector<int> rows_of(const ContactPoint& point, const std::vector<int>& contacts);
+/// Returns that point. Sizes of terms stay those of all.
+[[nodiscard]] ContactPoint point_of(const ContactPoint& point, const std::vector<int>& contacts);
+/// Returns contacts in parts that do nothing to each other, in their order.
+[[nodiscard]] std::vector<std::vector<int>> parts_of(const ContactPoint& point, const std::vector<int>& contacts);
+
 /// Reads all but the accelerations and the sizes of terms from the values of contacts at a point.
 void read_contacts(const std::vector<model::Contact>& contacts, const evaluation::ContactValues& values,
                    ContactPoint& point);

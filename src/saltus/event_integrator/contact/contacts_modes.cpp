@@ -21,7 +21,7 @@ std::optional<std::string> Contacts::find_modes(const ContactMoment& moment, con
     resting.clear();
     std::copy_if(touching.begin(), touching.end(), std::back_inserter(resting),
                  [&](int i) { return point.normal_velocity(i) == 0.0; });
-    found = switching::solve_point(problem_of(point, resting), {without, modes_here().modes});
+    found = forces_of(point, resting, {without, modes_here().modes});
     return !found.all.empty();
   };
   const std::vector<std::vector<ContactMode>> none(contacts_.size());

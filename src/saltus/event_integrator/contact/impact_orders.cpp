@@ -21,27 +21,15 @@ constexpr double uncoupled = 1e-14;  ///< relative, of what an impulse of one co
 class Orders {
  public:
   Orders(const ContactPoint& point, const std::vector<int>& touching) {
-    const auto friction = [&](int i) { return point.friction[at(i)]; };
-    has_friction_ = std::any_of(touching.begin(), touching.end(), [&](int i) { return friction(i) > 0.0; });
-    const auto groups = has_friction_ ? point.velocity.size() / point.contacts() : 1;
-    for (linalg::Index group = 0; group < groups; ++group) {
-      for (const int i : touching) rows_.push_back(static_cast<int>(group) * point.contacts() + i);
-    }
-    point_.influence = point.influence.selected(rows_, rows_);
-    point_.velocity = start_ = point.velocity.selected_rows(rows_);
-    for (const int i : touching) {
-      point_.friction.push_back(friction(i));
-      point_.restitution.push_back(point.restitution[at(i)]);
-      point_.tangents.push_back(point.tangents[at(i)]);
-      point_.has_gap.push_back(point.has_gap[at(i)]);
-    }
+    point_ = point_of(point, touching);
+    has_friction_ = std::any_of(point_.friction.begin(), point_.friction.end(), [](double mu) { return mu > 0.0; });
+    start_ = point_.velocity;
     size_ = start_.max_abs();
     find_involved();
   }
 
   /// Contacts that close, and those that they may close.
   [[nodiscard]] const std::vector<int>& involved() const { return involved_; }
-  [[nodiscard]] const std::vector<int>& rows() const { return rows_; }
   [[nodiscard]] bool closes(int i) const { return start_(i) < -settled * size_; }
   [[nodiscard]] bool is_same(const Vector& velocity, const Vector& other) const {
     return (velocity - other).max_abs() <= same * size_;
@@ -141,7 +129,6 @@ class Orders {
   }
 
   ContactPoint point_;
-  std::vector<int> rows_;  ///< by those of this point, of the one with all contacts
   Vector start_;
   double size_ = 0.0;
   bool has_friction_ = false;
@@ -172,7 +159,7 @@ std::optional<OtherEnd> find_other_end(const ContactPoint& point, const std::vec
   if (touching.size() < 2) return std::nullopt;
   Orders orders(point, touching);
   if (orders.agree_by_signs()) return std::nullopt;
-  const Vector together = (point.velocity + point.influence * impulses).selected_rows(orders.rows());
+  const Vector together = (point.velocity + point.influence * impulses).selected_rows(rows_of(point, touching));
   for (const auto& order : orders_of(orders)) {
     const auto velocity = orders.follow(order);
     if (!velocity || orders.is_same(*velocity, together)) continue;

@@ -279,6 +279,7 @@ Point blank_point(const Tape& tape) {
       case VariableKind::control:
       case VariableKind::sampled_control:
       case VariableKind::activity:
+      case VariableKind::force:
         point.push_back(0.0);
         break;
     }

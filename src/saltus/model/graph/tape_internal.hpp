@@ -24,6 +24,7 @@ enum class VariableKind {
   alpha,
   cell,      ///< a constant of a cell; in a set of kinds: of one that jumps
   activity,  ///< a constant of the mode of a contact
+  force,     ///< of a contact, where it is no expression
 };
 
 /// Set of variable kinds, one bit each.
@@ -34,7 +35,7 @@ using KindSet = unsigned;
 inline constexpr KindSet changing_kinds = kind_bit(VariableKind::time) | kind_bit(VariableKind::state) |
                                           kind_bit(VariableKind::discrete) | kind_bit(VariableKind::control) |
                                           kind_bit(VariableKind::sampled_control) | kind_bit(VariableKind::cell) |
-                                          kind_bit(VariableKind::activity);
+                                          kind_bit(VariableKind::activity) | kind_bit(VariableKind::force);
 /// What changes by jumps only.
 inline constexpr KindSet jumping_kinds = kind_bit(VariableKind::discrete) | kind_bit(VariableKind::sampled_control) |
                                          kind_bit(VariableKind::cell) | kind_bit(VariableKind::activity);

@@ -246,7 +246,7 @@ class ContactMotion {
     system_.velocity =
         SX::densify(SX::vertcat({SX::mtimes(normals, v_) + SX::jacobian(system_.gap, time), SX::mtimes(tangents, v_)}));
     system_.responses = motion_.mass.solve(system_.rows.T());
-    const SX bias = SX::mtimes(SX::jacobian(system_.velocity, q_), v_) + SX::jacobian(system_.velocity, time);
+    const SX bias = SX::jtimes(system_.velocity, q_, v_) + SX::jacobian(system_.velocity, time);
     system_.acceleration = SX::densify(SX::mtimes(system_.responses.T(), motion_.force) + bias);
   }
 

@@ -23,8 +23,10 @@ struct ContactSystem {
   casadi::SX responses;                       ///< n x r: M^-1 (N, T)
   casadi::SX acceleration;                    ///< r: rates of `velocity` without contact forces
   casadi::SX activities;                      ///< Activity::constants x m: symbols of what Activity::values() has
+  casadi::SX cone;                            ///< r - m: a tangential force that does not hold is -cone normal force
   casadi::SX normal_force, tangential_force;  ///< m and r - m
-  casadi::SX friction, restitution;           ///< m each, over parameters
+  casadi::SX forces;  ///< r: symbols of them where whoever evaluates the system solves for them; else empty
+  casadi::SX friction, restitution;  ///< m each, over parameters
 
   [[nodiscard]] bool empty() const { return contacts.empty(); }
 };

@@ -35,6 +35,9 @@ class ContactBuild {
   }
 
  private:
+  /// Forces up to which an elimination as an expression is made at once, and evaluated as fast as one in numbers.
+  static constexpr casadi_int most_eliminated = 24;
+
   /// A name of such a constant has a point in it, which no name of a user has.
   void declare_activities() {
     system_.activities = SX::zeros(Activity::constants, m_);
@@ -49,18 +52,42 @@ class ContactBuild {
 
   [[nodiscard]] SX constant(casadi_int i, casadi_int which) const { return system_.activities(which, i); }
 
-  /// Every contact has two equations that its mode blends: the acceleration is 0, or the force is given.
+  /// Every contact has two equations that its mode blends: the acceleration is 0, or the force is given. An elimination
+  /// is an expression over all contacts; in numbers it is one over those that are closed.
   void set_forces() {
     const casadi_int m = m_;
-    const SX influence = SX::mtimes(system_.rows, system_.responses);  // d acceleration / d force
     // Tangential ones first: their block has no minor that is 0, as M^-1 has none.
     std::vector<casadi_int> order;
+    bool varies = false;
+    system_.cone = SX::zeros(system_.rows.size1() - m, 1);
     for (casadi_int row = m; row < system_.rows.size1(); ++row) {
       const auto& contact = system_.contacts[at_(row % m)];
-      if (row < 2 * m ? contact.has_friction : contact.in_plane) order.push_back(row);
+      if (row < 2 * m ? !contact.has_friction : !contact.in_plane) continue;
+      order.push_back(row);
+      system_.cone(row - m) = system_.friction(row % m) * share(row % m, row / m - 1);
+      varies = varies || contact.friction_varies;
     }
     const auto symmetry = order.empty() ? Symmetry::symmetric : Symmetry::none;
     for (casadi_int i = 0; i < m; ++i) order.push_back(i);
+    if (static_cast<casadi_int>(order.size()) > most_eliminated && !varies) return declare_forces();
+    eliminate_forces(order, symmetry);
+  }
+
+  void declare_forces() {
+    system_.forces = SX::zeros(system_.rows.size1(), 1);
+    for (casadi_int row = 0; row < system_.rows.size1(); ++row) {
+      const casadi_int i = row % m_;
+      system_.forces(row) =
+          recognition_.graph.symbol(fmt::format("{}.force{}", system_.contacts[at_(i)].name, row / m_),
+                                    {.kind = VariableKind::force, .index = static_cast<int>(i)});
+    }
+    system_.normal_force = system_.forces(casadi::Slice(0, m_));
+    system_.tangential_force = system_.forces(casadi::Slice(m_, system_.forces.size1()));
+  }
+
+  void eliminate_forces(const std::vector<casadi_int>& order, Symmetry symmetry) {
+    const casadi_int m = m_;
+    const SX influence = SX::mtimes(system_.rows, system_.responses);  // d acceleration / d force
     const auto n = static_cast<casadi_int>(order.size());
     SX matrix = SX::zeros(n, n), right = SX::zeros(n, 1);
     for (casadi_int r = 0; r < n; ++r) {
@@ -77,7 +104,7 @@ class ContactBuild {
         // Without friction what is not held has no force: its column is 0, as its row is.
         if (c != r && symmetry == Symmetry::symmetric) entry *= constant(order[at_(c)], Activity::carrying);
         if (c == r) entry += 1.0 - held;
-        if (tangential && order[at_(c)] == i) entry += (1.0 - held) * system_.friction(i) * share(i, tangent);
+        if (tangential && order[at_(c)] == i) entry += (1.0 - held) * system_.cone(order[at_(r)] - m);
         matrix(r, c) = entry;
       }
     }

@@ -16,6 +16,7 @@ namespace {
 using Options = std::vector<std::vector<Face>>;
 
 constexpr double most_leaves = 65536.0;
+constexpr double leaves_of_open = 64.0;  ///< as many cost as much as the choice of z that faces leave open
 
 std::vector<Face> faces_of(const Block& block) {
   switch (block.kind) {
@@ -89,24 +90,26 @@ void take_if_held(const PointProblem& problem, double holds, PointSolution& solu
   if (solution.margin >= holds) found.all.push_back(std::move(solution));
 }
 
-/// Of those with one motion the first ones do.
-void search_all(const PointProblem& problem, const Options& options, double holds, PointSolutions& found) {
+/// Of those with one motion the first ones do. False where this costs more than all leaves without open z.
+bool search_all(const PointProblem& problem, const Options& options, double holds, PointSolutions& found) {
   constexpr std::size_t enough = 16;
   std::vector<std::size_t> number(options.size(), 0);
   std::vector<Face> faces(options.size());
   HeldRows rows(problem.constant.size());
   PointSolution solution;
-  for (;;) {
+  for (double cost = 0.0; cost <= most_leaves;) {
     heed_stop();
     for (std::size_t b = 0; b < options.size(); ++b) faces[b] = options[b][number[b]];
     if (solve_least(problem, faces, rows, solution) &&
-        (found.all.size() < enough || moves_otherwise(problem, found, solution)))
+        (found.all.size() < enough || moves_otherwise(problem, found, solution))) {
+      cost += solution.is_open ? leaves_of_open : 0.0;
       take_if_held(problem, holds, solution, found);
+    }
     std::size_t b = 0;
     while (b < options.size() && ++number[b] == options[b].size()) number[b++] = 0;
-    if (b == options.size()) break;
+    if (b == options.size()) return found.complete = true;
   }
-  found.complete = true;
+  return false;
 }
 
 /// Of a solution: what does not move is held, as far as its options go; what slips does so along its y.
@@ -190,11 +193,8 @@ PointSolutions solve_point(const PointProblem& problem, const FaceHints& hints) 
   if (std::all_of(hints.excluded.begin(), hints.excluded.end(), [](const auto& faces) { return faces.empty(); }))
     drop_impossible(problem, options);
   for (const auto& faces : options) leaves *= static_cast<double>(faces.size());
-  if (leaves <= most_leaves) {
-    search_all(problem, options, hints.holds, found);
-  } else {
+  if (leaves > most_leaves || !search_all(problem, options, hints.holds, found))
     search_some(problem, options, hints, found);
-  }
   const auto is_open = [](Face face) { return face == Face::open; };
   if (std::all_of(hints.before.begin(), hints.before.end(), is_open)) return found;
   std::stable_partition(found.all.begin(), found.all.end(),
