@@ -50,8 +50,8 @@ terminal_cost = "50*(1 - cos(th)) + 5*w^2"
   EXPECT_LT(result.optimization->objective, 9.79);
 }
 
-/// With nine intervals an impact at the end of the fifth one: found from the motion of the guessed controls, which costs
-/// as much as any other start. From the first start alone T = 0.8978.
+/// With nine intervals an impact at the end of the fifth one: found from the motion of the guessed controls, which
+/// costs as much as any other start. From the first start alone T = 0.8978.
 TEST(OcpOptima, ABlockBouncesOffAWallAndSlidesBackInLeastTime) {
   const auto result = optimized(stated(R"toml(
 [model]

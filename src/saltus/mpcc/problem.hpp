@@ -1,6 +1,7 @@
 // A mathematical program with complementarity constraints: the seam between whoever states one and whoever solves it.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -123,9 +124,9 @@ class Problem {
   /// Returns other points to begin at, n_w each: where they lead to may be compared. By default none.
   [[nodiscard]] virtual std::vector<NamedStart> other_starts() const { return {}; }
   /// Returns the motion of the controls at w of a dynamical system, with its sides; nothing where there is none, as by
-  /// default.
-  [[nodiscard]] virtual std::optional<NamedStart> motion(ConstVectorView w) {
-    static_cast<void>(w);
+  /// default, or time is over.
+  [[nodiscard]] virtual std::optional<NamedStart> motion(ConstVectorView w, const std::function<bool()>& is_over) {
+    static_cast<void>(w), static_cast<void>(is_over);
     return std::nullopt;
   }
   [[nodiscard]] virtual std::string name(int variable) const;  ///< by default "w[3]"

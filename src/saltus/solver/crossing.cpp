@@ -75,7 +75,7 @@ bool Crossing::solve(const RelaxedPoint& point, const std::vector<mpcc::ActiveSi
 }
 
 bool Crossing::try_motion(mpcc::ConstVectorView controls, const linalg::Vector* relaxed) {
-  const auto motion = run_.problem.motion(controls);
+  const auto motion = run_.problem.motion(controls, [this] { return run_.is_over(); });
   if (!motion || run_.is_over()) return false;
   auto branch = run_.solve_branch(motion->sides, motion->w, motion_limit, "the motion of these controls");
   const bool is_unfinished = branch.report.termination == result::Termination::iteration_limit;

@@ -53,10 +53,10 @@ std::vector<SX> parts_of(const System& system) {
   const auto constants = model::Activity().values();
   const SX open =
       SX::repmat(SX(std::vector<double>(constants.begin(), constants.end())), 1, contacts.activities.size2());
-  return SX::substitute(
-      {system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses, contacts.friction,
-       contacts.restitution},
-      {SX::vec(contacts.activities), contacts.forces}, {SX::vec(open), SX::zeros(contacts.forces.size())});
+  return SX::substitute({system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses,
+                         contacts.friction, contacts.restitution},
+                        {SX::vec(contacts.activities), contacts.forces},
+                        {SX::vec(open), SX::zeros(contacts.forces.size())});
 }
 
 /// @param used  selections

@@ -109,7 +109,8 @@ TEST(SteppedOcp, ItsErrorIsOfFirstOrder) {
   }
 }
 
-/// It comes to the ground with a speed of 2 and leaves it with 1 some two steps later: at 0.1 s again on its top of 0.05.
+/// It comes to the ground with a speed of 2 and leaves it with 1 some two steps later: at 0.1 s again on its top of
+/// 0.05.
 TEST(SteppedOcp, RestitutionGivesBack) {
   const auto ocp = ocp_of(falling("restitution = 0.5\n"));
   double before = 0.0;

@@ -30,7 +30,7 @@ std::optional<Stretch> Motion::step(std::size_t k, const std::vector<double>& le
   const double least = lambda.empty() ? 0.0 : *std::min_element(lambda.begin(), lambda.end());
   const double below = std::max(at_bound, -2.0 * least);
   for (const auto& modes : states_.candidates(lambda, last_.empty() ? states_.on_all(lambda) : last_)) {
-    if (++trials_ > most_trials) return std::nullopt;
+    if (++trials_ > most_trials || is_over_()) return std::nullopt;
     Stretch stretch{.modes = modes, .length = std::min(short_share, rest)};
     auto own = trial_.solve(left, k, modes, stretch.length);
     if (own && trial_.stands_still(left, *own)) {
@@ -86,10 +86,11 @@ std::vector<int> elements_of(const MotionModes& modes) {
   return counts;
 }
 
-std::shared_ptr<const MotionModes> OcpProblem::motion_modes(mpcc::ConstVectorView w) const {
+std::shared_ptr<const MotionModes> OcpProblem::motion_modes(mpcc::ConstVectorView w,
+                                                            const std::function<bool()>& is_over) const {
   const auto& made = *implementation_->structure;
   if (made.kernel.pairs.empty()) return nullptr;
-  Motion motion(made, w);
+  Motion motion(made, w, is_over);
   std::vector<double> left = ElementTrial(made, w).left_of(0);
   MotionModes modes;
   for (std::size_t k = 0; k < made.interval.size(); ++k) {
@@ -101,8 +102,8 @@ std::shared_ptr<const MotionModes> OcpProblem::motion_modes(mpcc::ConstVectorVie
   return std::make_shared<const MotionModes>(std::move(modes));
 }
 
-std::optional<mpcc::NamedStart> OcpProblem::motion(mpcc::ConstVectorView w) {
-  const auto modes = motion_modes(w);
+std::optional<mpcc::NamedStart> OcpProblem::motion(mpcc::ConstVectorView w, const std::function<bool()>& is_over) {
+  const auto modes = motion_modes(w, is_over);
   return modes ? motion(w, *modes) : std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 // The motion of given controls on the elements of a problem: where it switches, elements end.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -14,10 +15,11 @@ namespace saltus::discretization {
 class Motion {
  public:
   /// @param w  horizon, parameters, initial state with its multipliers, and controls
-  Motion(const OcpStructure& made, mpcc::ConstVectorView w) : made_(made), states_(made), trial_(made, w) {}
+  Motion(const OcpStructure& made, mpcc::ConstVectorView w, const std::function<bool()>& is_over)
+      : made_(made), states_(made), trial_(made, w), is_over_(is_over) {}
 
   /// Returns the stretches of interval k behind what is left of it, which becomes what is left of the next one; nothing
-  /// where no mode goes on, they accumulate, or too many have been tried.
+  /// where no mode goes on, they accumulate, too many have been tried, or time is over.
   /// Cost: some forty elements per switch.
   [[nodiscard]] std::optional<Stretches> interval(std::size_t k, std::vector<double>& left);
 
@@ -28,6 +30,7 @@ class Motion {
   const OcpStructure& made_;
   SurfaceStates states_;
   ElementTrial trial_;
+  const std::function<bool()>& is_over_;
   ElementSides::Sides last_{};  ///< modes so far
   int trials_ = 0;              ///< elements of modes that might go on
 };

@@ -125,9 +125,11 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] std::vector<mpcc::NamedStart> other_starts() const override;
   /// Gives elements that end where the motion switches; nothing where an interval has fewer elements than modes, or no
   /// mode goes on.
-  [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w) override;
-  /// Returns the modes of that motion, however many elements it needs; null where there is none.
-  [[nodiscard]] std::shared_ptr<const MotionModes> motion_modes(mpcc::ConstVectorView w) const;
+  [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w,
+                                                       const std::function<bool()>& is_over) override;
+  /// Returns the modes of that motion, however many elements it needs; null where there is none, or time is over.
+  [[nodiscard]] std::shared_ptr<const MotionModes> motion_modes(mpcc::ConstVectorView w,
+                                                                const std::function<bool()>& is_over) const;
   /// Gives the motion of the same controls in modes that are known, of a problem of the same kernel.
   [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w, const MotionModes& modes);
   [[nodiscard]] std::string name(int variable) const override;

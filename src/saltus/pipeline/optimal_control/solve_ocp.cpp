@@ -134,7 +134,10 @@ std::optional<FromSteps> solve_from_steps(const model::Ocp& ocp, const OptimizeO
   if (!start) return std::nullopt;
   stated.problem->add_start("the motion of time stepping", start->guess);
   const linalg::Vector w = stated.problem->other_starts().back().w;
-  const auto modes = stated.problem->motion_modes(w);
+  const auto is_over = [&] {
+    return wanted.is_interrupted() || solver::time_left(wanted, clock.seconds()).value_or(1.0) <= 0.0;
+  };
+  const auto modes = stated.problem->motion_modes(w, is_over);
   if (!modes) return std::nullopt;
   auto elements = discretization::elements_of(*modes);
   for (std::size_t k = 0; k < elements.size(); ++k) elements[k] = std::max(elements[k], stated.elements[k]);
