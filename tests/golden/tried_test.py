@@ -170,6 +170,23 @@ w = "20*(I - p) - 4*w - 0.5*sign(w)"
 until = 300
 """
 
+VALVE = """
+[model]
+name = "sticky valve behind a PI controller"
+[states]
+I = 0
+y = 0
+x = 0
+v = 0
+[dynamics]
+I = "0.5*(1 - y)"
+y = "x - y"
+x = "v"
+v = "50*(3*(1 - y) + I - x) - 10*v - sign(v)"
+[simulate]
+until = 300
+"""
+
 RELAY = """
 [model]
 name = "relay"
@@ -235,6 +252,12 @@ class Tried(tool.ToolTest):
     def simulated(self, text, *arguments, code=0):
         out, err = self.run_tool("simulate", self.write("m.toml", text), "--out", "r.json", *arguments, code=code)
         return json.loads((self.folder / "r.json").read_text(encoding="utf-8")), out, err
+
+    def test_a_sticky_valve_slips_ever_more_slowly(self):
+        """A step that is too long for what has decayed ends beyond a zero that the state has left."""
+        result, _, _ = self.simulated(VALVE, "--integrator", "dopri5")
+        for value, limit in zip(result["final"]["x"], [1.02, 1.0, 1.0, 0.0]):
+            self.assertAlmostEqual(value, limit, delta=1e-9)
 
     def test_a_servo_slips_ever_more_slowly(self):
         """Its speed and its acceleration tend to 0 at the edge of sticking, down to their roundings."""

@@ -41,9 +41,9 @@ class ProjectedFields {
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
   /// Does the same where the velocity alone says it; nullopt where it gives way. Cost: one comparison.
   [[nodiscard]] static std::optional<Motion> motion_by_velocity(double velocity, double scale);
-  /// Returns the motion along the field of a side that the located event has seen psi move by: the one that the solution
-  /// arrives by takes psi through zero, and one that ends sliding takes it away from the surface. No higher derivative
-  /// says otherwise: it holds a multiple of the velocity that the location has left.
+  /// Returns the motion along the field of a side that the located event has seen psi move by: the one that the
+  /// solution arrives by takes psi through zero, and one that ends sliding takes it away from the surface. No higher
+  /// derivative says otherwise: it holds a multiple of the velocity that the location has left.
   [[nodiscard]] Motion motion_seen(const std::vector<double>& alpha, int surface, int side, double velocity,
                                    double scale) const;
   /// Returns whether sliding ends here, as the field of this side has become tangent to the surface.
