@@ -1,5 +1,6 @@
 """Models that people new to Saltus wrote: what they expected of it."""
 
+import csv
 import json
 
 import tool
@@ -152,6 +153,40 @@ I = "e + 2*(us - u)"
 until = 60
 """
 
+SERVO = """
+[model]
+name = "servo with integral action and dry friction"
+[parameters]
+Ki = 0.5
+[states]
+I = 0
+p = 0
+w = 0
+[dynamics]
+I = "Ki*(1 - p)"
+p = "w"
+w = "20*(I - p) - 4*w - 0.5*sign(w)"
+[simulate]
+until = 300
+"""
+
+VALVE = """
+[model]
+name = "sticky valve behind a PI controller"
+[states]
+I = 0
+y = 0
+x = 0
+v = 0
+[dynamics]
+I = "0.5*(1 - y)"
+y = "x - y"
+x = "v"
+v = "50*(3*(1 - y) + I - x) - 10*v - sign(v)"
+[simulate]
+until = 300
+"""
+
 RELAY = """
 [model]
 name = "relay"
@@ -217,6 +252,27 @@ class Tried(tool.ToolTest):
     def simulated(self, text, *arguments, code=0):
         out, err = self.run_tool("simulate", self.write("m.toml", text), "--out", "r.json", *arguments, code=code)
         return json.loads((self.folder / "r.json").read_text(encoding="utf-8")), out, err
+
+    def test_a_sticky_valve_slips_ever_more_slowly(self):
+        """A step that is too long for what has decayed ends beyond a zero that the state has left."""
+        result, _, _ = self.simulated(VALVE, "--integrator", "dopri5")
+        for value, limit in zip(result["final"]["x"], [1.02, 1.0, 1.0, 0.0]):
+            self.assertAlmostEqual(value, limit, delta=1e-9)
+
+    def test_a_servo_slips_ever_more_slowly(self):
+        """Its speed and its acceleration tend to 0 at the edge of sticking, down to their roundings."""
+        self.write("servo.toml", SERVO)
+        for integrator in ["auto", "dopri5", "dop853", "radau5", "radau9", "radau13", "taylor"]:
+            self.run_tool("sweep", "servo.toml", "--over", "Ki=0.1:0.9:41", "--integrator", integrator, "--quiet", "--out",
+                          "servo.csv", code=0)
+            with open(f"{self.folder}/servo.csv", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file))
+            for row in rows:
+                with self.subTest(integrator=integrator, Ki=row["Ki"]):
+                    self.assertEqual(row["status"], "completed")
+                    self.assertLess(int(row["events"]), 100)
+                    for name, value in (("I", 1.025), ("p", 1.0), ("w", 0.0)):  # exp(-0.1*300) is less than 1e-13
+                        self.assertAlmostEqual(float(row[name]), value, delta=1e-9)
 
     def test_a_function_whose_selection_acts_on_nothing_stops_no_run(self):
         result, _, _ = self.simulated(PWM)

@@ -16,10 +16,7 @@ constexpr double shortest_scale = 1e-9;
 bool SwitchSeries::note(double t, const ModeChange& change) {
   if (!change.is_single() && change.mode_before->mode == change.mode_after->mode) return false;
   remember(t);
-  if (t != last_) {
-    changes_.clear();
-    surface_change_.reset();
-  }
+  if (t != last_) begin_anew();
   last_ = t;
   if (!change.is_single()) return is_loop(change.mode_before->mode, change.mode_after->mode);
   SALTUS_ASSERT(changes_.empty() && !surface_change_);

@@ -24,6 +24,11 @@ class SwitchSeries {
   /// Cost: O(1) of one surface later than any change noted so far.
   /// @return whether the same change was made at this very time already: a loop
   bool note(double t, const ModeChange& change);
+  /// Forgets what has changed at this time: behind a limit of switches the same change is none of a loop.
+  void begin_anew() {
+    changes_.clear();
+    surface_change_.reset();
+  }
   /// Returns the time of the last change noted.
   [[nodiscard]] double last() const { return last_; }
   /// Counts an event at t; whether there were too many in too short a time.

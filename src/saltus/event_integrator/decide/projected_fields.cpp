@@ -112,6 +112,21 @@ bool ProjectedFields::turns_within_rounding(const std::vector<double>& alpha, in
   return velocity * bend < 0.0 && std::abs(velocity) <= std::abs(bend) * time;
 }
 
+bool ProjectedFields::is_exit(int surface, int side) const {
+  return contains(side > 0 ? switching_point_.exit_above : switching_point_.exit_below, surface);
+}
+
+Motion ProjectedFields::motion_seen(const std::vector<double>& alpha, int surface, int side, double velocity,
+                                    double scale) const {
+  const bool leaves = is_exit(surface, side);
+  Motion motion = this->motion(alpha, surface, leaves ? 0.0 : velocity, scale);
+  // At a two-fold point sliding does not end with the field that leaves.
+  const bool is_seen = !leaves || std::abs(velocity) < selection_rounding * scale;
+  if (is_seen && motion.order > 1)
+    motion.side.drift = leaves == (side > 0) ? switching::Drift::up : switching::Drift::down;
+  return motion;
+}
+
 Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const {
   const double tau = switching_point_.time_scale;
   // Where all fields are nearly tangent the scale says nothing: what a velocity moves psi by has to be more than
@@ -122,7 +137,9 @@ Motion ProjectedFields::motion(const std::vector<double>& alpha, int surface, do
   if (!kernel_.inner(surface).empty() &&
       moves_along(kernel_, alpha, surface, switching_point_.t, switching_point_.x, scale))
     return {};
-  const double threshold = std::max(noise_[at(surface)], std::abs(velocity) * tau);
+  // What turns later is no tangency.
+  constexpr double by_far = 1e3;
+  const double threshold = std::max(noise_[at(surface)], (moves ? by_far : 1.0) * std::abs(velocity) * tau);
   double weight = tau;  // tau^k / k!
   for (int order = 2; order <= most_derivatives; ++order) {
     weight *= tau / order;
@@ -233,20 +250,22 @@ switching::CornerTable ProjectedFields::table(const ModeState& before, const std
   }
   for (std::size_t j = 0; j < group.size(); ++j) {
     const int surface = group[j];
+    const int mode = before.mode[at(surface)];
     double scale = 0.0;
     for (std::size_t corner = 0; corner < table.corners(); ++corner) {
       scale = std::max(scale, std::abs(table.side(static_cast<int>(j), corner).velocity));
     }
     for (std::size_t corner = 0; corner < table.corners(); ++corner) {
       auto& side = table.sides[j * table.corners() + corner];
-      // An exit was located to rounding on this field's tangency: its velocity is 0 whatever its last bits say. Of
-      // coupled surfaces no single field need be tangent.
-      const bool above = (corner >> j & 1U) != 0;
-      if (group.size() == 1 && contains(above ? switching_point_.exit_above : switching_point_.exit_below, surface))
-        side.velocity = 0.0;
-      side = motion(alphas[corner], surface, side.velocity, scale).side;
+      // Of coupled surfaces no single field need be tangent at an exit, nor is it the one that arrives.
+      const int sign = (corner >> j & 1U) != 0 ? 1 : -1;
+      const bool arrives = sign == mode && !switching_point_.start && contains(switching_point_.touched, surface);
+      const bool is_seen = group.size() == 1 && (arrives || is_exit(surface, sign));
+      const double velocity = side.velocity;
+      side = (is_seen ? motion_seen(alphas[corner], surface, sign, velocity, scale)
+                      : motion(alphas[corner], surface, velocity, scale))
+                 .side;
     }
-    const int mode = before.mode[at(surface)];
     table.arrival.push_back(switching_point_.start ? switching::Arrival::at_start
                             : mode < 0             ? switching::Arrival::from_below
                             : mode > 0             ? switching::Arrival::from_above

@@ -36,11 +36,18 @@ class ProjectedFields {
   /// Returns the normal components of f(alpha) on the surfaces of `group`.
   [[nodiscard]] std::vector<double> velocities(const std::vector<double>& alpha, const std::vector<int>& group) const;
   /// Returns where psi_surface goes along f(alpha). A velocity up to 1e-10 `scale` gives way to the first higher
-  /// derivative that moves psi further over the switching point's time scale. It has to move psi further than rounding,
-  /// too.
+  /// derivative that moves psi further by far over the switching point's time scale: what turns later than at once is
+  /// no tangency. It has to move psi further than rounding, too.
   [[nodiscard]] Motion motion(const std::vector<double>& alpha, int surface, double velocity, double scale) const;
   /// Does the same where the velocity alone says it; nullopt where it gives way. Cost: one comparison.
   [[nodiscard]] static std::optional<Motion> motion_by_velocity(double velocity, double scale);
+  /// Returns the motion along the field of a side that the located event has seen psi move by: the one that the
+  /// solution arrives by takes psi through zero, and one that ends sliding takes it away from the surface. No higher
+  /// derivative says otherwise: it holds a multiple of the velocity that the location has left.
+  [[nodiscard]] Motion motion_seen(const std::vector<double>& alpha, int surface, int side, double velocity,
+                                   double scale) const;
+  /// Returns whether sliding ends here, as the field of this side has become tangent to the surface.
+  [[nodiscard]] bool is_exit(int surface, int side) const;
 
   /// Returns whether the fields on both sides of a surface are nearly tangent to it: their normal components are below
   /// 1e-6 of |grad psi| |f|. Their quotient, the sliding selection, has lost its meaning there. Mixes the units of the

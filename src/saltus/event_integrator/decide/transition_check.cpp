@@ -126,17 +126,17 @@ bool Decider::take_selections(const ModeField& field) {
 /// Where the new field moves psi_j from zero.
 Motion Decider::motion_from(int j, ModeField& field, const std::vector<double>& xdot) {
   const auto& state = transition_.state;
-  double velocity = fields_.velocities(state.alpha, {j}).front();
-  const auto& tangent = state.mode[at(j)] > 0 ? switching_point_.exit_above : switching_point_.exit_below;
-  if (contains(tangent, j) && keeps_selections()) velocity = 0.0;
+  const bool leaves = fields_.is_exit(j, state.mode[at(j)]) && keeps_selections();
+  const double velocity = fields_.velocities(state.alpha, {j}).front();
   // The fields of all regions that meet: those on both sides of this surface may be tangent to it together.
   const double scale =
       std::max({scale_[at(j)], std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 0), {j}).front()),
                 std::abs(fields_.velocities(fields_.corner_alpha(state.alpha, {j}, 1), {j}).front())});
-  Motion motion = fields_.motion(state.alpha, j, velocity, scale);
+  Motion motion = leaves ? fields_.motion_seen(state.alpha, j, state.mode[at(j)], velocity, scale)
+                         : fields_.motion(state.alpha, j, velocity, scale);
   const bool follows_selections =
       std::any_of(state.sliding.begin(), state.sliding.end(), [&](int i) { return s_.kernel.depends(j, i); });
-  if (follows_selections && std::abs(velocity) <= sign_tolerance * scale) {
+  if (follows_selections && (leaves || std::abs(velocity) <= sign_tolerance * scale)) {
     // A tangency along sliding whose selections change: no derivative with selections held speaks for it.
     const double ahead = velocity_ahead(field, xdot, j);
     motion = {};

@@ -84,7 +84,10 @@ void Run::start_steps(const Instant& instant) {
     start_step();
     // The mode lasts from here; its step is that of a start.
     static_cast<void>(steps_.memory().change(here.state.mode, here.t, here.h));
-    if (instant.cause == Instant::Cause::limit_of_switches) here.time_scale = here.h;
+    if (instant.cause == Instant::Cause::limit_of_switches) {
+      here.time_scale = here.h;
+      switches_.series().begin_anew();
+    }
   } else if (outcome.switched) {
     restart_control();
     here.h = steps_.memory().change(here.state.mode, here.t, here.h, outcome.transition.from(outcome.before));

@@ -154,7 +154,7 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
   }
   const auto& exit = mode_.exits[at(function.row)];
   const bool coupled = field_.solve() == SlidingSolve::coupled;
-  const bool is_side = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above;
+  const bool is_side = function.is_side();
   // Loss and stability of coupled surfaces are relative to their terms.
   const double size = is_side ? std::abs(exit.below) + std::abs(exit.above) : coupled ? 1.0 : std::abs(exit.loss);
   double noise = 32.0 * rounding_unit * size;
@@ -162,6 +162,9 @@ void EventSearch::set_noise(std::size_t i, const double* x) {
   const bool by_sides = coupled || field_.solve() == SlidingSolve::higher_order;
   if (field_.solve() == SlidingSolve::decoupled || (by_sides && is_side)) {
     noise = std::max(noise, rounding_of(field_.normal_terms(at(function.row))));
+  }
+  if (mode_.forms.has(i)) {
+    noise = std::max(noise, rounding_of(mode_.forms.terms(i, {mode_.start, mode_.start, x, x})));
   }
   levels_.set(i, noise, 0.1 * errors_.of_run().rtol * size);
 }

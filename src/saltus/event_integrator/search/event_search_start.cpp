@@ -157,14 +157,19 @@ void EventSearch::read_start(double t, const double* x) {
   read_user_signs(t, x);
   for (const std::size_t i : inspected_) {
     auto& function = mode_.functions[i];
-    const bool is_exit = function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above ||
-                         function.kind == FunctionKind::instability || function.kind == FunctionKind::release;
+    const bool is_exit =
+        function.is_side() || function.kind == FunctionKind::instability || function.kind == FunctionKind::release;
     const bool is_cell = function.kind == FunctionKind::cell_upper || function.kind == FunctionKind::cell_lower;
     // A selection that starts at its bound (tangential entry) leaves its exit function a zero there.
     if ((is_exit || is_cell) && std::abs(point_[i]) <= levels_.noise[i]) function.zero_order = 1;
     // The event was located to the last bits of the time, which are not the last bits of psi: what is left there is the
     // zero of this start.
     if (function.zero_order > 0) function.offset = point_[i];
+    // At the edge of sliding the exit function may stay within its rounding for long: it counts from where it is more.
+    if (function.is_side() && function.zero_order > 0) {
+      function.zero_order = 0;
+      function.offset = -function.sign * levels_.noise[i];
+    }
     if (any_nesting_ && is_exit && function.kind != FunctionKind::release) limit_by_tangency(i, t, x);
   }
 }

@@ -173,9 +173,10 @@ bool Locator::correct(const Hit& hit) {
   set_hit(hit);
   touches_ = false;
   flat_ = !(search_.noise(hit.function) <= flat_zero * std::abs(hit.slope) * dense_->h);
-  Bracket bracket{0.0, dense_->h};
   NewtonSlope slope{hit.slope};
   double h = hit.theta * dense_->h;
+  // A function that has left what is on the other side where the step starts has done so half way.
+  Bracket bracket{left_ == 0.0 ? 0.0 : 0.5 * h, dense_->h};
   double reach = 0.0;
   // Halving a step down to rounding takes 50, and the growth of `reach` comes before.
   constexpr int most_iterations = 120;

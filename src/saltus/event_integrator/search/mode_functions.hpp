@@ -35,6 +35,8 @@ struct EventFunction {
   int zero_order = 0;   ///< of the zero at the start of the next step (left behind by an event), 0 = none
   double offset = 0.0;  ///< value left at that zero by rounding; subtracted until the function has moved away
 
+  /// Returns whether it is the exit to one side of a sliding surface.
+  [[nodiscard]] bool is_side() const { return kind == FunctionKind::exit_below || kind == FunctionKind::exit_above; }
   /// Returns whether a value, less the offset, is far enough from that zero not to be mistaken for it.
   [[nodiscard]] bool has_left(double value) const { return sign * value > 2.0 * std::abs(offset); }
 };
