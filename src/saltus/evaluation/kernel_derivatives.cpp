@@ -49,12 +49,20 @@ const ModelFunction& CompiledModel::gradient(int function) {
   return known;
 }
 
+/// Whether forces move a derivative below this order: there is no expression of their rates.
+bool CompiledModel::is_turned_below(CompiledMotion& motion, int function, int order) {
+  if (forces.is_empty()) return false;
+  auto& [asked, is_turned] = motion.turned[function];
+  for (; !is_turned && asked < order; ++asked) {
+    is_turned = SX::depends_on(lie_expression(motion, function, asked), forces);
+  }
+  return is_turned && asked <= order;
+}
+
 const ModelFunction& CompiledModel::lie_derivative(CompiledMotion& motion, int function, int order) {
   auto& known = motion.lie_derivatives[{function, order}];
   if (known.is_null()) {
-    if (function >= 0 && !forces.is_empty() && SX::depends_on(lie_expression(motion, function, order - 1), forces)) {
-      return known;
-    }
+    if (function >= 0 && is_turned_below(motion, function, order)) return known;
     known = ModelFunction("lie_derivative", {t, x, p, alpha}, {lie_expression(motion, function, order)});
   }
   return known;
@@ -215,7 +223,7 @@ double ModelKernel::lie_derivative(int function, int order, double t, const doub
     const SymbolicLock lock;
     derivative = self.compiled->lie_derivative(*self.motion->compiled, function, order);
   }
-  if (derivative.is_null()) return turned_by_forces(function, order, t, x, alpha);
+  if (derivative.is_null()) return derivative_by_differences(function, order, t, x, alpha);
   double value = 0.0;
   derivative(std::array<const double*, 4>{&t, x, self.parameters_at(t, x, alpha), alpha},
              std::array<double*, 1>{&value});

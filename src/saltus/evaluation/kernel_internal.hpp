@@ -41,6 +41,8 @@ struct CompiledMotion {
   std::vector<std::vector<int>> depends;     ///< of every switching function: selections in its normal component
   std::vector<std::vector<int>> neighbours;  ///< of every switching function, those that influence it or the reverse
   std::map<std::pair<int, int>, casadi::SX> lie_expressions;
+  std::map<int, std::pair<int, bool>>
+      turned;  ///< of a function: orders that were asked for, whether forces move the last
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives, lie_gradients;
   std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
   std::optional<LinearFieldFunction> linear;
@@ -153,6 +155,7 @@ struct CompiledModel : KernelSymbols, KernelStructure {
   [[nodiscard]] ModelSymbols symbols() const { return {t, x, p, alpha}; }
 
   [[nodiscard]] const ModelFunction& gradient(int function);
+  [[nodiscard]] bool is_turned_below(CompiledMotion& motion, int function, int order);
   [[nodiscard]] const ModelFunction& lie_derivative(CompiledMotion& motion, int function, int order);
   [[nodiscard]] const ModelFunction& lie_gradient(CompiledMotion& motion, int function, int order);
   [[nodiscard]] const AffineRowFunction& lie_row(CompiledMotion& motion, int function, int fixed_component);

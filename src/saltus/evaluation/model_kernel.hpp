@@ -286,7 +286,8 @@ class ModelKernel {
   [[nodiscard]] const void* motion() const;
 
  private:
-  [[nodiscard]] double turned_by_forces(int function, int order, double t, const double* x, const double* alpha) const;
+  [[nodiscard]] double derivative_by_differences(int function, int order, double t, const double* x,
+                                                 const double* alpha) const;
   void prepared_field_anyhow(double t, const double* x, const FieldConstants& constants, double* xdot) const;
 
   struct Implementation;

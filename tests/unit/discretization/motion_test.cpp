@@ -11,6 +11,8 @@
 namespace saltus::discretization {
 namespace {
 
+bool never() { return false; }
+
 std::string sliding_block(int elements) {
   return R"toml(
 [model]
@@ -66,7 +68,7 @@ void expect_feasible(OcpProblem& problem, const linalg::Vector& w) {
 TEST(Motion, ABlockThatStopsWithinAnIntervalStays) {
   const auto stated = stated_problem(sliding_block(2));
   auto& problem = *stated.problem;
-  const auto motion = problem.motion(problem.start());
+  const auto motion = problem.motion(problem.start(), never);
   ASSERT_TRUE(motion);
   expect_feasible(problem, motion->w);
   const auto solution = problem.read(motion->w);
@@ -76,7 +78,7 @@ TEST(Motion, ABlockThatStopsWithinAnIntervalStays) {
 
 TEST(Motion, NeedsAnElementForEachMode) {
   const auto stated = stated_problem(sliding_block(1));
-  EXPECT_FALSE(stated.problem->motion(stated.problem->start()));
+  EXPECT_FALSE(stated.problem->motion(stated.problem->start(), never));
 }
 
 /// Ten blocks at rest that are pushed together.
@@ -95,10 +97,10 @@ std::string pushed_blocks(double force) {
 /// Of 3^10 modes those that differ least are tried: all stick, or one or two do not.
 TEST(Motion, OfManySurfacesReachedAtOnceFewMayBeLeft) {
   const auto held = stated_problem(pushed_blocks(0.5)), pushed = stated_problem(pushed_blocks(2.0));
-  const auto motion = held.problem->motion(held.problem->start());
+  const auto motion = held.problem->motion(held.problem->start(), never);
   ASSERT_TRUE(motion);
   expect_feasible(*held.problem, motion->w);
-  EXPECT_FALSE(pushed.problem->motion(pushed.problem->start()));
+  EXPECT_FALSE(pushed.problem->motion(pushed.problem->start(), never));
 }
 
 /// Its input comes to the threshold within the first interval; regions by indicators have no surfaces.
@@ -124,7 +126,7 @@ elements = 5
 running_cost = "u^2"
 )toml");
   auto& problem = *stated.problem;
-  const auto motion = problem.motion(problem.start());
+  const auto motion = problem.motion(problem.start(), never);
   ASSERT_TRUE(motion);
   expect_feasible(problem, motion->w);
   EXPECT_NEAR(problem.read(motion->w).elements.back().back().end[0], 0.5 + 1.5 * 0.7, 1e-6);
@@ -134,7 +136,7 @@ running_cost = "u^2"
 TEST(Motion, ABallThatBouncesBySimulationIsABranch) {
   const auto stated = stated_problem(bouncing_ball);
   auto& problem = *stated.problem;
-  const auto motion = problem.motion(problem.start());
+  const auto motion = problem.motion(problem.start(), never);
   ASSERT_TRUE(motion);
   expect_feasible(problem, motion->w);
   adapters::IpoptSolver ipopt(adapters::LinearSolver::block_ldl);

@@ -150,7 +150,7 @@ class Neighbours : public testing::Test {
             "\"\n[optimize]\nhorizon = 2.4\ncontrol_intervals = 4\nelements = 3\n"
             "running_cost = \"u^2\"\n")),
         problem_(*stated_.problem) {
-    const auto motion = problem_.motion(problem_.start());
+    const auto motion = problem_.motion(problem_.start(), [] { return false; });
     EXPECT_TRUE(motion);
     sides_ = motion->sides;
     w_ = motion->w;

@@ -90,8 +90,8 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] std::vector<double> start_fractions() const;
   void set_start(const OcpGuessValues& guess);
   void set_start(linalg::Vector w);
-  /// Adds one of other_starts().
-  void add_start(std::string name, const OcpGuessValues& guess);
+  /// Adds one of other_starts(), if it is another point; returns it.
+  linalg::Vector add_start(std::string name, const OcpGuessValues& guess);
   /// Takes a point of a problem of the same kernel with other intervals or elements: stretches of equal modes are cut
   /// where intervals end, and divided into as many elements as there are.
   void set_start(const OcpProblem& earlier, mpcc::ConstVectorView w);

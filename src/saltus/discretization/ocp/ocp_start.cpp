@@ -155,10 +155,12 @@ void OcpProblem::set_start(const OcpGuessValues& guess) {
   StartWriter(*implementation_->structure, guess, implementation_->start).write();
 }
 
-void OcpProblem::add_start(std::string name, const OcpGuessValues& guess) {
-  auto& added = implementation_->other_starts.emplace_back(mpcc::NamedStart{std::move(name), implementation_->start});
-  StartWriter(*implementation_->structure, guess, added.w).write();
-  if ((added.w - implementation_->start).max_abs() == 0.0) implementation_->other_starts.pop_back();
+linalg::Vector OcpProblem::add_start(std::string name, const OcpGuessValues& guess) {
+  linalg::Vector w = implementation_->start;
+  StartWriter(*implementation_->structure, guess, w).write();
+  const bool is_another = (w - implementation_->start).max_abs() != 0.0;
+  if (is_another) implementation_->other_starts.push_back({std::move(name), w});
+  return w;
 }
 
 void OcpProblem::set_start(linalg::Vector w) {

@@ -132,14 +132,14 @@ void ContactSolve::solve(const PointArguments& point, const Activities& activiti
   double* const forces = parameters.data() + first_;
   const auto& [t, x, p, alpha] = point;
   if (!last_.is_at({t, x, p.first(first_), alpha})) {
+    auto& known = last_.parameters();
+    known.resize(parameters.size());
     find_unknowns(activities);
     if (!held_.empty() || !given_.empty()) {
       terms_(here(),
              std::array<double*, 4>{rows_.value.data(), responses_.value.data(), acceleration_.data(), cone_.data()});
       assemble();
     }
-    auto& known = last_.parameters();
-    known.resize(parameters.size());
     set_forces(known.data() + first_);
     has_partials_ = has_slopes_ = false;
   }

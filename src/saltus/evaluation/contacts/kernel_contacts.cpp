@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saltus/base/at.hpp"
+#include "saltus/base/rounding_unit.hpp"
 #include "saltus/evaluation/contact_functions.hpp"
 #include "saltus/evaluation/kernel_internal.hpp"
 #include "saltus/evaluation/model_kernel.hpp"
@@ -110,29 +111,39 @@ void ModelKernel::Implementation::scale_forces(double t, const double* x, const 
   }
 }
 
-/// Of what forces turn: there is no expression to differentiate. Beyond the rate, central differences of it.
-double ModelKernel::turned_by_forces(int function, int order, double t, const double* x, const double* alpha) const {
-  auto& self = *implementation_;
-  const auto n = at(states());
-  std::vector<double> slope(n), along(n), row(n), there(x, x + n);
-  field(t, x, alpha, slope.data());
-  const double size = linalg::ConstView(there).norm(), speed = linalg::ConstView(slope).norm();
-  constexpr double part = 1e-5;  // the third root of the rounding
-  const double h = speed > 0.0 && size > 0.0 ? part * size / speed : part;
-  const auto rate_at = [&](double time) {
-    for (std::size_t i = 0; i < n; ++i) there[i] = x[i] + time * slope[i];
-    field(t + time, there.data(), alpha, along.data());
+namespace {
+
+/// The rate, or central differences over h along the field of the derivative of one order less.
+double derivative_along(const ModelKernel& kernel, int function, int order, double h, double t,
+                        const std::vector<double>& x, const double* alpha) {
+  std::vector<double> slope(x.size()), there(x);
+  kernel.field(t, x.data(), alpha, slope.data());
+  if (order == 1) {
     double rate = 0.0;
-    self.gradient_at(function, t + time, there.data(), alpha, row.data(), &rate);
-    return std::inner_product(row.begin(), row.end(), along.begin(), rate);
-  };
-  const int differences = order - 1;
-  double sum = 0.0, weight = 1.0;
-  for (int k = 0; k <= differences; ++k) {
-    sum += weight * rate_at((0.5 * differences - k) * h);
-    weight *= -static_cast<double>(differences - k) / (k + 1);
+    kernel.gradient(function, t, x.data(), alpha, there.data(), &rate);
+    return std::inner_product(there.begin(), there.end(), slope.begin(), rate);
   }
-  return sum / std::pow(h, differences);
+  const auto at_time = [&](double time) {
+    for (std::size_t i = 0; i < x.size(); ++i) there[i] = x[i] + time * slope[i];
+    return derivative_along(kernel, function, order - 1, h, t + time, there, alpha);
+  };
+  return (at_time(h) - at_time(-h)) / (2.0 * h);
+}
+
+}  // namespace
+
+/// Of a function that forces move: there is no expression of their rates.
+double ModelKernel::derivative_by_differences(int function, int order, double t, const double* x,
+                                              const double* alpha) const {
+  const std::vector<double> here(x, x + states());
+  std::vector<double> slope(here.size());
+  field(t, x, alpha, slope.data());
+  const double size = linalg::ConstView(here).norm(), speed = linalg::ConstView(slope).norm();
+  // Where the error of the differences and their rounding are equally large; at rest no time says how fast it changes.
+  const double part = std::pow(rounding_unit, 1.0 / (order + 1));
+  const double most = std::max(1.0, std::abs(t));
+  const double h = part * (speed * most > size && size > 0.0 ? size / speed : most);
+  return derivative_along(*this, function, order, h, t, here, alpha);
 }
 
 }  // namespace saltus::evaluation

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/text.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/constant_value_internal.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
@@ -38,8 +39,9 @@ constexpr std::array expression_keys{
 /// Keys that are read as in a file, in place of what it says: a word, or a list of comparisons.
 constexpr std::array<std::string_view, 3> whole_keys{"path_constraints", "terminal_constraints", "path_constraints_at"};
 
-/// A list or one comparison or word, with quotes around it or not.
-std::string toml_of(std::string_view value) {
+/// A list, or one comparison or word.
+std::string toml_of(std::string_view given) {
+  const auto value = trimmed(given);
   const bool is_list = value.starts_with('[') && value.ends_with(']');
   return is_list ? std::string(value) : fmt::format("\"{}\"", value);
 }
@@ -129,8 +131,9 @@ Expected<void> set_optimize(ModelFile& model, std::string_view key, std::string_
     if (candidate.key == path) return set_problem_expression(model, candidate, key, value);
   }
   if (contains(whole_keys, path)) {
-    const bool is_word = path == "path_constraints_at" || value.starts_with('[');
-    return set_table(model, key, is_word ? toml_of(value) : fmt::format("[{}]", toml_of(value)));
+    const std::string text = toml_of(value);
+    const bool is_whole = path == "path_constraints_at" || text.starts_with('[');
+    return set_table(model, key, is_whole ? text : fmt::format("[{}]", text));
   }
   const auto head = path.substr(0, path.find('.'));
   for (const auto& known : pipeline::problem_keys()) {

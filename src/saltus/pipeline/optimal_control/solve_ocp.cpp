@@ -132,10 +132,9 @@ std::optional<FromSteps> solve_from_steps(const model::Ocp& ocp, const OptimizeO
   const Stopwatch clock;
   const auto start = stepped_start(ocp, options, wanted, stated.problem->start_fractions(), record);
   if (!start) return std::nullopt;
-  stated.problem->add_start("the motion of time stepping", start->guess);
-  const linalg::Vector w = stated.problem->other_starts().back().w;
+  const linalg::Vector w = stated.problem->add_start("the motion of time stepping", start->guess);
   const auto is_over = [&] {
-    return wanted.is_interrupted() || solver::time_left(wanted, clock.seconds()).value_or(1.0) <= 0.0;
+    return wanted.is_interrupted() || (wanted.time_limit && clock.seconds() >= *wanted.time_limit);
   };
   const auto modes = stated.problem->motion_modes(w, is_over);
   if (!modes) return std::nullopt;
