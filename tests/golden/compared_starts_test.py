@@ -64,7 +64,7 @@ class ComparedStarts(tool.ToolTest):
         result = self.optimized(ROD)
         self.assertEqual(result["status"]["termination"], "completed")
         self.assertAlmostEqual(result["objective"], UPRIGHT, delta=1e-5)
-        self.assertEqual(self.begins(result), {"begins at constant states", "begins at states that costs and terminal constraints name"})
+        self.assertLessEqual({"begins at constant states", "begins at states that costs and terminal constraints name"}, self.begins(result))
 
     def test_a_rod_that_is_driven_round_is_held(self):
         model = ROD.replace("u = { lower", "u = { initial = 5, lower").replace(" + 0.02*a^2", "")
@@ -73,7 +73,7 @@ class ComparedStarts(tool.ToolTest):
     def test_one_start_where_states_are_given(self):
         guess = '[optimize.initial_guess]\na = "0.1"\nw = 0\n'
         given = self.optimized(ROD + guess)
-        self.assertEqual(self.begins(given), set())
+        self.assertEqual(self.begins(given), {"begins at selections by the signs of the guessed states"})
         self.assertAlmostEqual(given["objective"], UPRIGHT, delta=1e-5)
         self.assertEqual(self.begins(self.optimized(ROD, "--start", "r.json")), set())
 
@@ -89,8 +89,11 @@ class ComparedStarts(tool.ToolTest):
         sigmas = {f"{step['sigma']:.0e}" for step in result["homotopy"] if step["phase"] == "relaxed"}
         self.assertIn("3e-02", sigmas)
 
-    def test_one_start_where_others_cost_no_less(self):
-        self.assertEqual(self.begins(self.optimized(CAR)), set())
+    def test_starts_that_cost_the_same_are_followed_from_the_large_sigma(self):
+        result = self.optimized(CAR)
+        self.assertGreaterEqual(len(self.begins(result)), 1)
+        self.assertTrue(all(step["sigma"] > 1.0 for step in result["homotopy"] if step.get("message", "").startswith("begins at")))
+        self.assertAlmostEqual(result["objective"], 40.0 / 3.0, delta=1e-6)
 
 
 if __name__ == "__main__":

@@ -143,7 +143,7 @@ running_cost = "0.01*f^2"
 terminal_constraints = ["vx == 0"]
 """
         file = self.write("m.toml", braked)
-        relaxed = ("--set", "optimize.mpcc.first=relaxed")
+        relaxed = ("--set", "optimize.mpcc.first=relaxed", "--set", "optimize.mpcc.compared_starts=4")
         _, err = self.run_tool("optimize", file, *relaxed, "--out", "r.json", code=0)
         self.assertRegex(err, r"elements = \[2, 2, 3, [23], 2, 2, 2, 2\]")
         result = json.loads((self.folder / "r.json").read_text())
@@ -305,7 +305,7 @@ terminal_cost = "x^2"
     @tool.not_sanitized
     def test_a_certified_point_is_not_lost_for_one_that_is_not_solved(self):
         """A removal leads to the same objective, but for 1e-9 of it, with multipliers that are not solved."""
-        result = self.optimised(PUSHED + '[optimize.mpcc]\nfirst = "relaxed"\n')
+        result = self.optimised(PUSHED + '[optimize.mpcc]\nfirst = "relaxed"\ncompared_starts = 4\n')
         self.assertTrue(result["certificate"]["b_stationary"])
         self.assertLess(result["objective"], 69)
 

@@ -9,6 +9,7 @@
 
 #include "saltus/base/at.hpp"
 #include "saltus/base/contains.hpp"
+#include "saltus/base/contracts.hpp"
 #include "saltus/base/preparation.hpp"
 #include "saltus/base/symbolic_lock.hpp"
 #include "saltus/base/without_repeats.hpp"
@@ -71,6 +72,7 @@ KernelSymbols::KernelSymbols(const model::System& system)
 CompiledModel::CompiledModel(const model::System& system) : KernelSymbols(system) {
   auto& parameters = start.parameters;
   parameters = system.parameter_values;
+  SALTUS_ASSERT(parameters.size() == at(p.numel()));
   fixed_parameters = parameters.size();
   input = SX::densify(system.input);
   const auto with_inputs = [&](const SX& expression) {

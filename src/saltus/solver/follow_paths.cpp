@@ -51,22 +51,26 @@ class ComparedLoops {
 
   /// Where it ended; where it failed, best_start() and last_solved() say where to begin another path.
   [[nodiscard]] PathEnd follow(const Attempt& first, const std::vector<mpcc::NamedStart>& others) {
-    // The same states with other selections cost the same, and may lead elsewhere.
-    const auto is_no_dearer = [&](const mpcc::NamedStart& other) { return has_no_higher_cost(other.w, first.w); };
+    const auto excess = [&](const mpcc::NamedStart& other) {
+      return is_defined(other.w) ? run_.problem.objective(other.w) - run_.problem.objective(first.w) : HUGE_VAL;
+    };
+    const auto is_no_dearer = [&](const mpcc::NamedStart& other) { return excess(other) <= 0.0; };
     if (std::any_of(others.begin(), others.end(), is_no_dearer)) compared_ = std::min(compared_, small());
     best_start_ = first.w;
     std::vector<Attempt> starts, rest;
     add_start(first, sigmas_, starts);
     const int random_starts = run_.options.compared_starts.value_or(0);
-    // Many starts are worth more than a second sigma.
-    const std::vector<double> sigmas = random_starts > 0 ? std::vector{sigmas_.back()} : sigmas_;
+    // Many starts are worth more than a second sigma. What costs the same, as the same states with other selections do,
+    // leads elsewhere from the large one, if at all.
+    const std::vector<double> large{sigmas_.front()}, last{sigmas_.back()};
     for (const auto& other : others) {
       const bool is_compared = random_starts > 0 || is_no_dearer(other);
+      const auto& sigmas = random_starts > 0 ? last : excess(other) == 0.0 ? large : sigmas_;
       add_start(beside(first, other.w, other.name), sigmas, is_compared ? starts : rest);
     }
     for (int seed = 1; seed <= random_starts; ++seed) {
       const linalg::Vector w = start_of_seed(run_.problem, first.w, seed);
-      add_start(beside(first, w, fmt::format("the random start of seed {}", seed)), sigmas, starts);
+      add_start(beside(first, w, fmt::format("the random start of seed {}", seed)), last, starts);
     }
     if (const PathEnd end = compare(starts); has_ended(end)) return end;
     if (candidates_.empty() && !rest.empty()) {
@@ -90,9 +94,6 @@ class ComparedLoops {
     linalg::Vector c(run_.problem.rows());
     run_.problem.functions(w, c);
     return c.all_finite() && std::isfinite(run_.problem.objective(w));
-  }
-  [[nodiscard]] bool has_no_higher_cost(const linalg::Vector& a, const linalg::Vector& b) const {
-    return is_defined(a) && run_.problem.objective(a) <= run_.problem.objective(b);
   }
   static Attempt beside(const Attempt& first, const linalg::Vector& w, const std::string& name) {
     Attempt attempt = first;

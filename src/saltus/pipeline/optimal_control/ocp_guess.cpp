@@ -207,7 +207,9 @@ class Guess {
     GuessedSimulation simulation;
     if (needs_simulation) {
       auto system = ocp_.physical ? *ocp_.physical : ocp_.system;
-      system.parameter_values = start_.parameters;
+      const std::size_t own = system.parameter_values.size();  // the method's parameters come behind them
+      system.parameter_values.assign(start_.parameters.begin(),
+                                     start_.parameters.begin() + static_cast<std::ptrdiff_t>(own));
       auto& initial = system.initial_state;
       initial = start_.initial_state;
       if (ocp_.physical) initial.resize(at(ocp_.system.freezing->first_hidden));
