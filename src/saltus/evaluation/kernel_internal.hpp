@@ -41,8 +41,8 @@ struct CompiledMotion {
   std::vector<std::vector<int>> depends;     ///< of every switching function: selections in its normal component
   std::vector<std::vector<int>> neighbours;  ///< of every switching function, those that influence it or the reverse
   std::map<std::pair<int, int>, casadi::SX> lie_expressions;
-  std::map<int, std::pair<int, bool>>
-      turned;  ///< of a function: orders that were asked for, whether forces move the last
+  /// Of a function: how many orders of its derivatives were asked for, and whether forces move the last of these.
+  std::map<int, std::pair<int, bool>> turned;
   std::map<std::pair<int, int>, ModelFunction> lie_derivatives, lie_gradients;
   std::map<std::pair<int, int>, AffineRowFunction> lie_rows;  ///< by function and fixed component
   std::optional<LinearFieldFunction> linear;

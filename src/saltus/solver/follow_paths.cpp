@@ -51,11 +51,13 @@ class ComparedLoops {
 
   /// Where it ended; where it failed, best_start() and last_solved() say where to begin another path.
   [[nodiscard]] PathEnd follow(const Attempt& first, const std::vector<mpcc::NamedStart>& others) {
-    const auto excess = [&](const mpcc::NamedStart& other) {
-      return is_defined(other.w) ? run_.problem.objective(other.w) - run_.problem.objective(first.w) : HUGE_VAL;
-    };
-    const auto is_no_dearer = [&](const mpcc::NamedStart& other) { return excess(other) <= 0.0; };
-    if (std::any_of(others.begin(), others.end(), is_no_dearer)) compared_ = std::min(compared_, small());
+    const double cost = run_.problem.objective(first.w);
+    std::vector<double> excess;
+    for (const auto& other : others) {
+      excess.push_back(is_defined(other.w) ? run_.problem.objective(other.w) - cost : HUGE_VAL);
+    }
+    const auto is_no_dearer = [](double more) { return more <= 0.0; };
+    if (std::any_of(excess.begin(), excess.end(), is_no_dearer)) compared_ = std::min(compared_, small());
     best_start_ = first.w;
     std::vector<Attempt> starts, rest;
     add_start(first, sigmas_, starts);
@@ -63,10 +65,10 @@ class ComparedLoops {
     // Many starts are worth more than a second sigma. What costs the same, as the same states with other selections do,
     // leads elsewhere from the large one, if at all.
     const std::vector<double> large{sigmas_.front()}, last{sigmas_.back()};
-    for (const auto& other : others) {
-      const bool is_compared = random_starts > 0 || is_no_dearer(other);
-      const auto& sigmas = random_starts > 0 ? last : excess(other) == 0.0 ? large : sigmas_;
-      add_start(beside(first, other.w, other.name), sigmas, is_compared ? starts : rest);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      const bool is_compared = random_starts > 0 || is_no_dearer(excess[i]);
+      const auto& sigmas = random_starts > 0 ? last : excess[i] == 0.0 ? large : sigmas_;
+      add_start(beside(first, others[i].w, others[i].name), sigmas, is_compared ? starts : rest);
     }
     for (int seed = 1; seed <= random_starts; ++seed) {
       const linalg::Vector w = start_of_seed(run_.problem, first.w, seed);

@@ -32,7 +32,7 @@ bool Run::is_ordinary(const Located& located) const {
   const auto& function = run_.search.functions()[located.functions.front()];
   const bool slides = run_.here.state.sliding.size() == 1 && run_.field.solve() == SlidingSolve::decoupled;
   const bool surface = function.kind == FunctionKind::surface && (run_.search.crosses() || slides);
-  const bool exit = (function.kind == FunctionKind::exit_below || function.kind == FunctionKind::exit_above) && slides;
+  const bool exit = function.is_side() && slides;
   return (surface || exit) && run_.recorder.lists(function.index) && located.t > run_.here.t &&
          located.t != switches_.series().last();
 }
