@@ -140,8 +140,8 @@ def test_a_second_control_c_keeps_what_was_found(block):
 
 
 @pytest.mark.parametrize("long_run", [
-    lambda: saltus.Model.from_text(LONG).simulate(until=3000, points=2, max_events=10**9),
-    lambda: saltus.Model.from_text(LONG).simulate(until=1000, method="fesd", steps=2000, max_events=10**9),
+    lambda: saltus.Model.from_text(LONG).simulate(until=30000, points=2, max_events=10**9),
+    lambda: saltus.Model.from_text(LONG).simulate(until=4000, method="fesd", steps=8000, max_events=10**9),
     lambda: saltus.catalogue("slide-and-hide").optimize(),
 ], ids=["event", "fesd", "optimize"])
 def test_other_threads_run_meanwhile(long_run):
