@@ -29,7 +29,7 @@ from ._settings import (
     last_of_times,
     names_in,
     names_no_keys,
-    near_option,
+    nearest,
     not_two_things,
     is_option,
     once,
@@ -373,7 +373,7 @@ class Model(Source):
             return name
         setting = sweep_name(name, method)
         if setting == name and "." not in name:
-            near = near_option(name, {**self.states, **self.parameters})
+            near, _ = nearest(name, {**self.states, **self.parameters})
             if near is not None:
                 raise refuse(f"'{name}' is no name of the model and no option", f"did you mean '{near}'?")
         return setting

@@ -24,7 +24,7 @@ _ELSEWHERE = {
     **dict.fromkeys(("dt", "step", "stepsize"), "every=0.1 for rows, max_step=0.1 for steps"),
     **dict.fromkeys(("reltol", "tol", "RelTol"), "rtol=1e-8"),
     **dict.fromkeys(("abstol", "AbsTol"), "atol=1e-10"),
-    **dict.fromkeys(("solver", "alg"), 'integrator="dopri5", or method="fesd"'),
+    **dict.fromkeys(("solver", "alg", "engine"), 'integrator="dopri5", or method="fesd"'),
 }
 #: The same of an optimisation.
 _ELSEWHERE_IN_OPTIMIZE = {
@@ -291,11 +291,12 @@ def option_named(name: str, method: str) -> str | None:
     return next((key for key, _, _ in options if key.removeprefix("simulate.") in _SIMULATE), None)
 
 
-def near_option(name: str, known: typing.Iterable[str]) -> str | None:
-    """The word of an option that is nearer to a name than those that are known."""
+def nearest(name: str, known: typing.Iterable[str]) -> tuple[str | None, str | None]:
+    """What is nearest to a misspelt name: an option, or one of those that are known."""
     words = {key.rpartition(".")[2] for key in _SIMULATE}
-    near = difflib.get_close_matches(name, [*known, *words], 1, 0.8)
-    return near[0] if near and near[0] in words else None
+    near = difflib.get_close_matches(name, [*known, *words], 1, 0.75)
+    word = near[0] if near else None
+    return (word, None) if word in words else (None, word)
 
 
 def not_two_things(options: typing.Mapping[str, Value], declares: typing.Callable[[str], bool], method: str) -> None:
@@ -367,8 +368,8 @@ def is_option(name: str, method: str) -> bool:
     return option_named(name, method) is not None or name in ("inputs", "set", "event", "fesd", "output", "smoothed")
 
 
-def parameters_among(options: typing.Mapping[str, Value], known: typing.Container[str], method: str) -> None:
-    """Refuses a parameter or state that is given as if it were an option."""
+def parameters_among(options: typing.Mapping[str, Value], known: typing.Collection[str], method: str) -> None:
+    """Refuses a parameter or state, also a misspelt one, that is given as if it were an option."""
     for name in options:
         if name in _ELSEWHERE and name not in known and not is_option(name, method):
             raise refuse(f"'{name}' is no option", f"write {_ELSEWHERE[name]}")
@@ -379,6 +380,9 @@ def parameters_among(options: typing.Mapping[str, Value], known: typing.Containe
                 f"'{name}' is a name of the model, not an option",
                 f'write set={{"{name}": {_shown(options[name], name)}}}; in a sweep {name}=[…] has its values',
             )
+        meant = None if is_option(name, method) else nearest(name, known)[1]
+        if meant is not None:
+            raise refuse(f"'{name}' is no option, and no name of the model", f'did you mean set={{"{meant}": …}}?')
 
 
 def names_no_keys(options: typing.Mapping[str, Value], known: typing.Container[str]) -> None:

@@ -42,6 +42,8 @@ def said_by(call, kind=ValueError):
         ({"until": [1, 2]}, "until=[1, 2]: expected a finite number"),
         ({"method": "euler"}, 'method=\'euler\': expected "event"'),
         ({"method": "BDF"}, "did you mean the integrator radau5?"),
+        ({"engine": "fesd"}, "'engine' is no option\n  write integrator=\"dopri5\", or method=\"fesd\""),
+        ({"blet": 0.2}, "'blet' is no option, and no name of the model\n  did you mean set={\"belt\": …}?"),
         ({"method": "fesd", "fesd": {"stage": 2}}, "did you mean 'stages'"),
         ({"method": "fesd", "stages": 20}, "1 to 9 stages, not 20"),
         ({"times": [3, 2]}, "times=[3, 2]"),

@@ -1,11 +1,13 @@
 #include "saltus/cli/tool.hpp"
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -30,7 +32,32 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
+/// What an option of other programs is called here; the name itself for others.
+std::string option_meant(const std::string& name) {
+  constexpr std::array<std::array<std::string_view, 2>, 16> elsewhere{{{"--engine", "--method"},
+                                                                       {"--backend", "--method"},
+                                                                       {"--stepper", "--integrator"},
+                                                                       {"--sweep", "--over"},
+                                                                       {"--scan", "--over"},
+                                                                       {"--range", "--over"},
+                                                                       {"--samples", "--runs"},
+                                                                       {"--threads", "--jobs"},
+                                                                       {"--workers", "--jobs"},
+                                                                       {"--end", "--until"},
+                                                                       {"--t-end", "--until"},
+                                                                       {"--tend", "--until"},
+                                                                       {"--tstop", "--until"},
+                                                                       {"--param", "--set"},
+                                                                       {"--parameter", "--set"},
+                                                                       {"--plot", "--report"}}};
+  for (const auto& [theirs, ours] : elsewhere) {
+    if (theirs == name) return std::string(ours);
+  }
+  return name;
+}
+
 /// The option of this command that was meant, or the command that has it.
+/// @param name  as it was typed, or what it means
 std::string about_option(const std::string& name, const CLI::App& app, const CLI::App& reader) {
   const auto known = option_names(reader);
   if (!nearest_names(name, known).empty()) return suggest(name, known);
@@ -50,6 +77,15 @@ std::string about_option(const std::string& name, const CLI::App& app, const CLI
   return suggest(name, known);
 }
 
+/// NAME=VALUE without its option: values of a sweep where there are several.
+std::string about_setting(const std::string& typed, const CLI::App& reader) {
+  const bool several = typed.find_first_of(":,", typed.find('=')) != std::string::npos;
+  for (const auto* option : {several ? "--over" : "--set", "--set"}) {
+    if (reader.get_option_no_throw(option) != nullptr) return fmt::format("did you mean {} {}?", option, typed);
+  }
+  return {};
+}
+
 /// What CLI11 did not understand, in our words: the first argument nobody expected, and what it may have meant.
 Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
   Error error{ErrorCode::parse_failure, failure.what(), "saltus --help shows how it is used", {}, {}};
@@ -61,7 +97,9 @@ Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
     if (argument == "--") continue;
     const auto name = argument.substr(0, argument.find('='));
     error.message = fmt::format("unexpected argument '{}'", argument);
-    if (name.starts_with("--")) error.remedy = about_option(name, app, reader);
+    if (name.starts_with("--")) error.remedy = about_option(option_meant(name), app, reader);
+    if (name.starts_with('-') || name == argument) break;
+    if (auto remedy = about_setting(argument, reader); !remedy.empty()) error.remedy = std::move(remedy);
     break;
   }
   return error;

@@ -14,7 +14,7 @@ Error not_settable(const Override& entry, const Meaning* meaning, const NameTabl
   return {meaning == nullptr ? ErrorCode::unknown_name : ErrorCode::invalid_option,
           fmt::format("expected the name of a parameter, a state or a control, found '{}', {}", entry.name, found),
           suggest(name, known),
-          entry.value ? entry.value->location : SourceLocation{},
+          {entry.value ? entry.value->location.file : std::string(), 0, 0},
           {fmt::format("in --set {}", entry.name)}};
 }
 
