@@ -135,7 +135,7 @@ def test_a_file_is_told_what_is_meant(text, said):
 ])
 def test_files_of_others_are_named(tmp_path, name, text, what):
     (tmp_path / name).write_text(text)
-    assert f"this is {what}: Saltus does not read it yet" in said_by(lambda: saltus.Model(tmp_path / name))
+    assert f"this is {what}, no model of Saltus" in said_by(lambda: saltus.Model(tmp_path / name))
 
 
 def test_the_end_is_the_last_of_the_times_where_nothing_else_says_it(brake):

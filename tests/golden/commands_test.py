@@ -250,7 +250,7 @@ class Words(tool.ToolTest):
         for arguments, told in ((["brake.toml"], "did you mean `saltus simulate brake.toml`?"),
                                 (["stick-slip"], "did you mean `saltus simulate stick-slip`?"),
                                 (["simulate", "brak.toml"], "did you mean 'brake.toml'?"),
-                                (["simulate", "rows.csv"], "a .csv file is no model\n  a model is a .toml file"),
+                                (["simulate", "rows.csv"], "this is a table of numbers, no model of Saltus\n  a model is a .toml file"),
                                 (["simulate", "stick"], "did you mean 'stick-slip'"),
                                 (["simulate", "stick-slip", "--figure", "x.svg"], "--figure is an option of `saltus report`: add --out r.json, then "
                                  "saltus report r.json --figure"),

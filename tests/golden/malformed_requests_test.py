@@ -3,6 +3,7 @@ Each ends with exit code 2 (or 3 where the numerics stop), a message that helps,
 
 import json
 import os
+import re
 import subprocess
 
 import tool
@@ -122,6 +123,50 @@ class CommandLine(RequestTest):
         for arguments, message in self.CASES.items():
             with self.subTest(arguments):
                 self.refused(*arguments, message=message)
+
+
+class OtherFormats(RequestTest):
+    """Files of other programs: what they are, and where to read what to do."""
+
+    ZIP = "PK\x03\x04"
+    CASES = {
+        "m.yaml": ("# a model\nstates:\n  x: 1\n", "YAML", "coming-from.md"),
+        "m.yml": ("---\nstates: {x: 1}\n", "YAML", "coming-from.md"),
+        "m.py": ("#!/usr/bin/env python\nimport numpy as np\n", "a program of Python", "coming-from.md#scipys-solve_ivp"),
+        "m.ipynb": ('{"cells": []}', "a notebook of Jupyter", "coming-from.md#scipys-solve_ivp"),
+        "m.jl": ("using DifferentialEquations\n", "a program of Julia", "coming-from.md#julias-differentialequationsjl"),
+        "m.wl": ("NDSolve[{x'[t] == -x[t]}, x, {t, 0, 1}]\n", "a program of Mathematica", "coming-from.md#mathematicas-ndsolve"),
+        "m.m": ("function dx = f(t, x)\n", "a program of MATLAB", "coming-from.md#matlab-simulink-stateflow"),
+        "m.slx": (ZIP, "a model of Simulink", "coming-from.md#matlab-simulink-stateflow"),
+        "m.fmu": (ZIP, "an FMU", "coming-from.md#modelica"),
+        "m.mo": ("model M\nend M;\n", "Modelica", "coming-from.md#modelica"),
+        "m.sbml": ("<sbml/>", "SBML", "coming-from.md#sbml-tools-copasi-tellurium"),
+        "m.xml": ('<?xml version="1.0"?><mujoco/>', "a robot's XML (MJCF, URDF or SDF)", "coming-from.md#drake-mujoco"),
+        "m.ode": ("x' = -x\ndone\n", "a model of XPPAUT", "coming-from.md"),
+        "m.nl": ("g3 1 1 0\n", "a problem of AMPL", "saltus mpcc reads it: see docs/foreign-mpcc.md"),
+        "m.mod": ("var x;\n", "a model of AMPL", "AMPL writes it as .nl, for saltus mpcc"),
+        "p.json": ('{"f_fun": "", "G_fun": ""}', "a problem with complementarities", "saltus mpcc reads it"),
+        "m.json": ('{"a": 1}', "JSON", "a .json that saltus simulate --out has written"),
+        "m.cpp": ("int main() {}\n", "a program of C++", "docs/embedding.md"),
+        "m.csv": ("t,x\n0,1\n", "a table of numbers", "a model is a .toml file"),
+    }
+
+    def test_all(self):
+        for name, (text, what, remedy) in self.CASES.items():
+            self.write(name, text)
+            with self.subTest(name):
+                self.refused("check", name, message=[f"{name}: error: this is {what}, no model of Saltus\n", remedy])
+
+    def test_headings_exist(self):
+        page = (tool.SOURCE / "docs" / "coming-from.md").read_text(encoding="utf-8")
+        headings = {re.sub(r"[^\w -]", "", line[3:]).lower().replace(" ", "-") for line in page.splitlines() if line.startswith("## ")}
+        anchors = {remedy.partition("#")[2] for _, _, remedy in self.CASES.values()} - {""}
+        self.assertLessEqual(anchors, headings)
+
+    def test_a_model_may_have_any_ending(self):
+        for name in ("m.yaml", "m.py", "m"):
+            with self.subTest(name):
+                self.run_tool("check", self.write(name, "# a model\n" + base.GOOD), code=0)
 
 
 class Inputs(RequestTest):

@@ -112,15 +112,6 @@ Expected<void> apply_option(ModelInput& input, const std::string& key, const std
 Expected<ModelText> read_model_text(const std::string& model) {
   const auto path = find_model(model);
   if (!path) return tl::unexpected(path.error());
-  std::error_code ignored;
-  for (const std::string_view written : {".csv", ".npz", ".html", ".svg", ".pdf", ".png"}) {
-    if (path->extension() != written || !std::filesystem::exists(*path, ignored)) continue;
-    return tl::unexpected(Error{ErrorCode::parse_failure,
-                                fmt::format("a {} file is no model", written),
-                                "a model is a .toml file, or a .json that saltus simulate --out has written",
-                                {path->string(), 0, 0},
-                                {}});
-  }
   return io::read_model_text(*path);
 }
 

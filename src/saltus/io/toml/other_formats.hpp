@@ -9,8 +9,8 @@
 
 namespace saltus::io {
 
-/// Returns what to say of a file that is SBML, CellML, another XML, an FMU, Modelica, MATLAB or Simulink; nullopt if it
-/// is none of these.
+/// Returns what to say of a file that is no model by its ending or its first bytes: SBML and other XML, an FMU,
+/// Modelica, programs, tables, pictures; nullopt for others.
 /// @param file  its name, for the place and for what its ending says
 [[nodiscard]] std::optional<Error> other_format(std::string_view text, const std::string& file);
 
