@@ -16,7 +16,7 @@ from ._expression import Expression, Operand, called, number, refuse
 from ._model import Model, Start
 from ._names import entries
 from ._result import Result
-from ._settings import Settings, is_result, last_of_times, states_the_problem
+from ._settings import Settings, has_times, is_result, states_the_problem
 from ._signature import with_options
 from ._statement import Rates, given
 from ._structure import Structure
@@ -459,7 +459,7 @@ class Builder(Structure):
         return self.model().check()
 
     def _need_end(self, until: object, options: typing.Mapping[str, typing.Any]) -> None:
-        if until is None and last_of_times(options) is None and "until" not in self._simulate and "simulate.until" not in (options.get("set") or {}):
+        if until is None and not has_times(options) and "until" not in self._simulate and "simulate.until" not in (options.get("set") or {}):
             raise refuse("no end time", "say how long: m.simulate(until=10), or m.simulation(until=10) for all runs")
 
     def _repr_html_(self) -> str:

@@ -26,7 +26,6 @@ from ._settings import (
     entry_by_entry,
     is_several,
     mapping_of,
-    last_of_times,
     names_in,
     names_no_keys,
     nearest,
@@ -312,7 +311,7 @@ class Model(Source):
         """
         check_sweep(over, sample, runs, seed, jobs)
         set = entry_by_entry(set, self._core.declares)
-        options = {"until": self._end(until, set, options), **options}
+        options = {"until": until, **options}
         swept = self._swept(over or {}, set, options)
         for name in sample or {}:
             once(name, names_in(set))
@@ -428,18 +427,13 @@ class Model(Source):
     ) -> tuple[_core.Run, list[str], list[Option]]:
         self._refuse_parameters(options)
         set = entry_by_entry(set, self._core.declares)
-        typed, chosen = simulate_options({"until": self._end(until, set, options), **options}, self._core.method)
+        typed, chosen = simulate_options({"until": until, **options}, self._core.method)
         warned: list[str] = []
         with own_results():
             settings = [*settings_of(set), *typed]
             run: _core.Run = getattr(self._core, command)(settings, chosen, tell, warned, *more)
         warn(warned)
         return run, settings, chosen
-
-    def _end(self, until: Value, set: Settings | None, options: typing.Mapping[str, Value]) -> Value:
-        """What is asked for; where neither the call nor the model says an end, the last of the times of rows."""
-        stated = until is not None or self._core.until is not None or "simulate.until" in names_in(set)
-        return until if stated else last_of_times(options)
 
     def _refuse_parameters(self, options: typing.Mapping[str, Value]) -> None:
         """Of keywords that are no options those that the model knows; the rest is the tool's to say."""

@@ -175,17 +175,10 @@ def simulate_options(
     return settings, options
 
 
-def last_of_times(options: typing.Mapping[str, Value]) -> float | None:
-    """The last of the times at which rows are asked for; None where no times are given."""
+def has_times(options: typing.Mapping[str, Value]) -> bool:
+    """Whether the times of rows are given, the last of which is an end."""
     output = options.get("output")
-    times = options.get("times", output.get("times") if isinstance(output, typing.Mapping) else None)
-    if times is None or not is_list(times) or not len(times):
-        return None
-    try:
-        return float(np.max(times))
-    except (TypeError, ValueError):
-        found = type(times[0]).__name__
-        raise refuse(f"times: expected numbers, found {found}", "write them in the unit of t, counted from its 0") from None
+    return options.get("times", output.get("times") if isinstance(output, typing.Mapping) else None) is not None
 
 
 def option_of(name: str, value: Value) -> Option:

@@ -220,7 +220,6 @@ void add_model(nb::module_& module) {
       .def_prop_ro("path", [](const Model& self) { return self.input().path; })
       .def_prop_ro("method",
                    [](const Model& self) { return std::string(pipeline::name(self.input().file.simulate.method)); })
-      .def_prop_ro("until", [](const Model& self) { return self.input().file.simulate.until; })
       .def_prop_ro("forced_modes",
                    [](const Model& self) {
                      std::vector<std::string> names;

@@ -68,6 +68,32 @@ class Help(tool.ToolTest):
         self.assertEqual(page, (tool.SOURCE / "docs/options.md").read_text(encoding="utf-8"))
 
 
+class End(tool.ToolTest):
+    def test_the_last_of_given_times_is_the_end_where_none_is_stated(self):
+        model = self.write("m.toml", MODEL.partition("[simulate]")[0])
+        rows = ["--set", "simulate.output.times=[0, 0.25, 0.5]"]
+        for method in ("event", "smoothed", "fesd"):
+            with self.subTest(method):
+                self.run_tool("simulate", model, *rows, "--method", method, "--error-estimate", "--out", "r.json", code=0)
+                result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
+                self.assertEqual(result["status"]["time_reached"], 0.5)
+                self.assertEqual(result["trajectory"]["t"], [0, 0.25, 0.5])
+        self.run_tool("simulate", "r.json", "--out", "again.json", code=0)  # a stored result has it, too
+        self.run_tool("check", model, *rows, code=0)
+        self.assertIn("t = 0.5", self.run_tool("compare", model, *rows, code=0)[0])
+        self.run_tool("sweep", model, *rows, "--over", "fast=1,2", "--keep", "trajectory", "--out", "s.csv", code=0)
+        self.assertEqual(len((self.folder / "s.csv").read_text(encoding="utf-8").splitlines()), 7)
+
+    def test_a_stated_end_holds(self):
+        model = self.write("m.toml", MODEL)
+        out, _ = self.run_tool("simulate", model, "--set", "simulate.output.times=[0, 0.5]", code=0)
+        self.assertIn("completed at t = 1", out)
+        _, message = self.run_tool("simulate", model, "--set", "simulate.output.times=[0, 2]", code=2)
+        self.assertIn("output time 2 lies outside the simulation from 0 to 1", message)
+        _, message = self.run_tool("simulate", model, "--set", "simulate.from=3", "--until", "2", code=2)
+        self.assertIn("until (2) is not after from (3)", message)
+
+
 class BadInput(tool.ToolTest):
     def refused(self, expected, *arguments):
         out, err = self.run_tool(*arguments, code=2)

@@ -70,7 +70,7 @@ ExitCode run_check(const CheckArguments& arguments) {
   const auto system = model::build(input->file.description, input->overrides);
   if (!system) return refuse_model(arguments, io::located(system.error(), input->file), *text);
   // Without an end time the file is no mistake: --until gives it.
-  if (const auto fit = io::check_options(input->file); !fit && input->file.simulate.until) {
+  if (const auto fit = io::check_options(input->file); !fit && pipeline::end_time(input->file.simulate)) {
     return refuse_model(arguments, fit.error(), *text);
   }
   if (const auto apart = model::check_contacts_at_start(*system, input->file.simulate.from)) {

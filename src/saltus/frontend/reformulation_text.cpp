@@ -140,7 +140,7 @@ std::vector<io::OverviewForm> complementarity_forms(const model::System& system)
 std::string ranks_text(const model::System& system, const pipeline::SimulateOptions& options,
                        const pipeline::Observers& observers) {
   // Without one there is nothing to look at.
-  if (!options.until || !reformulation::reformulate(system)) return "";
+  if (!end_time(options) || !reformulation::reformulate(system)) return "";
   const auto ranks = pipeline::ranks_along_solution(system, options, observers);
   std::string text = "\nwell-posedness along the solution of [simulate] (rank of W B, Assumption 7 ibid.)\n";
   if (!ranks) return text + fmt::format("  not computed: {}\n", ranks.error().message);

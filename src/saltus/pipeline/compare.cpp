@@ -76,6 +76,7 @@ bool is_regularised(const model::System& system) {
 
 /// The reference first.
 std::vector<PlannedRun> plan(const model::System& system, SimulateOptions options) {
+  options.until = end_time(options);
   options.event.trajectories = 1;
   options.kept = {};  // all states are compared
   std::vector<PlannedRun> runs{reference_run(options)};
@@ -227,7 +228,7 @@ Expected<result::Result> compare(const model::System& system, const SimulateOpti
   if (!reference) return reference;
   result::Comparison comparison;
   comparison.runs.push_back(row(planned.front(), *reference, *reference));
-  ComparedStates states(options.from, *options.until);
+  ComparedStates states(options.from, *end_time(options));
   states.add(*reference);
   for (std::size_t i = 1; i < planned.size(); ++i) {
     const auto& next = planned[i];

@@ -34,7 +34,7 @@ Expected<SimulateOptions> with_all(SimulateOptions options,
 }
 
 Expected<SimulateOptions> options_of(const result::OrderSeries& series, long steps, SimulateOptions options) {
-  options.output = AtTimes{{*options.until}};
+  options.output = AtTimes{{*end_time(options)}};
   const auto key = [&](const char* name) { return fmt::format("{}.{}", series.method, name); };
   return with_all(std::move(options),
                   {{"method", series.method},

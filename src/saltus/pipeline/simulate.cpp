@@ -64,8 +64,9 @@ Expected<result::Result> simulate(const model::System& system, const SimulateOpt
   if (!options.error_estimate) return result;
   // Its rows are those of the run that was asked for, and of nobody else.
   const Observers without_parts{observers.on_step, {}};
-  auto errors = estimate_errors(
-      *result, options, [&](const SimulateOptions& other) { return simulate(system, other, without_parts, &store); });
+  auto errors = estimate_errors(*result, asked->options, [&](const SimulateOptions& other) {
+    return simulate(system, other, without_parts, &store);
+  });
   if (!errors) return tl::unexpected(errors.error());
   result->error_estimate = std::move(*errors);
   return result;

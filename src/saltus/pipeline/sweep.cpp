@@ -69,10 +69,10 @@ double least_kept_bytes(const SweepOptions& options, StateRun state) {
   if (options.keep != Keep::trajectory) return 0.0;
   const SymbolicLock lock;
   const auto first = state(0);
-  if (!first || !first->options.until) return 0.0;
+  if (!first || !end_time(first->options)) return 0.0;
   const auto& [system, asked] = *first;
   const auto states = asked.kept.states ? 0 : system.state_names.size();
-  const double rows = number_of_rows(asked.output, asked.from, *asked.until);
+  const double rows = number_of_rows(asked.output, asked.from, *end_time(asked));
   return rows * static_cast<double>(8 * (1 + states) * options.runs);
 }
 

@@ -12,6 +12,7 @@ namespace saltus::pipeline {
 Expected<result::Trajectory> values_at(const model::System& system, const SimulateOptions& options,
                                        const std::vector<double>& asked, SideOfEvent side, const Observers& observers) {
   SimulateOptions again = options;
+  again.until = end_time(options);
   again.event_rows = true;
   again.kept = {};
   again.event.trajectories = 1;

@@ -196,7 +196,7 @@ void record_branches(const SimulateOptions& options, std::string_view key, Optio
 constexpr std::array fields{
     OptionField{"until",
                 {.number = Numbers{.above_option = "from"}},
-                "End of the simulation; there is no default.",
+                "End of the simulation; there is no default, but the last of `output.times` where they are given.",
                 set_number<until_of, SimulateOptions>,
                 record_until},
     number_field<from_of>("from", any_number, "Start of the simulation."),
@@ -358,19 +358,20 @@ OptionProblem problem(std::string key, std::string message, std::string remedy) 
 
 /// Of the times between which it is simulated.
 std::optional<OptionProblem> find_problem_of_span(const SimulateOptions& options) {
-  if (!options.until) {
+  const auto until = end_time(options);
+  if (!until) {
     return problem("until", "no end time", "write until = T in [simulate], or give --until T on the command line");
   }
-  if (!(*options.until > options.from)) {
-    return problem("until", fmt::format("until ({}) is not after from ({})", *options.until, options.from),
+  if (!(*until > options.from)) {
+    return problem("until", fmt::format("until ({}) is not after from ({})", *until, options.from),
                    "choose until > from");
   }
   if (options.begun && *options.begun > options.from) {
     return problem("begun", fmt::format("begun ({}) is after from ({})", *options.begun, options.from),
                    "a run goes on at the end of one that began before");
   }
-  if (!std::isfinite(*options.until - options.from)) {
-    return problem("until", fmt::format("from {} to {} is longer than any number", options.from, *options.until),
+  if (!std::isfinite(*until - options.from)) {
+    return problem("until", fmt::format("from {} to {} is longer than any number", options.from, *until),
                    "choose other units of time");
   }
   return std::nullopt;
@@ -404,7 +405,8 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
     return problem("method", "initial_mode has no meaning for method \"smoothed\", which decides no modes",
                    "leave initial_mode out, or use method = \"event\"");
   }
-  const double rows = number_of_rows(options.output, options.from, *options.until);
+  const double until = *end_time(options);
+  const double rows = number_of_rows(options.output, options.from, until);
   if (!(rows <= most_rows)) {
     const bool points = std::holds_alternative<NumberOfPoints>(options.output);
     return problem(points ? "output.points" : "output.every", fmt::format("output of {:.3g} rows", rows),
@@ -413,11 +415,10 @@ std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
   }
   if (const auto* grid = std::get_if<AtTimes>(&options.output)) {
     for (const double time : grid->times) {
-      if (options.from <= time && time <= *options.until) continue;
-      return problem(
-          "output.times",
-          fmt::format("output time {} lies outside the simulation from {} to {}", time, options.from, *options.until),
-          "leave it out, or move `from` or `until`");
+      if (options.from <= time && time <= until) continue;
+      return problem("output.times",
+                     fmt::format("output time {} lies outside the simulation from {} to {}", time, options.from, until),
+                     "leave it out, or move `from` or `until`");
     }
   }
   return std::nullopt;

@@ -89,8 +89,8 @@ struct ElementOptions {
   bool sensitivities = false;       ///< derivatives of the end state
 };
 
-/// Holds [simulate]; defaults as in docs/options.md. `until` has none: it must be given in the file or on the command
-/// line.
+/// Holds [simulate]; defaults as in docs/options.md. `until` has none: it, or times of rows, must be given in the file
+/// or on the command line. See end_time.
 struct SimulateOptions {
   std::optional<double> until{};
   double from = 0.0;
@@ -112,6 +112,12 @@ struct SimulateOptions {
   SmoothedOptions smoothed{};
   ElementOptions fesd{.error_limit = 0.03}, timestepping{};
 };
+
+/// Returns the end of a run: what is stated, else the last of given times of rows; nothing without either.
+[[nodiscard]] inline std::optional<double> end_time(const SimulateOptions& options) {
+  const auto* rows = std::get_if<AtTimes>(&options.output);
+  return options.until || rows == nullptr || rows->times.empty() ? options.until : rows->times.back();
+}
 
 /// Returns whether there are rows at events: what is stated, else everywhere but at given times, which are all rows.
 [[nodiscard]] inline bool has_event_rows(const SimulateOptions& options) {

@@ -147,12 +147,11 @@ Expected<result::Result> simulate_frozen(const Simulation& asked) {
   SimulateOptions numerical = options;
   numerical.event_rows = true;
   numerical.continuous = false;
-  const Simulation stated{made, numerical, asked.observers, asked.frame, asked.times, {}};
   Expected<result::Result> run = asked.frame;
   for (const double length : lengths) {
     numerical.until = from + length * (until - from);
     numerical.fesd.steps = static_cast<long>(std::ceil(length * static_cast<double>(options.fesd.steps)));
-    run = simulate_elements(stated);
+    run = simulate_elements({made, numerical, asked.observers, asked.frame, asked.times, {}});
     if (!run || run->status.termination != result::Termination::completed) break;
   }
   if (!run) return run;

@@ -133,22 +133,17 @@ Expected<Simulation> checked_simulation(const model::System& system, const Simul
                                         const Observers& observers) {
   auto begun = frame(system, options);
   if (!begun) return tl::unexpected(begun.error());
-  if (!options.until) {
-    return tl::unexpected(Error{ErrorCode::invalid_option, "no end time", "set SimulateOptions::until", {}, {}});
-  }
   if (const auto problem = find_problem(options)) return tl::unexpected(problem->error);
   auto forced = forced_modes(system, options);
   if (!forced) return tl::unexpected(forced.error());
   auto scaling = surface_scaling(system, options);
   if (!scaling) return tl::unexpected(scaling.error());
-  return Simulation{system,
-                    options,
-                    observers,
-                    std::move(*begun),
-                    row_times(options.output, options.from, *options.until),
-                    std::move(*forced),
-                    std::move(*scaling),
-                    !system.contacts.empty() || !system.drawing.empty()};
+  SimulateOptions with_end = options;
+  with_end.until = end_time(options);
+  auto times = row_times(options.output, options.from, *with_end.until);
+  return Simulation{
+      system,           std::move(with_end), observers,           std::move(*begun),
+      std::move(times), std::move(*forced),  std::move(*scaling), !system.contacts.empty() || !system.drawing.empty()};
 }
 
 void finish_result(const model::System& system, result::Result& result) {

@@ -20,7 +20,7 @@ namespace saltus::pipeline {
 /// Holds a system with options that fit it; what it refers to must outlive it.
 struct Simulation {
   const model::System& system;
-  const SimulateOptions& options;
+  SimulateOptions options;  ///< with the end of the run
   const Observers& observers;
   result::Result frame;                          ///< the result without its run, with the columns that are kept
   std::vector<double> times;                     ///< row_times() in physical time
