@@ -40,8 +40,9 @@ bool is_open_comparison(const Node& node) {
 /// each of them might return would make their frames ten times larger.
 class Parser {
  public:
-  Parser(const Tokens& tokens, const std::string& file, const std::vector<std::string>& extra_functions)
-      : tokens_(tokens), complain_{tokens, file}, extra_functions_(extra_functions) {}
+  Parser(const Tokens& tokens, const std::string& file, const std::vector<std::string>& extra_functions,
+         const std::vector<std::string>& declared)
+      : tokens_(tokens), complain_{tokens, file}, extra_functions_(extra_functions), declared_(declared) {}
 
   Expected<NodePtr> run() {
     auto whole = parse_whole();
@@ -123,7 +124,7 @@ class Parser {
       if (!arguments) return complain_.unknown_function(position_ - 1, extra_functions_);
       return parse_call(token, *arguments, level);
     }
-    if (arguments) return complain_.function_without_arguments(token);
+    if (arguments && !contains(declared_, token.text)) return complain_.function_without_arguments(token);
     return make(Name{std::string(token.text)}, token, 0);
   }
 
@@ -163,13 +164,14 @@ class Parser {
   const Tokens& tokens_;
   Complaints complain_;
   const std::vector<std::string>& extra_functions_;
+  const std::vector<std::string>& declared_;
   std::size_t position_ = 0;
 };
 
 }  // namespace
 
 Expected<NodePtr> parse(std::string_view text, const SourceLocation& start,
-                        const std::vector<std::string>& extra_functions) {
+                        const std::vector<std::string>& extra_functions, const std::vector<std::string>& declared) {
   if (text.size() > max_text_size) {
     return tl::unexpected(Error{ErrorCode::parse_failure,
                                 fmt::format("expression of {} bytes; at most {} are read", text.size(), max_text_size),
@@ -178,7 +180,7 @@ Expected<NodePtr> parse(std::string_view text, const SourceLocation& start,
                                 {}});
   }
   const Tokens tokens = tokenize(text, start);
-  return Parser(tokens, start.file, extra_functions).run();
+  return Parser(tokens, start.file, extra_functions, declared).run();
 }
 
 }  // namespace saltus::expression

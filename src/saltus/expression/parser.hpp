@@ -18,11 +18,13 @@ namespace saltus::expression {
 /// @param start  position of its first character in its file, unknown (0) counts as 1. Columns count bytes; only the
 ///               first line of the text is offset by the column
 /// @param extra_functions  names of tables of the model, which are functions of one argument
+/// @param declared  names of values; one that a function has is a name, too: it is refused where it is declared
 /// @return the tree, or a parse_failure / unknown_name with position, what was expected and a remedy.
 ///         Refused are texts beyond 64 KiB, nesting deeper than 200 levels and trees higher than 1000 nodes (a sum of
 ///         more than 1000 terms without parentheses), so that recursion over a tree is safe.
 [[nodiscard]] Expected<NodePtr> parse(std::string_view text, const SourceLocation& start,
-                                      const std::vector<std::string>& extra_functions = {});
+                                      const std::vector<std::string>& extra_functions = {},
+                                      const std::vector<std::string>& declared = {});
 
 /// Returns a number as a tree, e.g. for a bare number in a model file; may be negative, as it may not in a parsed tree.
 [[nodiscard]] NodePtr number(double value, const SourceLocation& location);

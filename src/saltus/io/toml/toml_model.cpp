@@ -139,7 +139,7 @@ enum class AfterMistake { stop, read_on };
 std::vector<Error> read_document(const TomlTable& document, ModelFile& model, AfterMistake after) {
   const auto& file = model.description.file;
   TomlReader reader(file, model.files);
-  reader.set_functions(table_names(document));
+  reader.set_functions(table_names(document), value_names(document));
   for (const auto& entry : document) {
     model.table_locations.emplace_back(entry.key, entry.location);
     read_section(reader, entry, model);

@@ -93,8 +93,8 @@ expression::NodePtr TomlReader::expression(const TomlValue& value) {
   }
   const bool as_it_stands = text->anchors.empty();
   const StringPlaces places(text->text, text->anchors);
-  auto tree =
-      expression::parse(text->text, as_it_stands ? text->start : SourceLocation{text->start.file, 1, 1}, functions_);
+  auto tree = expression::parse(text->text, as_it_stands ? text->start : SourceLocation{text->start.file, 1, 1},
+                                functions_, declared_);
   if (tree) return as_it_stands ? *tree : places.in_file(*tree);
   if (!as_it_stands) tree.error().location = places.in_file(tree.error().location);
   fail(tree.error());
@@ -105,8 +105,8 @@ expression::NodePtr TomlReader::expression_in(const TomlString& text, std::size_
   const auto part = std::string_view(text.text).substr(offset, length);
   const bool as_it_stands = text.anchors.empty();
   const StringPlaces places(text.text, text.anchors);
-  auto tree =
-      expression::parse(part, as_it_stands ? place_in_string(text, offset) : place_within(text, offset), functions_);
+  auto tree = expression::parse(part, as_it_stands ? place_in_string(text, offset) : place_within(text, offset),
+                                functions_, declared_);
   if (tree) return as_it_stands ? *tree : places.in_file(*tree);
   if (!as_it_stands) tree.error().location = places.in_file(tree.error().location);
   fail(tree.error());

@@ -28,7 +28,11 @@ class TomlReader {
   [[nodiscard]] bool failed() const { return errors_.size() > errors_before_; }
 
   /// Sets the names of tables of the model, which expressions may call; set before the first expression is read.
-  void set_functions(std::vector<std::string> names) { functions_ = std::move(names); }
+  /// @param declared  names of values, which expressions may have
+  void set_functions(std::vector<std::string> names, std::vector<std::string> declared = {}) {
+    functions_ = std::move(names);
+    declared_ = std::move(declared);
+  }
 
   /// Sets the table that errors are in, as a context frame; empty for none.
   void enter(std::string table) {
@@ -62,7 +66,7 @@ class TomlReader {
   std::string file_;
   std::vector<result::NamedFile>* files_;
   std::string table_;
-  std::vector<std::string> functions_;
+  std::vector<std::string> functions_, declared_;
   std::vector<Error> errors_;
   std::size_t errors_before_ = 0;  ///< when the table was entered
 };

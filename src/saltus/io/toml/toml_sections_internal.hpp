@@ -26,6 +26,8 @@ void read_time_freezing(TomlReader& reader, const TomlEntry& entry, ModelFile& m
 
 void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model);
 
+/// Returns what stands for a value in expressions: states, parameters, definitions and the like.
+[[nodiscard]] std::vector<std::string> value_names(const TomlTable& document);
 /// Returns names of the tables [tables.NAME]: expressions anywhere in the file may call them.
 [[nodiscard]] std::vector<std::string> table_names(const TomlTable& document);
 /// Returns a file named in a model file, relative to it.

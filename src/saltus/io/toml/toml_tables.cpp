@@ -2,7 +2,6 @@
 #include <array>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -150,21 +149,26 @@ void read_tables(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   for (const auto& table : *tables) read_one_table(reader, table, model);
 }
 
-std::vector<std::string> table_names(const TomlTable& document) {
-  constexpr std::array others{"parameters", "states", "controls", "definitions", "switching", "outputs"};
-  std::set<std::string> taken;  // a second meaning is refused later; until then the first one holds
+std::vector<std::string> value_names(const TomlTable& document) {
+  constexpr std::array places{"parameters", "states", "controls", "definitions", "switching", "outputs"};
+  std::vector<std::string> names;
   for (const auto& entry : document) {
     const auto* table = std::get_if<TomlTable>(&entry.value.value);
-    if (table == nullptr || !contains(others, entry.key)) continue;
-    for (const auto& field : *table) taken.insert(field.key);
+    if (table == nullptr || !contains(places, entry.key)) continue;
+    for (const auto& field : *table) names.push_back(field.key);
   }
+  return names;
+}
+
+std::vector<std::string> table_names(const TomlTable& document) {
+  const auto taken = value_names(document);  // a second meaning is refused later; until then the first one holds
   std::vector<std::string> names;
   for (const auto& entry : document) {
     const auto* tables = std::get_if<TomlTable>(&entry.value.value);
     if (entry.key != "tables" || tables == nullptr) continue;
     for (const auto& table : *tables) {
       const bool is_table = std::holds_alternative<TomlTable>(table.value.value);
-      if (is_table && !taken.contains(table.key)) names.push_back(table.key);
+      if (is_table && !contains(taken, table.key)) names.push_back(table.key);
     }
   }
   return names;
