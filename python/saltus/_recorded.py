@@ -110,6 +110,34 @@ class Recorded(Facts):
         return {key: self._facts[key] for key in _OF_OPTIMUM if key in self._facts}
 
     @property
+    def objective(self) -> float | None:
+        """The value of the costs that an optimisation found; None of a simulation.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).objective is None
+        True
+        """
+        return (self.optimization or {}).get("objective")
+
+    @property
+    def certificate(self) -> dict[str, typing.Any] | None:
+        """What shows that an optimum is one: residuals, ``b_stationary``, … (docs/result-file.md); None of a simulation.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).certificate is None
+        True
+        """
+        return (self.optimization or {}).get("certificate")
+
+    @property
+    def verification(self) -> dict[str, typing.Any] | None:
+        """How the controls of an optimum do event by event: ``interval_defect``, ``open_loop``, … (docs/result-file.md);
+        None of a simulation.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).verification is None
+        True
+        """
+        return (self.optimization or {}).get("verification")
+
+    @property
     def error_estimate(self) -> dict[str, typing.Any] | None:
         """Estimated errors, if they were asked for (``error_estimate=True``): ``x`` of every row and state,
         ``event_times``, ``final``, … (docs/result-file.md).

@@ -200,7 +200,7 @@ class Structure(Statement):
         ...     horizon={"free": True, "initial": 2.5, "lower": 1, "upper": 5}, minimize_time=True, control_intervals=4,
         ...     terminal_constraints=[q == 1, v == 0],
         ... )
-        >>> round(m.optimize().optimization["objective"], 6)
+        >>> round(m.optimize().objective, 6)
         2.0
         """
         if self._optimize:

@@ -133,8 +133,8 @@ def test_optimisations(block, slip):
     assert "write control_intervals=20" in said_by(lambda: block.optimize(N=20))
     assert "write horizon=2" in said_by(lambda: block.optimize(until=3))
     solved = block.optimize(control_intervals=2)
-    with pytest.raises(AttributeError, match=r'r.optimization\["objective"\]'):
-        solved.objective
+    with pytest.raises(AttributeError, match=r'r.optimization\["horizon"\]'):
+        solved.horizon
     with pytest.raises(AttributeError, match="no attribute 'figure'"):
         solved.figure
     assert block.simulate(until=1, inputs={"u": solved})["u"][0] == solved.u[0, 0]

@@ -152,7 +152,9 @@ def test_optimal_control(source):
     r = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(control_intervals=6)
     assert r.status == "completed"
     assert r.final["q"] == pytest.approx(1.0, abs=1e-6)
-    assert r.optimization["objective"] == pytest.approx(r.t[-1], rel=1e-6)
+    assert r.objective == r.optimization["objective"] == pytest.approx(r.t[-1], rel=1e-6)
+    assert r.certificate == r.optimization["certificate"] and r.certificate["b_stationary"]
+    assert r.verification == r.optimization["verification"] and r.verification["interval_defect"] < 1e-3
     assert r.u.shape == (len(r.t), 1)
     again = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start=r, control_intervals=6)
     assert again.optimization["objective"] == pytest.approx(r.optimization["objective"], rel=1e-5)
