@@ -2,13 +2,34 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import typing
 
 import numpy as np
 
+from ._errors import ModelError
+
 #: What numpy calls by these names does this instead: it would ask the entries for their truth at once.
 _INSTEAD: dict[str, typing.Callable[..., typing.Any]] = {}
+#: Functions of numpy that expressions do not have, and what to write.
+_WRITTEN = {
+    **dict.fromkeys(("round", "around", "rint"), "saltus.floor(x + 0.5), of times only"),
+    **dict.fromkeys(("trunc", "fix"), "saltus.floor(x), of times only"),
+    **dict.fromkeys(("select", "piecewise", "digitize"), "saltus.if_(x > 1, a, saltus.if_(x > 0, b, c))"),
+    **dict.fromkeys(("isclose", "allclose"), "a condition of both sides: (x > a) & (x < b)"),
+    **dict.fromkeys(("isnan", "isinf", "isfinite"), "nothing: a run ends where a value is no finite number"),
+    **dict.fromkeys(("inv", "solve", "det"), "the formula, or compute with numbers before: A = np.linalg.inv(A), then A @ X"),
+    "interp": 'road = m.table("road", x=[0, 1], y=[0, 2]), then road(x)',
+    "ceil": "-saltus.floor(-x), of times only",
+    "cbrt": "saltus.sign(x)*abs(x)**(1/3)",
+    "expm1": "saltus.exp(x) - 1",
+    "exp2": "2**x",
+    "log1p": "saltus.log(1 + x)",
+    "log2": "saltus.log(x)/saltus.log(2)",
+}
+#: What numpy says of entries for which it has no function.
+_NO_FUNCTION = re.compile("ufunc|dtype|attribute|boolean ndarray")
 _COMPARISONS = frozenset({"greater", "greater_equal", "less", "less_equal", "equal", "not_equal"})
 
 
@@ -29,6 +50,7 @@ class Array(np.ndarray[typing.Any, np.dtype[typing.Any]]):
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: typing.Any, **kwargs: typing.Any) -> typing.Any:
         if ufunc is np.matmul and len(inputs) == 2 and is_sparse(inputs[1]):
             return (Sparse(inputs[1]).T @ inputs[0].T).T
+        _check_known(ufunc)
         plain = [_plain(value) for value in inputs]
         if kwargs.get("out") is not None:
             kwargs["out"] = tuple(_plain(value) for value in kwargs["out"])
@@ -42,7 +64,7 @@ class Array(np.ndarray[typing.Any, np.dtype[typing.Any]]):
             kwargs.pop("dtype", None)
         elif ufunc.__name__ in _COMPARISONS and method == "__call__":
             kwargs["dtype"] = object
-        return own(getattr(ufunc, method)(*plain, **kwargs))
+        return own(_computed(ufunc, lambda: getattr(ufunc, method)(*plain, **kwargs)))
 
     def __array_function__(
         self, func: typing.Any, types: typing.Any, args: typing.Any, kwargs: typing.Any
@@ -51,7 +73,30 @@ class Array(np.ndarray[typing.Any, np.dtype[typing.Any]]):
             raise TypeError("a matrix of scipy.sparse cannot multiply expressions: write saltus.array(A) @ X")
         if func is np.where and len(args) == 3 and isinstance(args[0], Array):
             return own(np.frompyfunc(_INSTEAD["where"], 3, 1)(*map(_plain, args)))
-        return own(super().__array_function__(func, types, args, kwargs))
+        _check_known(func)
+        return own(_computed(func, lambda: super(Array, self).__array_function__(func, types, args, kwargs)))
+
+
+def _refusal(function: typing.Any) -> ModelError:
+    name = function.__name__
+    others = "it with functions of the language, saltus.sin, saltus.max, saltus.if_, …; numpy computes with numbers, before"
+    message, remedy = f"numpy.{name} is no function of expressions", f"write {_WRITTEN.get(name, others)}"
+    return ModelError(f"{message}\n  {remedy}", message, remedy)
+
+
+def _check_known(function: typing.Any) -> None:
+    if function.__name__ in _WRITTEN:
+        raise _refusal(function)
+
+
+def _computed(function: typing.Any, compute: typing.Callable[[], typing.Any]) -> typing.Any:
+    """What numpy computes with entries; where it finds no such function among theirs that is said in our words."""
+    try:
+        return compute()
+    except (TypeError, AttributeError) as failure:
+        if not _NO_FUNCTION.search(str(failure)):
+            raise
+        raise _refusal(function) from failure
 
 
 def _plain(value: typing.Any) -> typing.Any:

@@ -222,3 +222,39 @@ def test_functions_of_numpy_take_expressions_of_no_axis():
     assert str(np.where(z > 0, 1, 2)) == "if(z>0,1,2)"
     assert texts(np.where(z > 0, saltus.array([z, 1]), 2)) == ["if(z>0,z,2)", "if(z>0,1,2)"]
     assert texts(np.stack([z, 2 * z])) == ["z", "2*z"] and np.ndim(z) == 0
+
+
+@pytest.mark.parametrize("name, arguments, written", [
+    ("interp", ([0, 1], [0, 2]), 'road = m.table("road", x=[0, 1], y=[0, 2]), then road(x)'),
+    ("round", (), "saltus.floor(x + 0.5), of times only"),
+    ("around", (2,), "saltus.floor(x + 0.5), of times only"),
+    ("rint", (), "saltus.floor(x + 0.5)"),
+    ("ceil", (), "-saltus.floor(-x)"),
+    ("trunc", (), "saltus.floor(x)"),
+    ("cbrt", (), "saltus.sign(x)*abs(x)**(1/3)"),
+    ("expm1", (), "saltus.exp(x) - 1"),
+    ("log1p", (), "saltus.log(1 + x)"),
+    ("log2", (), "saltus.log(x)/saltus.log(2)"),
+    ("digitize", ([0, 1],), "saltus.if_(x > 1, a, saltus.if_(x > 0, b, c))"),
+    ("isnan", (), "a run ends where a value is no finite number"),
+    ("isclose", (1,), "a condition of both sides"),
+    ("spacing", (), "functions of the language"),
+])
+def test_functions_of_numpy_that_expressions_have_not_say_what_to_write(name, arguments, written):
+    m = saltus.Builder("m")
+    x = m.state("x", 1)
+    for operand in x, saltus.array([x, 2 * x]):
+        with pytest.raises(saltus.ModelError) as refused:
+            getattr(np, name)(operand, *arguments)
+        assert f"numpy.{name} is no function of expressions\n  write " in str(refused.value)
+        assert written in str(refused.value)
+
+
+def test_what_numpy_refuses_of_other_operands_is_its_own_to_say():
+    m = saltus.Builder("m")
+    X = saltus.array(m.states("x", [1, 2]))
+    with pytest.raises(ValueError, match="broadcast"):
+        np.add(X, [1, 2, 3])
+    with pytest.raises(saltus.ModelError, match="numpy.inv is no function of expressions\n  write the formula"):
+        np.linalg.inv(saltus.array([[X[0], 1], [1, X[1]]]))
+    assert str(np.max(X)) == "max(x1,x2)"
