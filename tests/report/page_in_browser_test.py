@@ -31,6 +31,14 @@ class TwoStates(Page):
         self.value(key("Escape"))
         self.becomes("document.querySelector('.inspector').hidden", True)
 
+    def test_several_solutions_are_a_notice_and_no_mistake(self):
+        self.show("stay-or-leave")
+        banner = "document.querySelector('.banner')"
+        self.assertIn("not unique at 1 event", self.value(banner + ".textContent"))
+        self.assertEqual(self.value(f"[{banner}.className, {banner}.getAttribute('role')]"), ["banner notice", "status"])
+        self.value(banner + ".querySelector('button').click()")
+        self.becomes(SELECTED, "▼ Event 2: enter sliding")
+
     def test_search_leaves_the_matching_events(self):
         self.show("stick-slip")
         rows = "document.querySelectorAll('.events tbody tr:not(.space)').length"

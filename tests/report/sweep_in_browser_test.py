@@ -65,6 +65,7 @@ class Sweep(Page):
             self.tool("sweep", "m.toml", *over, *second, "--keep", keep, "--report", "sweep.html")
             self.open("sweep.html")
             self.assertIn(f"not unique in 1 of {6 if second else 3} runs", self.value("document.querySelector('.banner').textContent"))
+            self.assertEqual(self.value("document.querySelector('.banner').className"), "banner notice")
             self.assertEqual(self.value("document.querySelector('section svg').querySelectorAll('.alarm').length"), 1)
             self.value("document.querySelector('.banner button').click()")
             self.assertIn("the solution is not unique", self.value("document.getElementById('chosen').textContent"))

@@ -27,7 +27,7 @@ saltus.sweepBanners = (table, data, choose) => {
     const buttons = rows.slice(0, 8).map(
         (row) => saltus.element("button", {onclick: () => choose(row)}, `run ${table.columns.run[row]}`));
     return [saltus.element(
-        "div", {class: `banner ${kind}`, role: "alert"}, ...said, " ", ...buttons,
+        "div", {class: `banner ${kind}`, role: kind === "bad" ? "alert" : "status"}, ...said, " ", ...buttons,
         rows.length > buttons.length ? ` and ${rows.length - buttons.length} more` : null)];
   };
   const stopped = runRows.filter((row) => !table.isDone(row));
@@ -35,7 +35,7 @@ saltus.sweepBanners = (table, data, choose) => {
   return [
     ...banner("bad", stopped, saltus.element("strong", {}, `${stopped.length} of ${runRows.length} runs stopped early`),
         ` and ${stopped.length === 1 ? "has no end" : "have no ends"}: a black cross marks them.`),
-    ...banner("bad", doubtful, saltus.element("strong", {}, `The solution is not unique in ${doubtful.length} of ${runRows.length} runs`),
+    ...banner("notice", doubtful, saltus.element("strong", {}, `The solution is not unique in ${doubtful.length} of ${runRows.length} runs`),
         ", marked by a red cross:"),
     ...(data.left_out ? [saltus.element("div", {class: "banner notice", role: "status"}, data.left_out)] : []),
   ];

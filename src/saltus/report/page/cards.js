@@ -64,21 +64,21 @@ saltus.banners = (result, select) => {
   }
   if (status.termination === "completed" && status.message !== "")
     banners.push(saltus.element("div", {class: "banner notice", role: "status"}, status.message));
-  const list = (chosen, title, kind) => {
+  const list = (chosen, title) => {
     if (chosen.length === 0) return;
     const buttons = chosen.slice(0, 8).map(
         (i) => saltus.element(
             "button", {onclick: () => select(i)}, `event ${i + 1}, t = ${saltus.brief(events[i].t, 6)}`));
     const left = chosen.length - buttons.length;
     banners.push(saltus.element(
-        "div", {class: `banner ${kind}`, role: "alert"}, saltus.element("strong", {}, title), " ", ...buttons,
+        "div", {class: "banner notice", role: "status"}, saltus.element("strong", {}, title), " ", ...buttons,
         left > 0 ? ` and ${left} more in the table` : null));
   };
   const numbered = (wanted) => events.map((_, i) => i).filter((i) => events[i].unique === wanted);
   const no = numbered(false);
-  list(no, `The solution is not unique at ${saltus.count(no.length, "event")}.`, "bad");
+  list(no, `The solution is not unique at ${saltus.count(no.length, "event")}.`);
   const open = result.optimization ? [] : numbered(null);  // an optimum is one solution, verified by itself
-  list(open, `Uniqueness was not decided at ${saltus.count(open.length, "event")}.`, "notice");
+  list(open, `Uniqueness was not decided at ${saltus.count(open.length, "event")}.`);
   return banners;
 };
 
