@@ -89,6 +89,25 @@ until = 6
 """
 
 
+# What rises, or falls, to a threshold that is chosen, and back.
+EDGE = HEAD + """[parameters]
+edge = {{ initial = 1.3, lower = 1, upper = 2, free = true }}
+[states]
+x = {start}
+[dynamics]
+x = "{rate}"
+[[hysteresis]]
+name = "down"
+input = "x"
+on = "edge"
+off = {off}
+[optimize]
+horizon = 3
+control_intervals = 3
+terminal_cost = "(x - {aim})^2"
+"""
+
+
 class FrozenHysteresis(time_freezing_test.FrozenTest):
     def test_automaton_of_nested_thresholds(self):
         _, frozen = self.assert_agree(RELAYS, 1e-8)
@@ -155,6 +174,25 @@ dynamics = { v = 1, y = "if(first + second >= 2, 11, if(first + second == 1, fir
         file = self.write("m.toml", text)
         _, err = self.run_tool("optimize", file, "--quiet", "--start", "r.json", "--time-limit", "0.01", code=3)
         self.assertIn("time", err)
+
+    def test_a_threshold_is_optimised(self):
+        # With on = c the input is 2 c - 3 at the end, and 2 c where it falls first: 0.4 and 3.4 at c = 1.7.
+        for name, start, rate, off, aim in (("rising", 0, "1 - 2*down", -5, 0.4), ("falling", 3, "2*down - 1", 5, 3.4)):
+            with self.subTest(name):
+                result = self.optimised(EDGE.format(start=start, rate=rate, off=off, aim=aim))
+                self.assertAlmostEqual(result["parameters"]["edge"], 1.7, delta=1e-8)
+                self.assertLess(result["objective"], 1e-15)
+                self.assertLess(result["verification"]["interval_defect"], 1e-9)
+                self.assertEqual([e["name"] for e in result["events"]], ["down"])
+
+    def test_a_threshold_is_optimised_to_its_bound(self):
+        # The turbo is best switched on as early as it may be.
+        text = (tool.SOURCE / "models/optima/turbo-hysteresis.toml").read_text(encoding="utf-8")
+        free = "[parameters]\nup = { initial = 15, lower = 12, upper = 20, free = true }\n[states]"
+        result = self.optimised(text.replace("[states]", free, 1).replace("on = 15", "on = \"up\""))
+        self.assertAlmostEqual(result["parameters"]["up"], 12, delta=1e-7)
+        self.assertAlmostEqual(result["objective"], 10.0084705, delta=1e-5)
+        self.assertLess(result["verification"]["interval_defect"], 1e-9)
 
     @tool.not_sanitized
     def test_a_finer_grid_starts_from_the_coarser_one(self):

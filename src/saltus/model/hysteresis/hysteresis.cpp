@@ -29,14 +29,15 @@ std::optional<Error> threshold_mistake(const HysteresisThresholds& thresholds, c
                           "give it two different thresholds, or write step(input - threshold)");
 }
 
-std::optional<Error> threshold_mistake(Recognition& recognition, const HysteresisThresholds& thresholds) {
+std::optional<Error> threshold_mistake(Recognition& recognition, const Statement& statement,
+                                       const HysteresisThresholds& thresholds) {
   constexpr KindSet allowed = kind_bit(VariableKind::parameter) | kind_bit(VariableKind::time) |
                               kind_bit(VariableKind::alpha) | kind_bit(VariableKind::cell);
   for (const auto& [what, value, location] : {std::tuple{"on", thresholds.on, &thresholds.on_location},
                                               std::tuple{"off", thresholds.off, &thresholds.off_location}}) {
     const auto node = recognition.graph.add(value);
     if (!node) return with_location(node.error(), *location);
-    if ((recognition.graph.tape()[*node].reached & ~allowed) == 0) continue;
+    if ((recognition.graph.tape()[*node].reached & ~allowed) == 0 || is_of_parameters(statement, value)) continue;
     return hysteresis_error(
         *location, fmt::format("`{}` of the hysteresis '{}' depends on a state or a control", what, thresholds.name),
         "a threshold is an expression of parameters and t: subtract what moves from both thresholds and from `input`");
@@ -107,6 +108,15 @@ std::optional<ConstantThresholds> constant_thresholds(Recognition& recognition,
   return ConstantThresholds{*on, *off};
 }
 
+bool is_of_parameters(const Statement& statement, const SXElem& expression) {
+  const auto symbols = casadi::SX::symvar(casadi::SX(expression));
+  return std::all_of(symbols.begin(), symbols.end(), [&](const casadi::SX& symbol) {
+    return std::any_of(statement.parameters.begin(), statement.parameters.end(), [&](const auto& parameter) {
+      return casadi::SX::is_equal(casadi::SX(parameter.symbol), symbol);
+    });
+  });
+}
+
 void declare_hysteresis(const Description& description, Recognition& recognition, Statement& statement) {
   for (const auto& entry : description.hysteresis) {
     const auto index = static_cast<int>(statement.states.size());
@@ -118,7 +128,7 @@ void declare_hysteresis(const Description& description, Recognition& recognition
 
 std::optional<Error> begin_hysteresis(Recognition& recognition, Statement& statement, int state, const SXElem& input,
                                       const HysteresisThresholds& thresholds) {
-  if (auto mistake = threshold_mistake(recognition, thresholds)) return mistake;
+  if (auto mistake = threshold_mistake(recognition, statement, thresholds)) return mistake;
   const auto node = recognition.graph.add(input);
   if (!node) return with_location(node.error(), thresholds.input_location);
   const KindSet moving = recognition.graph.tape()[*node].reached;

@@ -28,6 +28,9 @@ struct ConstantThresholds {
 [[nodiscard]] std::optional<ConstantThresholds> constant_thresholds(Recognition& recognition,
                                                                     const HysteresisThresholds& thresholds);
 
+/// Returns whether an expression has parameters only, those among them that an optimisation chooses.
+[[nodiscard]] bool is_of_parameters(const Statement& statement, const SXElem& expression);
+
 /// Appends the discrete states of all [[hysteresis]] to the statement, behind those of [states]; their values are not
 /// known yet.
 void declare_hysteresis(const Description& description, Recognition& recognition, Statement& statement);

@@ -27,21 +27,19 @@ Error not_frozen(std::string message, std::string remedy) {
 
 std::optional<Error> freeze_hysteresis(Recognition& recognition, Statement& statement, int state, const SXElem& input,
                                        const HysteresisThresholds& thresholds, FreezingPlan& plan) {
-  const auto numbers = constant_thresholds(recognition, thresholds);
-  if (!numbers) {
+  for (const auto& [threshold, location] :
+       {std::pair{thresholds.on, &thresholds.on_location}, std::pair{thresholds.off, &thresholds.off_location}}) {
+    if (is_of_parameters(statement, threshold)) continue;
     auto error = not_frozen(
-        fmt::format("the thresholds of the hysteresis '{}' vary, and time-freezing needs numbers", thresholds.name),
-        "simulate with method = \"event\", or give numbers");
-    return with_location(std::move(error),
-                         recognition.parameter_value(thresholds.on) ? thresholds.off_location : thresholds.on_location);
+        fmt::format("the thresholds of the hysteresis '{}' vary, and time-freezing needs constants", thresholds.name),
+        "simulate with method = \"event\", or give numbers or parameters");
+    return with_location(std::move(error), *location);
   }
   if (auto error = begin_hysteresis(recognition, statement, state, input, thresholds)) return error;
-  const SX w(statement.states[at(state)].symbol);
-  const auto [on, off] = *numbers;
-  const double side = on > off ? 1.0 : -1.0;
+  const SX w(statement.states[at(state)].symbol), on(thresholds.on), off(thresholds.off);
+  const SX width = on - off, side = width / sqrt(width * width);  // whichever of both is higher
   if (plan.takes_plane) {
-    const double low = std::min(on, off), high = std::max(on, off);
-    plan.plane = {thresholds.name, (SX(input) - low) / (high - low), side > 0.0 ? w : 1.0 - w, state, side > 0.0};
+    plan.plane = {thresholds.name, (SX(input) - off) / width, w, state};
     return std::nullopt;
   }
   // NOTE: no region pulls back to 0 or 1 where the state waits. Between two such regions the point where they meet the

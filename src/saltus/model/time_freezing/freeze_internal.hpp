@@ -22,12 +22,11 @@ struct AddedRate {
   casadi::SX rate;
 };
 
-/// Holds the input, scaled to 0 and 1 at the lower and the upper threshold, and the state, 1 on the upper side.
+/// Holds the input, scaled to 0 at `off` and 1 at `on`, and the state.
 struct HysteresisPlane {
   std::string name;
-  casadi::SX scaled, above;
+  casadi::SX scaled, value;
   int state = 0;
-  bool rises = true;  ///< the state is 1 on the upper side
 };
 
 /// Holds what is gathered on the way from a description to a frozen system.

@@ -10,8 +10,8 @@ using casadi::SX;
 namespace {
 
 /// Squared distance to one of the four points whose nearest ones make the regions.
-SX distance(const HysteresisPlane& plane, double scaled, double above) {
-  return (plane.scaled - scaled) * (plane.scaled - scaled) + (plane.above - above) * (plane.above - above);
+SX distance(const HysteresisPlane& plane, double scaled, double value) {
+  return (plane.scaled - scaled) * (plane.scaled - scaled) + (plane.value - value) * (plane.value - value);
 }
 
 SXElem entry(const SX& expression) { return SX::densify(expression).scalar(); }
@@ -22,16 +22,15 @@ SXElem entry(const SX& expression) { return SX::densify(expression).scalar(); }
 /// an optimiser uses that.
 void freeze_in_plane(Statement& statement, const FreezingPlan& plan) {
   const auto& plane = *plan.plane;
-  const SX w(statement.states[at(plane.state)].symbol);
-  const double up = plane.rises ? plan.numbers.transfer : -plan.numbers.transfer;
+  const double up = plan.numbers.transfer;
   // On a line where it waits half of the field is that of the auxiliary region, which stands still.
   const auto twice = [&](double side, double rate) {
     std::vector<ModeRate> rates;
-    const SX value = plane.rises ? side : 1.0 - side;
     for (int i = 0; i < plan.made.first_hidden; ++i) {
       const auto& state = statement.states[at(i)];
       if (i == plane.state || !state.dynamics) continue;
-      rates.push_back({i, entry(2.0 * SX::substitute(SX(*state.dynamics), w, value)), state.dynamics_location});
+      rates.push_back(
+          {i, entry(2.0 * SX::substitute(SX(*state.dynamics), plane.value, side)), state.dynamics_location});
     }
     rates.push_back({plane.state, SXElem(rate), {}});
     rates.push_back({plan.made.clock, SXElem(2.0), {}});
