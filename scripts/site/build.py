@@ -46,7 +46,7 @@ def copy_pages():
     for name, page in (("CHANGELOG.md", "changes.md"), ("ARCHITECTURE.md", "architecture.md")):
         text = (ROOT / name).read_text().replace("](docs/adr)", "](decisions.md)").replace("](docs/", "](")
         # What the source tree has, and the site has not, is named without a link.
-        (SOURCE / page).write_text(re.sub(r"\[([^\]]*)\]\((?:tests|examples|cmake|benchmarks|scripts|src|models|packaging)/[^)]*\)", r"\1", text))
+        (SOURCE / page).write_text(re.sub(r"\[([^\]]*)\]\((?:tests|examples|cmake|benchmarks|scripts|src|models|packaging|wasm|python)/[^)]*\)", r"\1", text))
 
 
 def link_to_try():

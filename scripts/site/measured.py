@@ -166,7 +166,8 @@ def unbroken(text):
 def mended(text):
     """Links of the source tree as links of the site, or as names."""
     text = text.replace("](../README.md", "](how.md").replace("](../../docs/", "](../../")
-    text = re.sub(r"\]\(results/([a-z_-]+)\.md\)", r"](\1.md)", text)
+    shown = lambda link: f"[{link[1]}]({link[2]}.md)" if link[2] in FILES else f"`benchmarks/results/{link[2]}.md`"
+    text = re.sub(r"\[([^]]*)\]\(results/([a-z_-]+)\.md\)", shown, text)
     return re.sub(r"!\[[^\]]*\]\([a-z_]+\.svg\)\n?", "", text)
 
 
