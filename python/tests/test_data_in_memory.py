@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -262,3 +263,39 @@ def test_a_run_in_parts_has_the_jumps_of_the_whole(when, parts, tmp_path):
     assert r.final["c"] == pytest.approx(whole.final["c"], rel=1e-9)
     # At another time it is another run.
     assert m.simulate(until=2.05, start=r, from_=0).final["doses"] == 2 * whole.final["doses"]
+
+
+def test_conditions_at_the_start_of_a_run_that_goes_on():
+    counter = saltus.Model.from_text("""
+[model]
+name = "counter"
+[states]
+x = 0
+n = 0
+[dynamics]
+x = 0.1
+n = 0
+[[jumps]]
+when = "x > 1"
+at_start = true
+set = { n = "n + 1" }
+""")
+    for part in 5, 10, 15:  # as in one run
+        assert counter.simulate(until=20, start=counter.simulate(until=part)).final["n"] == 1
+    moved = {"start": counter.simulate(until=15), "set": {"x": 4}, "until": 20}
+    assert counter.simulate(**moved).final["n"] == 1
+    assert counter.simulate(**moved, begun=None).final["n"] == 2
+
+
+def test_a_hysteresis_that_is_moved_beyond_its_threshold_switches():
+    m = saltus.Builder("heating")
+    x = m.state("x", 0)
+    w = m.hysteresis("w", x, on=2 + 0.01 * saltus.t, off=1 + 0.01 * saltus.t)
+    m.rate(x, 0.1 - 0.3 * w)
+    heating = m.model()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # of jumps that nobody wrote nothing is said
+        r = heating.simulate(until=5)
+        assert r.final["w"] == 0
+        assert heating.simulate(until=6, start=r, set={"x": 4}).events[0].t == 5
+        assert heating.simulate(until=6, start=r, set={"x": 4}).final["x"] == pytest.approx(3.8)

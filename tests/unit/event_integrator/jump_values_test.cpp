@@ -191,6 +191,23 @@ TEST(GivenTimes, ARunThatGoesOnKeepsThePhaseAndRepeatsNothing) {
   }
 }
 
+/// Where something was changed between two runs: what a jump would have ended has not jumped.
+TEST(GivenTimes, ARunThatGoesOnJumpsWhereTheConditionCannotHaveHeld) {
+  for (const bool goes_on : {false, true}) {
+    Builder builder("changed");
+    const SX x = builder.state("x", {.initial = 4.0}), w = builder.discrete_state("w", 0.0),
+             n = builder.discrete_state("n", 0.0);
+    builder.dynamics("x", 1.0);
+    builder.jump(model::greater(x, 2.0) && model::less(w, 0.5), {{"w", SX(1.0)}}, {.at_start = true});
+    builder.jump(model::greater(x, 2.0), {{"n", n + 1.0}}, {.at_start = true});
+    IntegrationOptions options;
+    options.from = 1.0;
+    options.until = 2.0;
+    if (goes_on) options.begun = 0.0;
+    EXPECT_EQ(run_model(builder, options).final.x, (std::vector{5.0, 1.0, goes_on ? 0.0 : 1.0}));
+  }
+}
+
 /// What a sample every period has read of a state that is kicked at a time, with a larger priority.
 TEST(GivenTimes, PrioritiesDecideWhereTimesAreTheSameButForRounding) {
   for (const auto& [period, kick] : {std::pair(0.3, 0.9), {0.1, 0.3}, {0.2, 0.6}, {0.7, 2.1}, {0.25, 0.75}}) {

@@ -135,8 +135,28 @@ unsigned Jumps::truth(int jump, const JumpPoint& point) const {
   return below | (trigger != JumpTrigger::guard_down && sign > 0 ? above : 0U);
 }
 
+bool Jumps::ends_itself(int jump, const JumpPoint& point) const {
+  const auto& entry = layout_.jumps[at(jump)];
+  const auto alpha = at_instant(point);
+  const bool at_once = kernel_.jump_delay(jump, point.t, point.x.data(), alpha.data()) == 0.0;
+  if (entry.trigger != JumpTrigger::condition || !at_once) return false;
+  std::vector<double> set(entry.targets.size()), x = point.x, steps;
+  kernel_.jump_values(jump, point.t, point.x.data(), alpha.data(), set.data());
+  for (std::size_t i = 0; i < set.size(); ++i) x[at(entry.targets[i])] = set[i];
+  kernel_.functions(point.t, x.data(), alpha.data(), values_.data());
+  for (const auto& guard : entry.guards) {
+    const double value = values_[at(guard.function)];
+    steps.push_back(value > 0.0 || (value == 0.0 && guard.true_at_equality) ? 1.0 : 0.0);
+  }
+  return !kernel_.jump_condition(jump, point.t, x.data(), alpha.data(), steps.data());
+}
+
+/// In a run that goes on a condition may hold since it has jumped; not where the jump would have ended it.
 void Jumps::begin(const JumpPoint& point) {
-  for (std::size_t k = 0; k < truth_.size(); ++k) truth_[k] = layout_.jumps[k].at_start && !span_.begun ? 0U : ~0U;
+  for (std::size_t k = 0; k < truth_.size(); ++k) {
+    const bool anew = layout_.jumps[k].at_start && (!span_.begun || ends_itself(static_cast<int>(k), point));
+    truth_[k] = anew ? 0U : ~0U;
+  }
   update(point);
 }
 

@@ -38,7 +38,8 @@ class Jumps {
   Jumps(const evaluation::ModelKernel& kernel, const JumpSpan& span);
 
   [[nodiscard]] bool none() const { return layout_.jumps.empty(); }
-  /// Begins at the start: every condition counts as true before it, with at_start as false, unless the run goes on.
+  /// Begins at the start: every condition counts as true before it, with at_start as false; in a run that goes on only
+  /// where its jump would end it, so that it has not happened.
   void begin(const JumpPoint& point);
   /// Reads all conditions and times anew: what became true, and times that have come, are triggered; waiting executions
   /// of jumps with persistent = false whose condition is false are dropped.
@@ -81,6 +82,8 @@ class Jumps {
   [[nodiscard]] int guard_sign(int function, const JumpPoint& point) const;
   /// Selections as right-hand sides take them: psi at zero has its selection of sliding, or else 1/2.
   [[nodiscard]] std::vector<double> at_instant(const JumpPoint& point) const;
+  /// Returns whether a condition is false behind its jump from this point.
+  [[nodiscard]] bool ends_itself(int jump, const JumpPoint& point) const;
   void trigger(int jump, const JumpPoint& point);
   [[nodiscard]] double time_of(int jump) const;
   [[nodiscard]] bool is_same(double a, double b) const { return is_same_time(a, b, origin_); }

@@ -190,7 +190,7 @@ std::optional<Error> fill_trigger(Recognition& recognition, const JumpStatement&
     // A condition that is always true still triggers at the start with at_start.
     constant = *truth <= 1 && !(*truth == TruthDiagram::constant_true() && stated.at_start);
   }
-  if (constant) {
+  if (constant && stated.forbidden.empty()) {
     warnings.push_back(
         located(stated.when_location, fmt::format("jump '{}' never happens: its 'when' is constant", jump.name)));
   }
