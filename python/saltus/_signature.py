@@ -33,7 +33,7 @@ def with_options(command: str) -> typing.Callable[[Function], Function]:
         left = rest if command == "sweep" else []  # where names of the model are keywords, too
         function.__signature__ = stated.replace(parameters=[*own, *keywords, *left])  # type: ignore[attr-defined]
         listed = "\n".join(f"            {word}: {_told(entry)}" for word, entry in options.items())
-        function.__doc__ = f"{function.__doc__}\n        Options; what is not given is that of the model file:\n\n{listed}\n        "
+        function.__doc__ = f"{function.__doc__}\n        Options; what is not given is that of the model file::\n\n{listed}\n        "
         return function
 
     return decorate
