@@ -254,6 +254,14 @@ class Heaps(tool.ResultTest):
         velocities = result["final"]["x"][12:]
         self.assertLess(max(abs(v) for v in velocities), 1.0)
 
+    def test_contacts_that_open_each_other_come_to_rest(self):
+        """Two contacts of four discs, each of which opens as the other one closes: ever slower, down to rounding."""
+        result = self.result(heap(6, 0.95, 1))
+        self.assertEqual(result["status"]["termination"], "completed")
+        self.assertLess(result["penetration"], 1e-9)
+        self.assertLess(len(result["events"]), 200)
+        self.falls(result)
+
     def test_a_heap_of_twenty_discs_begins_at_once(self):
         """250 contacts: what is prepared grows with their number, not with its third power."""
         result = self.result(heap(20, 2.3, 0.15))
