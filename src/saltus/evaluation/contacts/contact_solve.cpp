@@ -12,11 +12,19 @@ using casadi::SX;
 bool LastPoint::is_at(const PointArguments& point) {
   const auto is_kept = [&](std::size_t i) {
     const auto& now = point[i];
-    return now.size() <= arguments_[i].size() &&
-           (now.empty() || std::memcmp(arguments_[i].data(), now.data(), now.size_bytes()) == 0);
+    if (now.size() > arguments_[i].size()) return false;
+    if (now.data() == nullptr)
+      return std::all_of(arguments_[i].begin(), arguments_[i].end(), [](double kept) { return kept == 0.0; });
+    return now.empty() || std::memcmp(arguments_[i].data(), now.data(), now.size_bytes()) == 0;
   };
   if (!arguments_[0].empty() && is_kept(0) && is_kept(1) && is_kept(2) && is_kept(3)) return true;
-  for (std::size_t i = 0; i < point.size(); ++i) arguments_[i].assign(point[i].begin(), point[i].end());
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    if (point[i].data() == nullptr) {
+      arguments_[i].assign(point[i].size(), 0.0);
+    } else {
+      arguments_[i].assign(point[i].begin(), point[i].end());
+    }
+  }
   return false;
 }
 
