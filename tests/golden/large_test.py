@@ -79,6 +79,28 @@ def heap(discs, width, until, e=0.0, out_of_reach=0):
                             contacts="\n".join(contacts), until=until)
 
 
+PRESSED = """[model]
+name = "pressed"
+[states]
+y = 0
+x = 0
+q = 0
+v = 0
+u = 0.5
+w = 0.3
+[mechanics]
+positions = ["y", "x", "q"]
+velocities = ["v", "u", "w"]
+mass = [["1", "0", "0"], ["0", "1", "0"], ["0", "0", "1"]]
+force = { v = "-10 + (1 + 2*sign(w))*sign(w)", w = "-2*sign(w) + 0.7 + 0.2*sin(t)" }
+[parameters]
+mu = 0.1
+e = 0
+[simulate]
+until = 0.6
+"""
+
+
 def wall(base, until):
     """Bricks of mass 1 in rows of `base`, base - 1, ... with friction 0.6, each on the corners of two of the row below."""
     half, low, friction = 0.25, 0.05, 0.6
@@ -253,6 +275,33 @@ class Heaps(tool.ResultTest):
         self.falls(result)
         velocities = result["final"]["x"][12:]
         self.assertLess(max(abs(v) for v in velocities), 1.0)
+
+    def test_forces_are_those_of_the_mixture(self):
+        """Beside dynamics that are not affine in a selection that slides: few forces are expressions, many numbers."""
+        forces = []
+        for floors in (1, 9):
+            contacts = [contact(f"floor{k}", f"y + {100 * k}", {"x": "1"}) for k in range(floors)]
+            result = self.result(PRESSED + "\n".join(contacts))
+            self.assertIn("enter_sliding", [event["kind"] for event in result["events"]])
+            forces.append(result["final"]["outputs"][result["outputs"].index("force(floor0)")])
+        self.assertAlmostEqual(forces[0], forces[1], delta=1e-9)
+
+    def test_many_contacts_beside_a_switch(self):
+        """Forces in numbers are asked for at the start, where selections are not known yet."""
+        text = heap(4, 0.95, 0.4).replace("[states]\n", "[states]\nz = 0.3\n")
+        result = self.result(text.replace("[[contacts]]", '[dynamics]\nz = "-sign(z)"\n[[contacts]]', 1))
+        self.assertEqual(result["status"]["termination"], "completed")
+        sliding = [event["t"] for event in result["events"] if event["kind"] == "enter_sliding"]
+        self.assertEqual(len(sliding), 1)
+        self.assertAlmostEqual(sliding[0], 0.3, delta=1e-9)
+
+    def test_contacts_that_open_each_other_come_to_rest(self):
+        """Two contacts of four discs, each of which opens as the other one closes: ever slower, down to rounding."""
+        result = self.result(heap(6, 0.95, 1))
+        self.assertEqual(result["status"]["termination"], "completed")
+        self.assertLess(result["penetration"], 1e-9)
+        self.assertLess(len(result["events"]), 200)
+        self.falls(result)
 
     def test_a_heap_of_twenty_discs_begins_at_once(self):
         """250 contacts: what is prepared grows with their number, not with its third power."""

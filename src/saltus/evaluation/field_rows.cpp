@@ -22,8 +22,8 @@ std::shared_ptr<const FieldRows> FieldRows::of(const model::ModelFunction& field
   const model::ProgramParts of_field(field.program()), of_constants(constants.program());
   for (std::size_t row = 0; row < n; ++row) {
     Row parts;
-    parts.field = of_field.of({row});
-    parts.constants = of_constants.of(parts.field->inputs(2));
+    parts.field = of_field.of({{row}});
+    parts.constants = of_constants.of({parts.field->inputs(2)});
     rows->note(row, parts.field->inputs(1), parts.constants->inputs(1));
     rows->rows_.push_back(std::move(parts));
   }

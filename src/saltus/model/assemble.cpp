@@ -288,17 +288,14 @@ class Assembly {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
       if (classes_[i].role == SwitchingRole::listed) sliding_.insert(surfaces_[i].alpha);
     }
+    const auto mixed = statement_.inclusion == Inclusion::aizerman_pyatnitskii ? std::set<int>{} : sliding_;
     std::vector<SXElem> as_written, reduced;
     for (std::size_t i = 0; i < f_.size(); ++i) {
       prepares("writing right-hand sides", i, f_.size());
       const auto& state = statement_.states[i];
       as_written.push_back(*state.dynamics);
       if (bends(f_[i])) system_.inclusion_differences.push_back(state.name);
-      if (statement_.inclusion == Inclusion::aizerman_pyatnitskii) {
-        reduced.push_back(*state.dynamics);
-        continue;
-      }
-      auto component = interpolate(graph_, f_[i], sliding_, "the dynamics of " + state.name);
+      auto component = interpolate(graph_, f_[i], mixed, "the dynamics of " + state.name);
       if (!component) return with_location(component.error(), state.dynamics_location);
       reduced.push_back(*component);
     }
@@ -308,6 +305,12 @@ class Assembly {
     }
     system_.f_as_written = column(as_written);
     system_.f = column(reduced);
+    // What forces in numbers hold is the motion of the reduced right-hand side.
+    for (SXElem& acceleration : system_.contacts.acceleration.nonzeros()) {
+      const auto motion = interpolate(graph_, graph_.node(acceleration), mixed, "the accelerations of contacts");
+      if (!motion) return motion.error();
+      acceleration = *motion;
+    }
     return std::nullopt;
   }
 

@@ -199,6 +199,29 @@ TEST(Impacts, NothingClosesBehindThemAndNoEnergyIsGained) {
   EXPECT_GE(ended, 55);
 }
 
+/// So fast that no impact stops them, by combinations or by pivots.
+TEST(Impacts, WhatRestsAndSlipsRubsAgainstItsSlip) {
+  std::mt19937 dice(4);
+  int ended = 0;
+  for (int run = 0; run < 40; ++run) {
+    ContactPoint point = falling_pile(2 + run % 18, dice);
+    const int m = point.contacts();
+    std::vector<int> touching;
+    for (int i = 0; i < m; ++i) {
+      touching.push_back(i);
+      if (i % 4 == 2) point.velocity(m + i) = i % 8 == 2 ? 100.0 : -100.0;
+    }
+    const auto impulse = impact(point, touching);
+    if (!impulse) continue;
+    ++ended;
+    for (int i = 2; i < m; i += 4) {
+      const double limit = point.friction[static_cast<std::size_t>(i)] * (*impulse)(i);
+      EXPECT_NEAR((*impulse)(m + i), i % 8 == 2 ? -limit : limit, 1e-9) << run;
+    }
+  }
+  EXPECT_GE(ended, 35);
+}
+
 /// A pile of which no contact does anything to those of another one.
 TEST(Impacts, PartsThatDoNothingToEachOtherHaveTheirOwn) {
   std::mt19937 dice(5);

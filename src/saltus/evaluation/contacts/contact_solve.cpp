@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "saltus/base/at.hpp"
 #include "saltus/evaluation/contacts/contact_solve_internal.hpp"
@@ -11,11 +12,19 @@ using casadi::SX;
 bool LastPoint::is_at(const PointArguments& point) {
   const auto is_kept = [&](std::size_t i) {
     const auto& now = point[i];
-    return now.size() <= arguments_[i].size() &&
-           (now.empty() || std::memcmp(arguments_[i].data(), now.data(), now.size_bytes()) == 0);
+    if (now.size() > arguments_[i].size()) return false;
+    if (now.data() == nullptr)
+      return std::all_of(arguments_[i].begin(), arguments_[i].end(), [](double kept) { return kept == 0.0; });
+    return now.empty() || std::memcmp(arguments_[i].data(), now.data(), now.size_bytes()) == 0;
   };
   if (!arguments_[0].empty() && is_kept(0) && is_kept(1) && is_kept(2) && is_kept(3)) return true;
-  for (std::size_t i = 0; i < point.size(); ++i) arguments_[i].assign(point[i].begin(), point[i].end());
+  for (std::size_t i = 0; i < point.size(); ++i) {
+    if (point[i].data() == nullptr) {
+      arguments_[i].assign(point[i].size(), 0.0);
+    } else {
+      arguments_[i].assign(point[i].begin(), point[i].end());
+    }
+  }
   return false;
 }
 
@@ -26,6 +35,10 @@ ContactSolve::Rows ContactSolve::by_columns(const SX& matrix) {
   for (casadi_int k = 0; k < sparsity.nnz(); ++k) rows.column.push_back(at(sparsity.row()[k]));
   rows.value.resize(rows.column.size());
   return rows;
+}
+
+ContactSolve::Cut::Cut(ModelFunction function) : whole(std::move(function)) {
+  if (whole.program()) parts = std::make_shared<model::ProgramParts>(whole.program());
 }
 
 ContactSolve::ContactSolve(const model::ContactSystem& system, const SX& acceleration, const ModelSymbols& symbols,
@@ -39,16 +52,17 @@ ContactSolve::ContactSolve(const model::ContactSystem& system, const SX& acceler
   responses_ = by_columns(responses);
   by_forces_ = by_columns(by_forces);
   const auto entries = [](const SX& matrix) { return matrix.nnz() == 0 ? SX(0, 1) : SX(matrix.nonzeros()); };
-  terms_ = ModelFunction("saltus_forces", arguments, {entries(rows), entries(responses), acceleration, system.cone});
+  terms_ = Cut({"saltus_forces", arguments, {entries(rows), entries(responses), acceleration, system.cone}});
   partials_ = ModelFunction("saltus_by_forces", arguments, {entries(by_forces)});
   const SX moved = SX::sym("moved", system.responses.size1()), by = SX::vertcat({symbols.x, symbols.t});
   const SX of_rows = SX::jacobian(SX::mtimes(rows.T(), moved) + acceleration, by).T();
-  const SX of_responses = SX::jacobian(SX::mtimes(responses, system.forces), by).T();
+  const SX of_responses = SX::jacobian(entries(responses), by).T();
   const SX normal = SX::repmat(system.forces(casadi::Slice(0, m)), r / m - 1, 1);
   const SX of_cones = SX::jacobian(system.cone * normal, by).T();
   by_place_ = {by_columns(of_rows), by_columns(of_responses), by_columns(of_cones)};
-  slopes_ = ModelFunction("saltus_force_slopes", {symbols.t, symbols.x, symbols.p, symbols.alpha, moved},
-                          {entries(of_rows), entries(of_responses), entries(of_cones)});
+  slopes_ = Cut({"saltus_force_slopes",
+                 {symbols.t, symbols.x, symbols.p, symbols.alpha, moved},
+                 {entries(of_rows), entries(of_responses), entries(of_cones)}});
   for (const auto& contact : system.contacts) has_gap_.push_back(contact.has_gap);
   acceleration_.resize(at(r));
   cone_.resize(at(r - m));
@@ -102,6 +116,36 @@ void ContactSolve::find_unknowns(const Activities& activities) {
   }
 }
 
+/// The terms of what touches alone, and their slopes: once for all points of a mode.
+void ContactSolve::take_parts() {
+  if (!terms_.parts || (terms_.held && known_held_ == held_)) return;
+  known_held_ = held_;
+  model::ProgramParts::Rows terms(4), slopes(3);
+  const auto take = [](const Rows& rows, std::size_t row, std::vector<std::size_t>& places) {
+    for (std::size_t k = rows.start[row]; k < rows.start[row + 1]; ++k) places.push_back(k);
+  };
+  const auto take_force = [&](std::size_t row) {
+    take(responses_, row, terms[1]);
+    for (std::size_t k = responses_.start[row]; k < responses_.start[row + 1]; ++k) take(by_place_[1], k, slopes[1]);
+  };
+  for (const std::size_t row : held_) {
+    take_force(row);
+    take(rows_, row, terms[0]);
+    take(by_place_[0], row, slopes[0]);
+    terms[2].push_back(row);
+  }
+  for (std::size_t row = contacts_; row < forces(); ++row) {
+    const std::size_t i = row % contacts_;
+    if (is_held_[row] || !(is_held_[i] || !has_gap_[i])) continue;
+    take_force(row);
+    take(by_place_[2], row - contacts_, slopes[2]);
+    terms[3].push_back(row - contacts_);
+  }
+  for (const std::size_t i : given_) take_force(i);
+  terms_.take(terms);
+  slopes_.take(slopes);
+}
+
 void ContactSolve::assemble() {
   const auto k = index(held_.size());
   matrix_.resize(k, k);
@@ -136,12 +180,14 @@ void ContactSolve::solve(const PointArguments& point, const Activities& activiti
     known.resize(parameters.size());
     find_unknowns(activities);
     if (!held_.empty() || !given_.empty()) {
-      terms_(here(),
-             std::array<double*, 4>{rows_.value.data(), responses_.value.data(), acceleration_.data(), cone_.data()});
+      take_parts();
+      terms_.whole.run(
+          terms_.held.get(), here(),
+          std::array<double*, 4>{rows_.value.data(), responses_.value.data(), acceleration_.data(), cone_.data()});
       assemble();
     }
     set_forces(known.data() + first_);
-    has_partials_ = has_slopes_ = false;
+    has_partials_ = slopes_.is_here = false;
   }
   std::copy_n(last_.parameters().data() + first_, this->forces(), forces);
 }
@@ -162,15 +208,16 @@ bool ContactSolve::moves(int function) {
 
 /// Of the equations at this point, with forces held.
 void ContactSolve::find_slopes() {
-  if (has_slopes_) return;
-  has_slopes_ = true;
+  if (slopes_.is_here) return;
+  slopes_.is_here = true;
   const auto [t, x, p, alpha] = here();
   along_.set_constant(0.0);
   for (std::size_t row = 0; row < forces(); ++row) {
     if (p[first_ + row] != 0.0) add(responses_, row, p[first_ + row], along_);
   }
-  slopes_(std::array<const double*, 5>{t, x, p, alpha, along_.data()},
-          std::array<double*, 3>{by_place_[0].value.data(), by_place_[1].value.data(), by_place_[2].value.data()});
+  slopes_.whole.run(
+      slopes_.held.get(), std::array<const double*, 5>{t, x, p, alpha, along_.data()},
+      std::array<double*, 3>{by_place_[0].value.data(), by_place_[1].value.data(), by_place_[2].value.data()});
   transposed_.compute(matrix_.transpose());
 }
 
@@ -196,8 +243,11 @@ void ContactSolve::find_gradient(int function) {
     add(rows_, held_[j], right_(index(j)), along_);
     add(by_place_[0], held_[j], right_(index(j)), gradient_);
   }
-  for (Index i = 0; i < along_.size(); ++i) add(by_place_[1], at(i), along_(i), gradient_);
   const double* const found = last_.parameters().data() + first_;
+  for (std::size_t row = 0; row < forces(); ++row) {
+    for (std::size_t k = responses_.start[row]; found[row] != 0.0 && k < responses_.start[row + 1]; ++k)
+      add(by_place_[1], k, found[row] * along_(index(responses_.column[k])), gradient_);
+  }
   for (std::size_t row = contacts_; row < forces(); ++row) {
     if (is_held_[row] || found[row % contacts_] == 0.0) continue;
     add(by_place_[2], row - contacts_, derivatives_[row] - product(responses_, row, along_), gradient_);

@@ -7,7 +7,7 @@
 
 namespace saltus::evaluation {
 
-/// Of t, x, p, alpha.
+/// Of t, x, p, alpha; null ones are zeros, as in functions: before a start selections are not known.
 using PointArguments = std::array<std::span<const double>, 4>;
 
 class LastPoint {

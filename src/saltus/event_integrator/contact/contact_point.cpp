@@ -59,12 +59,20 @@ std::vector<std::vector<int>> parts_of(const ContactPoint& point, const std::vec
 
 void read_contacts(const std::vector<model::Contact>& contacts, const evaluation::ContactValues& values,
                    ContactPoint& point) {
-  // Of many bodies a contact moves two.
-  point.influence.set_zero(values.rows.rows(), values.responses.cols());
-  for (linalg::Index i = 0; i < values.rows.rows(); ++i) {
-    auto own = point.influence.row(i);
-    for (linalg::Index k = 0; k < values.rows.cols(); ++k) {
-      if (const double part = values.rows(i, k); part != 0.0) own.add_scaled(part, values.responses.row(k));
+  // Of many bodies a contact moves two, and each of these is moved by few contacts.
+  const auto &rows = values.rows, &responses = values.responses;
+  std::vector<std::vector<linalg::Index>> moving(at(responses.rows()));
+  for (linalg::Index k = 0; k < responses.rows(); ++k) {
+    for (linalg::Index j = 0; j < responses.cols(); ++j) {
+      if (responses(k, j) != 0.0) moving[at(k)].push_back(j);
+    }
+  }
+  point.influence.set_zero(rows.rows(), responses.cols());
+  for (linalg::Index i = 0; i < rows.rows(); ++i) {
+    for (linalg::Index k = 0; k < rows.cols(); ++k) {
+      const double part = rows(i, k);
+      if (part == 0.0) continue;
+      for (const linalg::Index j : moving[at(k)]) point.influence(i, j) += part * responses(k, j);
     }
   }
   point.velocity = values.velocity;

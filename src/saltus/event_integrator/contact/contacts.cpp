@@ -171,19 +171,12 @@ std::optional<std::string> Contacts::resolve(const ContactMoment& moment, const 
   if (touch_only) point.restitution.assign(contacts_.size(), 0.0);
   const ContactPoint before = closing ? point : ContactPoint{};
   if (closing) {
-    const auto x_before = x;
-    const bool ends = collide(moment, touching, std::nullopt, point, x);
-    if (!ends && !close_by_rounding(moment, touching, before)) {
+    const bool rests = fall_by_nothing(moment, touching, point, x) && come_to_rest(moment, touching, point, x);
+    if (!rests && !collide(moment, touching, std::nullopt, point, x)) {
       return fmt::format("the impact of {} at t = {:.17g} has no end: bodies jam, or normals depend on each other",
                          names(touching), moment.t);
     }
-    if (!ends) {
-      x = x_before;
-      point = before;
-      kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
-      for (const int i : touching) point.velocity(i) = std::max(point.velocity(i), 0.0);
-    }
-    if (!ends || touch_only) {
+    if (touch_only) {
       impulses_.resize(0);
       why_open_.clear();
     }

@@ -178,8 +178,12 @@ class Contacts {
                                       const std::vector<double>& x) const;
   [[nodiscard]] bool closes_flatly(const ContactMoment& moment, int contact, const ContactPoint& point,
                                    const std::vector<double>& x) const;
-  [[nodiscard]] static bool close_by_rounding(const ContactMoment& moment, const std::vector<int>& touching,
-                                              const ContactPoint& point);
+  [[nodiscard]] bool is_nothing(const ContactMoment& moment, int contact, double speed, double pull,
+                                const std::vector<double>& x) const;
+  [[nodiscard]] bool fall_by_nothing(const ContactMoment& moment, const std::vector<int>& touching,
+                                     const ContactPoint& point, const std::vector<double>& x);
+  [[nodiscard]] bool come_to_rest(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint& point,
+                                  std::vector<double>& x);
   void move_ahead(const ContactMoment& moment, double h, std::vector<double>& x) const;
   void note_last_bounces(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint before,
                          const std::vector<double>& x);

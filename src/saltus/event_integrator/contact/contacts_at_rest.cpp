@@ -59,15 +59,36 @@ double Contacts::pull_on(int contact, const ContactPoint& point, const std::vect
   return std::max(0.0, -acceleration);
 }
 
-/// Whether a contact opens and falls back before its gap, or the time, would be more than rounding. Without an end to
-/// them such bounces would go on for ever: no speed is small enough to end at once.
-bool Contacts::rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
-                                const std::vector<double>& x) const {
-  if (!contacts_[at(contact)].has_gap) return false;
+/// Whether a gap that moves with this speed against a pull gets no further, or takes no longer, than its rounding.
+/// Without an end to them such bounces would go on for ever: no speed is small enough to end at once.
+bool Contacts::is_nothing(const ContactMoment& moment, int contact, double speed, double pull,
+                          const std::vector<double>& x) const {
   constexpr double roundings = 64.0 * rounding_unit;
-  const double speed = std::abs(point.normal_velocity(contact)), pull = pull_on(contact, point, x);
   return speed * speed <= 2.0 * pull * roundings * gap_terms(contact, x) ||
          speed <= pull * roundings * std::abs(moment.t);
+}
+
+/// Whether a contact opens and falls back before that.
+bool Contacts::rises_by_nothing(const ContactMoment& moment, int contact, const ContactPoint& point,
+                                const std::vector<double>& x) const {
+  return contacts_[at(contact)].has_gap &&
+         is_nothing(moment, contact, std::abs(point.normal_velocity(contact)), pull_on(contact, point, x), x);
+}
+
+/// Whether all that closes has fallen by nothing in the motion up to here.
+bool Contacts::fall_by_nothing(const ContactMoment& moment, const std::vector<int>& touching, const ContactPoint& point,
+                               const std::vector<double>& x) {
+  std::vector<double> rate(x.size()), free(x.size());
+  kernel_.field(moment.t, x.data(), moment.alpha.data(), rate.data());
+  free_field(moment.t, x, moment.alpha, free.data());
+  return std::all_of(touching.begin(), touching.end(), [&](int i) {
+    double pull = -point.acceleration(i);
+    for (std::size_t k = 0; k < layout_.velocities.size(); ++k) {
+      const std::size_t state = at(layout_.velocities[k]);
+      pull -= values_.rows(i, index(k)) * (rate[state] - free[state]);
+    }
+    return point.normal_velocity(i) >= 0.0 || is_nothing(moment, i, -point.normal_velocity(i), pull, x);
+  });
 }
 
 /// Whether a gap closes no faster than velocities are known: than the rounding of the terms of its rate, and of what
@@ -87,14 +108,6 @@ bool Contacts::closes_flatly(const ContactMoment& moment, int contact, const Con
   kernel_.contacts(moment.t + h, ahead.data(), moment.alpha.data(), later);
   const double rate = std::abs(later.acceleration(contact) - acceleration) / h;
   return acceleration * acceleration <= 4.0 * speed * rate;
-}
-
-/// Whether no gap closes faster than forces change its rate by in the rounding of the time.
-bool Contacts::close_by_rounding(const ContactMoment& moment, const std::vector<int>& touching,
-                                 const ContactPoint& point) {
-  const double rounding = 16.0 * rounding_unit * std::max(std::abs(moment.t), moment.time_scale);
-  return std::all_of(touching.begin(), touching.end(),
-                     [&](int i) { return point.normal_velocity(i) >= -rounding * std::abs(point.acceleration(i)); });
 }
 
 /// Contacts that an impact has closed as slowly as nothing would be left to rise by.

@@ -79,6 +79,40 @@ void Contacts::compare_orders(const ContactPoint& before, const std::vector<int>
                                names({other->contact}), other->velocity, other->together);
 }
 
+/// Brings what has fallen by nothing to rest without an impact, and sets nothing beside it in motion. Else contacts of
+/// which each opens another one would bounce for ever.
+/// @return false where rates do not vanish together
+bool Contacts::come_to_rest(const ContactMoment& moment, const std::vector<int>& touching, ContactPoint& point,
+                            std::vector<double>& x) {
+  const double size = point.velocity.max_abs(), closing = -point.velocity.selected_rows(touching).min();
+  std::vector<int> rows;
+  linalg::RowBasis basis = no_rows();
+  const auto stop = [&](int row) {
+    if (basis.takes(values_.rows.row(row))) rows.push_back(row);
+  };
+  for (const int i : touching) {
+    if (point.velocity(i) <= closing) stop(i);
+  }
+  for (const int i : touching) {
+    for (int k = 0; k < point.tangents[at(i)]; ++k) {
+      if (point.velocity(point.tangent_row(i, k)) == 0.0) stop(point.tangent_row(i, k));
+    }
+  }
+  const auto x_before = x;
+  const auto before = point;
+  change_velocities(rows, -values_.velocity.selected_rows(rows), x);
+  read_point(moment.t, moment.alpha, x, point);
+  for (const int row : rows) point.velocity(row) = 0.0;
+  drop_roundings(size, point);
+  const bool rests = point.velocity.selected_rows(touching).min() >= 0.0;
+  if (!rests) {
+    x = x_before;
+    point = before;
+    kernel_.contacts(moment.t, x.data(), moment.alpha.data(), values_);
+  }
+  return rests;
+}
+
 /// An impact. What would rise by nothing has no restitution: its impulses, too, are those of bodies that come to rest.
 bool Contacts::collide(const ContactMoment& moment, const std::vector<int>& touching, std::optional<int> pushed,
                        ContactPoint& point, std::vector<double>& x) {

@@ -25,6 +25,7 @@ struct Branch {
 
 constexpr double process_rounding = 1e-11;  ///< relative, of sums of products over many pieces
 constexpr double share_rounding = 1e-9;     ///< of rates of impulses, which are 1 where a contact closes
+constexpr double vertex_rounding = 1e-6;    ///< likewise, of those at a vertex: pivots shift what they start from
 constexpr double largest_impulse = 1e6;     ///< relative to that of one contact alone: bodies in a wedge jam
 
 class Process {
@@ -198,24 +199,24 @@ class Process {
   }
 
   /// Whether what is held is held by impulses that contacts can have.
-  [[nodiscard]] bool has_possible_impulses(const std::vector<Branch>& branches) const {
+  [[nodiscard]] bool has_possible_impulses(const std::vector<Branch>& branches, double rounding) const {
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
-      const double normal = rate_(i), largest = friction(i) * normal + share_rounding;
+      const double normal = rate_(i), largest = friction(i) * normal + rounding;
       const bool held = branches[k].normal == Branch::Normal::held;
-      if (held && !(normal >= -share_rounding && normal <= 1.0 + share_rounding)) return false;
+      if (held && !(normal >= -rounding && normal <= 1.0 + rounding)) return false;
       if (branches[k].sticks && point_.along(rate_, i).norm() > largest) return false;
     }
     return true;
   }
 
-  [[nodiscard]] bool admits(std::vector<Branch>& branches) { return rates(branches) && fits(branches); }
+  [[nodiscard]] bool admits(std::vector<Branch>& branches) { return rates(branches) && fits(branches, share_rounding); }
 
   /// Whether branches are those of the rates that have been found.
-  [[nodiscard]] bool fits(const std::vector<Branch>& branches) {
-    if (!has_possible_impulses(branches)) return false;
+  [[nodiscard]] bool fits(const std::vector<Branch>& branches, double rounding) {
+    if (!has_possible_impulses(branches, rounding)) return false;
     find_change();
-    const double slow = share_rounding * strength_;
+    const double slow = rounding * strength_;
     for (std::size_t k = 0; k < touching_.size(); ++k) {
       const int i = touching_[k];
       const auto& branch = branches[k];
@@ -259,7 +260,7 @@ class Process {
       return admits(branches_);
     // Where rows depend on each other these branches leave more rates open than the vertex.
     rate_ = vertex->z;
-    return fits(branches_);
+    return fits(branches_, vertex_rounding);
   }
 
   [[nodiscard]] Branch branch_of(std::size_t k, const switching::PointVertex& vertex) const {
@@ -272,12 +273,11 @@ class Process {
                                                    : Branch::Normal::held};
     if (friction(i) == 0.0 || branch.normal == Branch::Normal::open) return branch;
     const Vector along = slip(i);
-    branch.sticks = face == Face::stick;
+    branch.sticks = face == Face::stick && along.is_zero();
+    branch.begins = face == Face::slip && along.is_zero();
     if (!along.is_zero()) {
       branch.direction = along.normalized();
-    } else if (face == Face::slip) {
-      branch.begins = true;
-    } else if (!branch.sticks) {
+    } else if (face == Face::slip_up || face == Face::slip_down) {
       branch.direction = Vector{face == Face::slip_up ? 1.0 : -1.0, 0.0};
     }
     return branch;

@@ -32,12 +32,19 @@ class ModelFunction {
 
   template <std::size_t n_in, std::size_t n_out>
   void operator()(const std::array<const double*, n_in>& in, const std::array<double*, n_out>& out) {
+    run(program_.get(), in, out);
+  }
+
+  /// Runs a part of its program instead, unless it is native.
+  /// @param part  null where the function calls others
+  template <std::size_t n_in, std::size_t n_out>
+  void run(const Program* part, const std::array<const double*, n_in>& in, const std::array<double*, n_out>& out) {
     for (std::size_t i = 0; i < n_in; ++i) arguments_[i] = in[i];
     for (std::size_t i = 0; i < n_out; ++i) results_[i] = out[i];
     if (native_ != nullptr) {
       native_(arguments_.data(), results_.data(), integers_.data(), work_.data(), 0);
-    } else if (program_) {
-      (*program_)(arguments_.data(), results_.data(), work_.data());
+    } else if (part != nullptr) {
+      (*part)(arguments_.data(), results_.data(), work_.data());
     } else {
       function_(arguments_.data(), results_.data(), integers_.data(), work_.data());
     }

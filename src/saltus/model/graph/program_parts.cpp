@@ -1,5 +1,6 @@
 #include "saltus/model/graph/program_parts.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <casadi/core/sx_elem.hpp>
@@ -8,7 +9,6 @@
 #include <casadi/core/calculus.hpp>
 
 #include "saltus/base/at.hpp"
-#include "saltus/base/without_repeats.hpp"
 
 namespace saltus::model {
 
@@ -23,9 +23,10 @@ ProgramParts::ProgramParts(std::shared_ptr<const Program> whole)
     const auto& [first, second] = instruction.operands;
     if (instruction.operation == casadi::OP_OUTPUT) {
       first_[k] = maker(first);
-      if (instruction.target != 0) continue;
-      if (output_.size() <= at(second)) output_.resize(at(second) + 1, nowhere);
-      output_[at(second)] = static_cast<int>(k);
+      if (output_.size() <= at(instruction.target)) output_.resize(at(instruction.target) + 1);
+      auto& rows = output_[at(instruction.target)];
+      if (rows.size() <= at(second)) rows.resize(at(second) + 1, nowhere);
+      rows[at(second)] = static_cast<int>(k);
       continue;
     }
     if (instruction.operation != casadi::OP_CONST && instruction.operation != casadi::OP_INPUT) {
@@ -38,19 +39,32 @@ ProgramParts::ProgramParts(std::shared_ptr<const Program> whole)
 }
 
 /// In their order, at their places: what is left out cannot have been in between.
-std::shared_ptr<const Program> ProgramParts::of(const std::vector<std::size_t>& rows) const {
+std::shared_ptr<const Program> ProgramParts::of(const Rows& rows) const {
   std::vector<int> needed;
-  for (const std::size_t row : rows) {
-    if (row < output_.size() && output_[row] != nowhere) needed.push_back(output_[row]);
+  std::vector<bool> is_needed(first_.size(), false);
+  const auto need = [&](int k) {
+    if (k == nowhere || is_needed[at(k)]) return;
+    is_needed[at(k)] = true;
+    needed.push_back(k);
+  };
+  for (std::size_t result = 0; result < std::min(rows.size(), output_.size()); ++result) {
+    for (const std::size_t row : rows[result]) need(row < output_[result].size() ? output_[result][row] : nowhere);
   }
   for (std::size_t k = 0; k < needed.size(); ++k) {
-    for (const int operand : {first_[at(needed[k])], second_[at(needed[k])]}) {
-      if (operand != nowhere) needed.push_back(operand);
-    }
+    for (const int operand : {first_[at(needed[k])], second_[at(needed[k])]}) need(operand);
   }
-  drop_repeats(needed);
   auto part = std::make_shared<Program>();
-  for (const int k : needed) part->instructions_.push_back(whole_->instructions_[at(k)]);
+  part->instructions_.reserve(needed.size());
+  const auto take = [&](std::size_t k) { part->instructions_.push_back(whole_->instructions_[k]); };
+  constexpr std::size_t as_fast_counted = 64;  // as sorted, where one of so many is needed
+  if (needed.size() * as_fast_counted > is_needed.size()) {
+    for (std::size_t k = 0; k < is_needed.size(); ++k) {
+      if (is_needed[k]) take(k);
+    }
+  } else {
+    std::sort(needed.begin(), needed.end());
+    for (const int k : needed) take(at(k));
+  }
   return part;
 }
 

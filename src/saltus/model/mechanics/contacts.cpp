@@ -35,8 +35,8 @@ class ContactBuild {
   }
 
  private:
-  /// Forces up to which an elimination as an expression is made at once, and evaluated as fast as one in numbers.
-  static constexpr casadi_int most_eliminated = 24;
+  /// Forces up to which an elimination as an expression is made and evaluated as fast as one in numbers.
+  static constexpr casadi_int most_eliminated = 8;
 
   /// A name of such a constant has a point in it, which no name of a user has.
   void declare_activities() {

@@ -17,10 +17,12 @@ using linalg::Vector;
 /// are columns in memory. Unknowns: y, z, z_0.
 ///
 /// Where w has zeros, or bodies are alike, ratios are equal. A shift of w tells them apart, another one in each row:
-/// far above the rounding of the table, so that no basis comes twice, and no part of the values.
+/// above the rounding of the table, so that no basis comes twice, and no part of the values. What is found holds to its
+/// size.
 class Table {
  public:
-  Table(const Matrix& effects, const Vector& constant)
+  /// @param shift_size  relative to w
+  Table(const Matrix& effects, const Vector& constant, double shift_size)
       : n_(constant.size()), table_(n_ + 3, n_), places_(at(2 * n_ + 1)), basis_(at(n_)) {
     for (Index i = 0; i < n_; ++i) {
       for (Index k = 0; k < n_; ++k) entry(i, k) = -effects(i, k);
@@ -33,6 +35,7 @@ class Table {
     }
     std::iota(basis_.begin(), basis_.end(), Index{0});
     size_ = constant.max_abs();
+    shift_ = shift_size * size_;
   }
 
   [[nodiscard]] Index artificial() const { return 2 * n_; }
@@ -85,26 +88,22 @@ class Table {
 
  private:
   static constexpr double golden = 0.6180339887498949;
-  static constexpr double shift_size = 1e-9;  ///< relative to w
 
   [[nodiscard]] Index right() const { return n_ + 1; }
   [[nodiscard]] Index shift() const { return n_ + 2; }
   [[nodiscard]] double& entry(Index row, Index column) { return table_(column, row); }
   [[nodiscard]] double entry(Index row, Index column) const { return table_(column, row); }
-  [[nodiscard]] double shifted(Index row) const { return value(row) + shift_size * size_ * entry(row, shift()); }
+  [[nodiscard]] double shifted(Index row) const { return value(row) + shift_ * entry(row, shift()); }
 
   Index n_;
   Matrix table_;
   std::vector<Index> places_;  ///< of every unknown: its row if it is basic, its column if it is not
   std::vector<Index> basis_;   ///< by row
-  double size_ = 0.0;
+  double size_ = 0.0, shift_ = 0.0;
 };
 
-}  // namespace
-
-std::optional<Vector> complementary_pivots(const Matrix& effects, const Vector& constant, std::vector<bool>* basic) {
-  const Index n = constant.size();
-  Table table(effects, constant);
+std::optional<Vector> pivots_of(Table table, std::vector<bool>* basic) {
+  const Index n = table.artificial() / 2;
   Index left = -1;
   if (table.start(left)) {
     const Index most_pivots = 50 * (n + 10);
@@ -125,6 +124,15 @@ std::optional<Vector> complementary_pivots(const Matrix& effects, const Vector& 
     if (basic != nullptr) (*basic)[at(unknown)] = true;
   }
   return z.all_finite() ? std::optional(std::move(z)) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Vector> complementary_pivots(const Matrix& effects, const Vector& constant, std::vector<bool>* basic) {
+  // The larger one where the smaller one does not tell apart what the rounding of this table mixes.
+  constexpr double small = 1e-12, large = 1e-9;
+  auto z = pivots_of(Table(effects, constant, small), basic);
+  return z ? z : pivots_of(Table(effects, constant, large), basic);
 }
 
 }  // namespace saltus::switching

@@ -15,7 +15,7 @@ namespace {
 
 using Options = std::vector<std::vector<Face>>;
 
-constexpr double most_leaves = 65536.0;
+constexpr double few_leaves = 4096.0, most_leaves = 65536.0;  ///< tried at once; tried where pivots find nothing
 constexpr double leaves_of_open = 64.0;  ///< as many cost as much as the choice of z that faces leave open
 
 std::vector<Face> faces_of(const Block& block) {
@@ -193,8 +193,10 @@ PointSolutions solve_point(const PointProblem& problem, const FaceHints& hints) 
   if (std::all_of(hints.excluded.begin(), hints.excluded.end(), [](const auto& faces) { return faces.empty(); }))
     drop_impossible(problem, options);
   for (const auto& faces : options) leaves *= static_cast<double>(faces.size());
-  if (leaves > most_leaves || !search_all(problem, options, hints.holds, found))
+  if (leaves > few_leaves || !search_all(problem, options, hints.holds, found)) {
     search_some(problem, options, hints, found);
+    if (found.all.empty() && leaves <= most_leaves) search_all(problem, options, hints.holds, found);
+  }
   const auto is_open = [](Face face) { return face == Face::open; };
   if (std::all_of(hints.before.begin(), hints.before.end(), is_open)) return found;
   std::stable_partition(found.all.begin(), found.all.end(),

@@ -24,7 +24,7 @@ struct FaceHints {
 };
 
 /// Finds the solutions of y = w + W z by the faces of the blocks: all of them, by a search over their combinations,
-/// where these are no more than 2^16, and fewer where many leave z open; else some, by complementary pivots and from
+/// where these are no more than 2^12, and fewer where many leave z open; else some, by complementary pivots and from
 /// the faces before. Cost: an elimination a combination; beyond, of n rows, 3 n pivots of 9 n^2 operations.
 [[nodiscard]] PointSolutions solve_point(const PointProblem& problem, const FaceHints& hints);
 
