@@ -46,6 +46,20 @@ class Json(tool.ToolTest):
         self.assertLess(max(max(row) for row in errors["x"]), 1e-4)
         self.assertGreater(max(max(row) for row in errors["x"]), 0)
 
+    def test_errors_of_methods_whose_tolerances_are_no_steps(self):
+        """Of elements by shorter ones, of what is smoothed by a smaller width: as large as those against the event engine."""
+        def result_of(*arguments):
+            self.run_tool("simulate", "stick-slip", "--until", "1", "--quiet", "--out", "e.json", *arguments, code=0)
+            return json.loads((self.folder / "e.json").read_text(encoding="utf-8"))
+
+        exact = result_of("--rtol", "1e-12")["final"]["x"]
+        for method in ("fesd", "timestepping", "smoothed"):
+            width = () if method != "smoothed" else ("--set", "simulate.smoothed.epsilon=1e-3")
+            result = result_of("--method", method, "--error-estimate", *width)
+            for error, found, right in zip(result["error_estimate"]["final"], result["final"]["x"], exact):
+                self.assertLess(abs(found - right), 3 * error, method)
+                self.assertLess(error, 3 * abs(found - right), method)
+
     def test_keys_in_order(self):
         self.assertEqual(list(self.result), KEYS)
         self.assertEqual(list(self.result["model"])[:3], ["name", "sha256", "parameters"])

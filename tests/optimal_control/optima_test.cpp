@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "ocp_models.hpp"
@@ -280,6 +281,42 @@ reformulation = "stewart"
 )toml"));
   EXPECT_EQ(result.status.termination, Termination::completed) << result.status.message;
   EXPECT_LT(result.optimization->objective, 0.195);
+}
+
+/// A thermostat that heats below 0.8 and until 1.2: relaxed problems alone end at 0.0388, and without a solution
+/// over the shorter horizon.
+TEST(OcpOptima, AThermostatIsLedPastItsThresholds) {
+  const auto text = [](double horizon, const char* end) {
+    return fmt::format(R"toml(
+[model]
+name = "oven"
+[states]
+T = 0
+[controls]
+fan = {{ lower = 0, upper = 1 }}
+[dynamics]
+T = "2*heat - T - fan"
+[[hysteresis]]
+name = "heat"
+input = "T"
+on = 0.8
+off = 1.2
+initial = 1
+[optimize]
+horizon = {}
+control_intervals = 6
+elements = 4
+running_cost = "fan^2"
+terminal_constraints = ["{}"]
+)toml",
+                       horizon, end);
+  };
+  const auto least = optimized(stated(text(3.0, "T == 0.9")));
+  EXPECT_EQ(least.status.termination, result::Termination::completed) << least.status.message;
+  EXPECT_LT(least.optimization->objective, 0.0049);
+  const auto short_one = optimized(stated(text(1.6, "T == 0.9")));
+  EXPECT_EQ(short_one.status.termination, result::Termination::completed) << short_one.status.message;
+  EXPECT_LT(short_one.optimization->objective, 1.07);
 }
 
 /// x and y come to 0 at one time, and stay there. One after the other is better, best without control; three elements

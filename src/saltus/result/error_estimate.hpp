@@ -7,7 +7,7 @@
 
 namespace saltus::result {
 
-/// Holds estimates of global errors, by a second run at tolerances `ratio` times as large.
+/// Holds estimates of global errors, by a second run whose tolerances, steps or smoothing are `ratio` times as large.
 struct ErrorEstimate {
   double ratio = 0.01;
   std::vector<std::vector<double>> x;  ///< of every row and state, |x - x of the second run|

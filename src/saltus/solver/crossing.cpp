@@ -30,6 +30,8 @@ constexpr int motion_limit = 30;
 constexpr double feasible_but_for_digits = 1e-4;
 /// Relaxed points are better than any feasible one.
 constexpr double objective_slack = 1e-3;
+/// Relative difference of objectives of the same point.
+constexpr double same_objective = 1e-6;
 constexpr double rounding = 1.0001;
 
 }  // namespace
@@ -92,6 +94,10 @@ bool Crossing::take(crossover::Branch branch, const linalg::Vector* relaxed) {
   if (relaxed != nullptr && is_good(branch.objective, *relaxed)) {
     run_.branch = std::move(branch);
     return true;
+  }
+  const auto& found = run_.best_before;
+  if (found && std::abs(branch.objective - *found) <= same_objective * std::max(1.0, std::abs(*found))) {
+    leads_to_found_ = true;
   }
   run_.solution.homotopy.back().message =
       relaxed != nullptr ? fmt::format("refused: the relaxed objective is {:.6g}", run_.problem.objective(*relaxed))

@@ -30,6 +30,8 @@ class Crossing {
   /// Returns how many points in a row had sides whose branch was refused.
   [[nodiscard]] int same_refused() const { return same_refused_; }
   [[nodiscard]] double refused_objective() const { return refused_objective_; }  ///< of that branch
+  /// Returns whether a branch was refused that costs what the best branch of paths before does.
+  [[nodiscard]] bool leads_to_found() const { return leads_to_found_; }
   [[nodiscard]] static double slack(double objective);  ///< how much worse than the relaxed point a branch may be
 
  private:
@@ -43,6 +45,7 @@ class Crossing {
   Run& run_;
   int same_refused_ = 0;
   double refused_objective_ = 0.0;
+  bool leads_to_found_ = false;
   std::optional<std::vector<mpcc::ActiveSide>> infeasible_sides_;
   double infeasible_sigma_ = 0.0;
 };

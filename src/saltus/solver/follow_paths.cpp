@@ -21,6 +21,10 @@ constexpr int compared_iterations = 250;
 constexpr double second_sigma = 1e-2;
 /// Relative difference of points of the same relaxed solution.
 constexpr double same_point = 1e-2;
+/// Relative difference of relaxed objectives of paths to the same branch.
+constexpr double equal_objectives = 1e-4;
+/// Relative difference of starts that were computed in two ways.
+constexpr double same_start = 1e-6;
 
 /// Whether only values of functions depend on sigma: bounds stay while a loop runs. That of an elastic problem is a
 /// price.
@@ -33,6 +37,10 @@ bool has_loop(const Run& run) {
 
 /// Where a feasible branch is known, half of all iterations belong to what is better beside it.
 bool is_enough(const Run& run) { return run.refused && run.solution.iterations > run.iteration_limit / 2; }
+
+bool is_near(const linalg::Vector& a, const linalg::Vector& b, double tolerance) {
+  return (a - b).max_abs() <= tolerance * std::max(1.0, b.max_abs());
+}
 
 bool has_ended(PathEnd end) { return end != PathEnd::paused && end != PathEnd::failed; }
 
@@ -66,6 +74,7 @@ class ComparedLoops {
     // leads elsewhere from the large one, if at all.
     const std::vector<double> large{sigmas_.front()}, last{sigmas_.back()};
     for (std::size_t i = 0; i < others.size(); ++i) {
+      if (is_near(others[i].w, first.w, same_start)) continue;
       const bool is_compared = random_starts > 0 || is_no_dearer(excess[i]);
       const auto& sigmas = random_starts > 0 ? last : excess[i] == 0.0 ? large : sigmas_;
       add_start(beside(first, others[i].w, others[i].name), sigmas, is_compared ? starts : rest);
@@ -89,6 +98,7 @@ class ComparedLoops {
     std::unique_ptr<RelaxedPath> path;
     double objective = 0.0;
     linalg::Vector start;
+    double compared = objective;  ///< objective where paths were compared
   };
 
   [[nodiscard]] double small() const { return run_.schedule.next(run_.schedule.sigma_initial); }
@@ -140,7 +150,7 @@ class ComparedLoops {
     PathEnd end = PathEnd::failed;
     while (!candidates_.empty() && !is_enough(run_) && !(best_ && run_.solution.iterations > most)) {
       const auto next = candidates_.begin() + static_cast<std::ptrdiff_t>(most_promising());
-      if (best_ && next->objective >= best_->objective - Crossing::slack(best_->objective)) break;
+      if (const double lowest = lowest_branch(); next->objective >= lowest - Crossing::slack(lowest)) break;
       const PathEnd of_path = advance(*next);
       if (of_path == PathEnd::paused) {
         next->objective = next->path->objective();
@@ -154,7 +164,9 @@ class ComparedLoops {
       }
       keep_branch();
       if (of_path == PathEnd::stopped) break;
+      const double compared = next->compared;
       candidates_.erase(next);
+      if (lowest_branch() < HUGE_VAL) drop_equals(compared);
     }
     if (!best_) return end;
     // One that was refused, since its own relaxed objective is lower still, may be better than all that were accepted.
@@ -177,7 +189,7 @@ class ComparedLoops {
     const auto are_twins = [](const Candidate& a, const Candidate& b) {
       if (std::abs(a.objective - b.objective) > Crossing::slack(a.objective)) return false;
       const auto &of_a = a.path->last_solved()->w, &of_b = b.path->last_solved()->w;
-      return (of_a - of_b).max_abs() <= same_point * std::max(1.0, of_a.max_abs());
+      return is_near(of_b, of_a, same_point);
     };
     std::vector<Candidate> kept;
     for (auto& candidate : candidates_) {
@@ -185,6 +197,20 @@ class ComparedLoops {
       if (std::none_of(kept.begin(), kept.end(), is_known)) kept.push_back(std::move(candidate));
     }
     candidates_ = std::move(kept);
+  }
+
+  /// Of feasible ones: that of a refused one is as good a bound.
+  [[nodiscard]] double lowest_branch() const {
+    double lowest = HUGE_VAL;
+    if (best_) lowest = best_->objective;
+    return run_.refused ? std::min(lowest, run_.refused->objective) : lowest;
+  }
+
+  /// Paths that cost the same where they were compared differ by lengths of elements without a switch: one that leads to
+  /// a branch is enough.
+  void drop_equals(double objective) {
+    const double most = equal_objectives * std::max(1.0, std::abs(objective));
+    std::erase_if(candidates_, [&](const Candidate& other) { return std::abs(other.compared - objective) <= most; });
   }
 
   /// To the next sigma at which paths are compared, else to its end.
@@ -207,6 +233,7 @@ class ComparedLoops {
   void keep_branch() {
     if (run_.branch && !(best_ && best_->objective <= run_.branch->objective)) best_ = std::move(run_.branch);
     run_.branch.reset();
+    if (best_) run_.best_before = best_->objective;
   }
 
   Run& run_;

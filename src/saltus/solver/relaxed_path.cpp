@@ -140,7 +140,7 @@ std::optional<PathEnd> RelaxedPath::end_at(bool is_last, int failures) {
   if (is_usable && run_.options.crossover && crossing_.cross({at_.w, sigma, is_in_loop_, is_last})) {
     return PathEnd::crossed_over;
   }
-  if (is_solved && has_settled()) return PathEnd::finished;
+  if (crossing_.leads_to_found() || (is_solved && has_settled())) return PathEnd::finished;
   // Problems of larger sigma, and those of the loop, are not solved as sharply.
   const bool is_sharp =
       is_solved && !is_in_loop_ && sigma <= sharp_sigma && at_.infeasibility <= 0.1 * run_.options.tolerance;

@@ -56,6 +56,7 @@ class Run {
   RelaxedState relaxed;                      ///< the last relaxed problem that left a point
   std::optional<crossover::Branch> branch;   ///< the best one accepted
   std::optional<crossover::Branch> refused;  ///< feasible, but its objective was too far above the relaxed one
+  std::optional<double> best_before;         ///< objective of the best branch that paths before have led to
   std::map<std::vector<mpcc::ActiveSide>, double> known;  ///< objectives of feasible branches of relaxed points
   std::optional<result::Termination> stopped;             ///< not_converged: the objective falls without end
   std::string failure;                                    ///< why the last relaxed problem failed

@@ -45,7 +45,46 @@ std::vector<int> selections_in(const System& system, const std::vector<SX>& part
 }
 
 /// What is evaluated in a step, by number; behind it the surfaces.
-enum Part : std::size_t { rates, outputs, gaps, velocities, responses, friction, restitution, surfaces };
+enum Part : std::size_t {
+  rates,
+  outputs,
+  gaps,
+  velocities,
+  responses,
+  friction,
+  restitution,
+  guards,
+  switched,
+  surfaces
+};
+
+/// Those of hysteresis: not those of contacts, nor those that stop a run.
+std::vector<const model::Jump*> jumps_of(const System& system) {
+  const auto& contacts = system.contacts.contacts;
+  std::vector<const model::Jump*> found;
+  for (std::size_t i = 0; i < system.jumps.size(); ++i) {
+    const auto is_of_contact = [&](const auto& one) { return one.jump == static_cast<int>(i); };
+    if (std::any_of(contacts.begin(), contacts.end(), is_of_contact) || !system.jumps[i].forbidden.empty()) continue;
+    found.push_back(&system.jumps[i]);
+  }
+  return found;
+}
+
+SX guards_of(const System& system, SX model::Jump::*part) {
+  std::vector<SX> found;
+  for (const auto* jump : jumps_of(system)) found.push_back(jump->*part);
+  return SX::vertcat(found);
+}
+
+/// What jumps add to the states where their conditions hold.
+SX switched_states(const System& system) {
+  SX changes = SX::zeros(system.x.numel());
+  for (const auto* jump : jumps_of(system)) {
+    const int state = jump->targets.front();
+    changes(state) = jump->value * (jump->values(0) - system.x(state));
+  }
+  return changes;
+}
 
 /// With all contacts open.
 std::vector<SX> parts_of(const System& system) {
@@ -54,7 +93,8 @@ std::vector<SX> parts_of(const System& system) {
   const SX open =
       SX::repmat(SX(std::vector<double>(constants.begin(), constants.end())), 1, contacts.activities.size2());
   return SX::substitute({system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses,
-                         contacts.friction, contacts.restitution},
+                         contacts.friction, contacts.restitution, guards_of(system, &model::Jump::guards),
+                         switched_states(system)},
                         {SX::vec(contacts.activities), contacts.forces},
                         {SX::vec(open), SX::zeros(contacts.forces.size())});
 }
@@ -63,14 +103,12 @@ std::vector<SX> parts_of(const System& system) {
 bool is_known(const Ocp& ocp, const std::vector<int>& used) {
   const System& system = *ocp.physical;
   const auto& contacts = system.contacts.contacts;
-  const auto of_contacts = std::count_if(contacts.begin(), contacts.end(), [](auto& one) { return one.jump >= 0; });
   const bool has_gaps = std::all_of(contacts.begin(), contacts.end(), [](auto& one) { return one.has_gap; });
   const bool are_steps = std::all_of(used.begin(), used.end(), [&](int k) {
     const auto role = system.switching[at(k)].role;
     return role != model::SwitchingRole::discrete && role != model::SwitchingRole::region;
   });
-  return has_gaps && are_steps && static_cast<std::ptrdiff_t>(system.jumps.size()) <= of_contacts &&
-         system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() && ocp.stage_slacks.empty();
+  return has_gaps && are_steps && system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() && ocp.stage_slacks.empty();
 }
 
 }  // namespace
@@ -89,7 +127,9 @@ class Builder {
     std::vector<SX> psi;
     for (const int k : used_) psi.push_back(system_.switching[at(k)].psi);
     parts.push_back(SX::vertcat(psi));
-    functions_ = casadi::Function("step", {system_.t, system_.x, system_.u, system_.p, system_.alpha}, parts);
+    guard_alpha_ = guards_of(system_, &model::Jump::guard_alpha);
+    functions_ =
+        casadi::Function("step", {system_.t, system_.x, system_.u, system_.p, system_.alpha, guard_alpha_}, parts);
   }
 
   std::unique_ptr<SteppedOcp> build() {
@@ -167,22 +207,32 @@ class Builder {
     }
     SX alpha = SX::zeros(system_.alpha.numel());
     for (const int s : used_) alpha(s) = add(0.5, 0.0, 1.0);
+    SX passed = SX::zeros(guard_alpha_.numel());
+    for (casadi_int i = 0; i < passed.numel(); ++i) passed(i) = add(0.5, 0.0, 1.0);
     const SX h = horizon_ / (intervals_ * steps), t = ocp_.from + (number + 1) * h;
-    const auto values = functions_(std::vector<SX>{t, x, u, parameters_, alpha});
+    const auto values = functions_(std::vector<SX>{t, before_switching(before, x), u, parameters_, alpha, passed});
     outputs_ = values[outputs];
-    select(alpha, values[surfaces]);
-    equal(x - before - h * values[rates] - impulses(values));
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      select(alpha(used_[i]), values[surfaces](static_cast<casadi_int>(i)));
+    }
+    for (casadi_int i = 0; i < passed.numel(); ++i) select(passed(i), values[guards](i));
+    equal(x - before - h * values[rates] - impulses(values) - values[switched]);
     if (ocp_.running_cost) statement_.objective += h * outputs_(*ocp_.running_cost);
     return x;
   }
 
   void select(const SX& alpha, const SX& psi) {
-    for (std::size_t i = 0; i < used_.size(); ++i) {
-      const SX plus = multiplier(), minus = multiplier();
-      equal(psi(static_cast<casadi_int>(i)) - plus + minus);
-      pair(alpha(used_[i]), minus);
-      pair(1.0 - alpha(used_[i]), plus);
-    }
+    const SX plus = multiplier(), minus = multiplier();
+    equal(psi - plus + minus);
+    pair(alpha, minus);
+    pair(1.0 - alpha, plus);
+  }
+
+  /// A step is done with what hysteresis was before, and then looks at thresholds: so one over a threshold has a
+  /// solution.
+  [[nodiscard]] SX before_switching(const SX& before, SX x) const {
+    for (const auto* jump : jumps_of(system_)) x(jump->targets.front()) = before(jump->targets.front());
+    return x;
   }
 
   /// By how much contacts change the states in a step.
@@ -233,6 +283,7 @@ class Builder {
   std::unique_ptr<SteppedOcp> made_;
   foreign::Statement statement_;
   casadi::Function functions_;
+  SX guard_alpha_;  ///< of the guards of hysteresis
   SX horizon_, parameters_ = SX(0, 1), initial_state_ = SX(0, 1);
   SX outputs_;               ///< at the end of the last step
   std::vector<SX> normals_;  ///< impulses in each step
@@ -246,7 +297,7 @@ std::vector<double> ends_of_steps(int intervals) {
 }
 
 std::unique_ptr<SteppedOcp> SteppedOcp::make(const Ocp& ocp, int intervals, const Motion& guess) {
-  if (!ocp.physical || ocp.physical->contacts.empty()) return nullptr;
+  if (!ocp.physical) return nullptr;
   auto parts = parts_of(*ocp.physical);
   auto used = selections_in(*ocp.physical, parts);
   if (!is_known(ocp, used)) return nullptr;

@@ -1,4 +1,4 @@
-// An optimal control problem of bodies with contacts, by time stepping: coarse, and easy to solve.
+// An optimal control problem with contacts or hysteresis, by time stepping: coarse, and easy to solve.
 #pragma once
 
 #include <memory>
@@ -28,10 +28,13 @@ struct Motion {
 ///   M (v' - v) = h F + N p + T b,  q' = q + h v',  0 <= p _|_ gap(q') >= 0,
 ///   0 <= b+- _|_ s +- T'v' >= 0,  0 <= s _|_ mu p - sum b >= 0
 /// [stewart1996]. Collisions need no elements of their own; the error is O(h). Of an impulse p a contact with
-/// restitution e gives e p back two steps later: Poisson's law.
+/// restitution e gives e p back two steps later: Poisson's law. A hysteresis w that its jump changes to s where g > 0 is
+///   w' = w + alpha(g) (s - w)
+/// with g at the end of a step that is done with w. From a threshold on it may stay between 0 and 1, which no motion
+/// does.
 class SteppedOcp {
  public:
-  /// Returns nothing where there are no contacts, or anything that is not stated so: other jumps, cells,
+  /// Returns nothing where time is not frozen, or where there is anything that is not stated so: other jumps, cells,
   /// measurements, complementarities of the user's.
   /// Cost: linear in the number of steps.
   [[nodiscard]] static std::unique_ptr<SteppedOcp> make(const model::Ocp& ocp, int intervals, const Motion& guess);

@@ -67,6 +67,7 @@ class MoreElements {
     options_.starts = 1;
     options_.seed.reset();
     options_.compared_starts = 0;
+    options_.make_workplace = {};  // they have other elements
   }
 
   /// @return whether there are intervals that are better with an element more; they have it
@@ -147,12 +148,14 @@ std::optional<FromSteps> solve_from_steps(const model::Ocp& ocp, const OptimizeO
   if (!motion) return std::nullopt;
   solver::SolveOptions rest = wanted;
   rest.time_limit = solver::time_left(wanted, clock.seconds());
+  rest.make_workplace = {};  // they have other elements
   adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
   adapters::HighsLpcc highs;
   auto found = solver::solve_motion(**problem, ipopt, highs, rest, *motion);
   if (!found || found->termination != Termination::completed) return std::nullopt;
   const double most = start->objective + error_of_steps * std::abs(start->objective);
-  const bool is_as_good = found->objective <= most;
+  // Steps can leave a hysteresis between 0 and 1, which no motion does: they promise too much.
+  const bool is_as_good = found->objective <= most && !ocp.physical->contacts.empty();
   return FromSteps{std::move(*found), std::move(*problem), std::move(elements), is_as_good};
 }
 

@@ -72,7 +72,7 @@ std::optional<solver::Solution> best_of(const std::vector<Beginning>& beginnings
 std::optional<SteppedStart> stepped_start(const model::Ocp& ocp, const OptimizeOptions& options,
                                           solver::SolveOptions wanted, const std::vector<double>& fractions,
                                           solver::Solution& record) {
-  if (!ocp.physical || ocp.physical->contacts.empty()) return std::nullopt;
+  if (!ocp.physical) return std::nullopt;
   const int intervals = static_cast<int>(options.control_intervals);
   std::vector<double> times = time_stepping::ends_of_steps(intervals);  // fractions of the horizon
   const auto begin = guess_start(ocp, intervals, times);

@@ -84,13 +84,28 @@ std::vector<std::vector<double>> errors_of_rows(const result::Result& result, co
   return errors;
 }
 
+/// What decides the error becomes so much smaller: tolerances, the width of what is smoothed, steps of elements, whose
+/// work grows with their number.
+double refine(SimulateOptions& options) {
+  constexpr double tolerances = 0.01, steps = 0.2;
+  const bool has_elements = options.method == Method::fesd || options.method == Method::timestepping;
+  if (!has_elements) {
+    options.rtol *= tolerances;
+    options.atol *= tolerances;
+    if (options.method == Method::smoothed) options.smoothed.epsilon *= tolerances;
+    return tolerances;
+  }
+  long& number = (options.method == Method::fesd ? options.fesd : options.timestepping).steps;
+  number = std::lround(static_cast<double>(number) / steps);
+  return steps;
+}
+
 }  // namespace
 
 Expected<result::ErrorEstimate> estimate_errors(const result::Result& result, SimulateOptions options,
                                                 const SimulateAgain& again) {
   result::ErrorEstimate estimate;
-  options.rtol *= estimate.ratio;
-  options.atol *= estimate.ratio;
+  estimate.ratio = refine(options);
   options.output = AtTimes{times_between_events(result)};
   options.event_rows = false;
   options.error_estimate = options.continuous = false;

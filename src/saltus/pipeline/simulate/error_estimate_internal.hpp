@@ -1,4 +1,4 @@
-// Errors of a simulation by a second one with smaller tolerances.
+// Errors of a simulation by a second one that is more accurate.
 #pragma once
 
 #include "saltus/base/error.hpp"
@@ -11,9 +11,9 @@ namespace saltus::pipeline {
 /// Simulates with other options.
 using SimulateAgain = FunctionRef<Expected<result::Result>(const SimulateOptions&)>;
 
-/// Returns estimates of the errors of rows, events and end: differences to a run at a hundredth of the tolerances,
-/// whose own errors are about a hundredth. Rows at events are compared with the same event. Fails where the second run
-/// does. Cost: that of the run times 3 to 6.
+/// Returns estimates of the errors of rows, events and end: differences to a second run, at a hundredth of the
+/// tolerances and of the width that is smoothed, or with steps of a fifth where there are elements. Rows at events are compared
+/// with the same event. Fails where the second run does. Cost: that of the run times 3 to 6.
 [[nodiscard]] Expected<result::ErrorEstimate> estimate_errors(const result::Result& result, SimulateOptions options,
                                                               const SimulateAgain& again);
 
