@@ -190,27 +190,18 @@ class Assembly {
   }
 
   std::optional<Error> take_jumps() {
-    if (auto error = put_at_instant(system_.input_at_instant)) return error;
     for (const auto& stated : statement_.jumps) {
       auto jump = jump_of(recognition_, stated, static_cast<int>(system_.jumps.size()) + 1, event_warnings_);
       if (!jump) return with_context(with_location(jump.error(), stated.location), "in [[jumps]]");
-      for (const auto* expressions : {&jump->guards, &jump->values, &jump->priority, &jump->delay}) {
-        for (const SXElem& e : expressions->nonzeros()) others_.push_back(graph_.node(e));
-      }
-      for (auto* expressions : {&jump->values, &jump->priority, &jump->delay}) {
-        if (auto error = put_at_instant(*expressions)) return error;
-      }
+      for (const SXElem& e : jump->guards.nonzeros()) others_.push_back(graph_.node(e));
       system_.jumps.push_back(std::move(*jump));
     }
-    return std::nullopt;
-  }
-
-  std::optional<Error> put_at_instant(casadi::SX& expressions) {
-    for (SXElem& e : expressions.nonzeros()) {
-      const auto value = recognition_.at_instant(e);
-      if (!value) return value.error();
-      e = *value;
-    }
+    warn_of_lost_values(statement_, system_, event_warnings_);
+    auto roots = others_;
+    roots.insert(roots.end(), inputs_.begin(), inputs_.end());
+    const auto read = put_at_instants(recognition_, statement_, f_, roots, system_);
+    if (!read) return read.error();
+    at_instants_ = *read;
     return std::nullopt;
   }
 
@@ -218,24 +209,14 @@ class Assembly {
   void keep_used_functions() {
     const auto& met = recognition_.functions();
     std::vector<int> roots = f_;
-    roots.insert(roots.end(), others_.begin(), others_.end());
-    roots.insert(roots.end(), inputs_.begin(), inputs_.end());
-    used_.assign(met.size(), false);
-    for (const int node : graph_.tape().cone(roots, Links::through_alpha)) {
-      if (graph_.tape()[node].psi >= 0) used_[alpha_index(node)] = true;
-    }
+    for (const auto* more : {&others_, &at_instants_, &inputs_}) roots.insert(roots.end(), more->begin(), more->end());
+    used_ = recognition_.functions_below(roots);
     for (const auto& function : met) {
       if (function.named) roots.push_back(function.psi_node);
     }
-    std::vector<bool> kept(met.size(), false);
-    for (const int node : graph_.tape().cone(roots, Links::through_alpha)) {
-      if (graph_.tape()[node].psi >= 0) kept[alpha_index(node)] = true;
-    }
+    const auto kept = recognition_.functions_below(roots);
     // Inner functions have smaller indices: those of inputs, which are met last, are inside any that compare an input.
-    std::vector<bool> of_inputs(met.size(), false);
-    for (const int node : graph_.tape().cone(inputs_, Links::through_alpha)) {
-      if (graph_.tape()[node].psi >= 0) of_inputs[alpha_index(node)] = true;
-    }
+    const auto of_inputs = recognition_.functions_below(inputs_);
     new_index_.assign(met.size(), -1);
     for (const bool first : {true, false}) {
       for (std::size_t i = 0; i < met.size(); ++i) {
@@ -342,8 +323,7 @@ class Assembly {
   /// Those that something needs; switching functions that were dropped may leave some without use.
   void take_cells() {
     std::vector<int> roots = f_;
-    roots.insert(roots.end(), others_.begin(), others_.end());
-    roots.insert(roots.end(), inputs_.begin(), inputs_.end());
+    for (const auto* more : {&others_, &at_instants_, &inputs_}) roots.insert(roots.end(), more->begin(), more->end());
     for (const int index : kept_) roots.push_back(met(index).psi_node);
     std::set<int> used;
     for (const int node : graph_.tape().cone(roots, Links::through_alpha)) {
@@ -355,13 +335,13 @@ class Assembly {
     }
   }
 
-  /// Of conditions: right-hand sides of jumps have their truth instead.
+  /// Of how terms were written.
   void drop_marks() {
     std::vector<casadi::SX*> all{&system_.f, &system_.f_as_written, &system_.outputs, &system_.input,
                                  &system_.input_at_instant};
     for (auto& function : system_.switching) all.push_back(&function.psi);
     for (auto& event : system_.events) all.insert(all.end(), {&event.value, &event.guards});
-    for (auto& jump : system_.jumps) all.push_back(&jump.guards);
+    for (auto& jump : system_.jumps) all.insert(all.end(), {&jump.guards, &jump.values, &jump.priority, &jump.delay});
     for (auto& cell : system_.cells) all.push_back(&cell.argument);
     auto& touching = system_.contacts;
     all.insert(all.end(), {&touching.gap, &touching.velocity, &touching.rows, &touching.responses,
@@ -438,7 +418,8 @@ class Assembly {
   System system_;
   std::set<int> sliding_;                 ///< alpha nodes of listed functions
   std::vector<bool> in_regions_;          ///< by state: a mode by `indicator` moves it
-  std::vector<int> f_, others_, inputs_;  ///< nodes: right-hand sides; outputs, events, jumps; inputs
+  std::vector<int> f_, others_, inputs_;  ///< nodes: right-hand sides; outputs, events, guards of jumps; inputs
+  std::vector<int> at_instants_;          ///< nodes of what jumps read at their instants: nothing jumps by that
   std::vector<bool> used_;                ///< by met function: something but a named psi needs it
   std::vector<int> kept_, new_index_;     ///< met functions that stay, and the new number of every one
   std::vector<Surface> surfaces_;

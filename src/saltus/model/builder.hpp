@@ -41,12 +41,12 @@ struct EventOptions {
 
 /// Says how a jump is executed once it is triggered (docs/model-file.md, [[jumps]]).
 struct JumpOptions {
-  std::optional<std::string> name{};  ///< jump1, jump2, … by position if absent
-  bool at_start = false;              ///< also where the condition holds at the start
-  casadi::SX priority = 0.0;          ///< larger first
-  casadi::SX delay = 0.0;             ///< >= 0, evaluated when triggered
-  bool persistent = true;             ///< false: dropped if the condition becomes false before
-  JumpValues values = JumpValues::at_trigger;
+  std::optional<std::string> name{};   ///< jump1, jump2, … by position if absent
+  bool at_start = false;               ///< also where the condition holds at the start
+  casadi::SX priority = 0.0;           ///< larger first
+  casadi::SX delay = 0.0;              ///< >= 0, evaluated when triggered
+  bool persistent = true;              ///< false: dropped if the condition becomes false before
+  std::optional<JumpValues> values{};  ///< absent: at the trigger
 };
 
 /// States M(q) dv/dt = force - grad potential - coriolis + forces of contacts, dq/dt = v (docs/model-file.md,

@@ -69,7 +69,7 @@ struct JumpDescription {
   expression::NodePtr priority;  ///< null means 0
   expression::NodePtr delay;     ///< null means 0
   bool persistent = true;
-  JumpValues values = JumpValues::at_trigger;
+  std::optional<JumpValues> values;  ///< absent: at the trigger
   SourceLocation location;
 };
 

@@ -107,10 +107,11 @@ TEST(Jumps, TimesAndDelaysAreExpressionsOfParameters) {
   EXPECT_EQ(system.jumps[1].times, (std::vector<double>{1.0, 1.5}));
 }
 
-TEST(Jumps, SwitchingFunctionsOfTheirExpressionsAreKept) {
+TEST(Jumps, ComparisonsOfTheirExpressionsAreNoSwitchingFunctions) {
   const System system = system_with(ball(), {jump("y < 0", {{"v", "if(v < -1, 1, 2)"}})});
-  EXPECT_EQ(columns(system), (Names{"-1-v"}));
-  EXPECT_EQ(values(system, system.jumps[0].values, {0, -2, 0}, {1.0}), (std::vector<double>{1.0}));
+  EXPECT_TRUE(system.switching.empty());
+  EXPECT_EQ(values(system, system.jumps[0].values, {0, -2, 0}, {}), (std::vector<double>{1.0}));
+  EXPECT_EQ(values(system, system.jumps[0].values, {0, -1, 0}, {}), (std::vector<double>{2.0}));
 }
 
 TEST(Jumps, WrongTriggersAreRefused) {

@@ -43,6 +43,14 @@ std::vector<int> Recognition::alphas_in(int node) const {
   return indices;  // ascending, as the nodes of alphas are
 }
 
+std::vector<bool> Recognition::functions_below(const std::vector<int>& roots) const {
+  std::vector<bool> below(functions_.size(), false);
+  for (const int leaf : graph.tape().cone(roots, Links::through_alpha)) {
+    if (graph.tape()[leaf].psi >= 0) below[at(graph.tape().variables()[at(graph.tape()[leaf].variable)].index)] = true;
+  }
+  return below;
+}
+
 /// A function that is the same, on its surface, too: discrete functions with another value at 0 are others.
 std::optional<SharedFunction> Recognition::find(int psi_node, std::optional<double> at_zero) {
   const auto value_of = [&](const SharedFunction& found) { return found.orientation > 0 ? *at_zero : 1.0 - *at_zero; };
@@ -150,7 +158,9 @@ SXElem Recognition::value(const Selection& selection) {
 }
 
 Expected<SXElem> Recognition::surface(const SXElem& e, const std::string& name) {
-  return selection(e, name, 0.5).map([this](const Selection& s) { return value(s); });
+  return selection(e, name, 0.5).map([&](const Selection& s) {
+    return s.kind == Selection::Kind::polynomial ? marked(value(s), {WrittenTerm::Kind::step, e}) : value(s);
+  });
 }
 
 Expected<SXElem> Recognition::step(const SXElem& e, const std::string& name) {
@@ -169,15 +179,19 @@ Expected<SXElem> Recognition::choose(const SXElem& difference, const std::string
     if (const auto added = graph.add(*branch); !added) return tl::unexpected(added.error());
   }
   if (graph.node(a) == graph.node(b)) return a;
-  return blended(difference, name, [&](const SXElem& one, const std::string& its_name) -> Expected<SXElem> {
-    const auto chosen = selection(one, its_name, std::nullopt);
-    if (!chosen) return tl::unexpected(chosen.error());
-    if (chosen->kind == Selection::Kind::constant) return chosen->constant < 0.0 ? b : a;
-    if (chosen->kind == Selection::Kind::alpha && chosen->function.orientation < 0) {
-      return graph.blend(functions_[at(chosen->function.function)].alpha, b, a);
-    }
-    return graph.blend(value(*chosen), a, b);
-  });
+  return blended(difference, name,
+                 [&](const SXElem& one, const std::string& its_name) -> Expected<SXElem> {
+                   const auto chosen = selection(one, its_name, std::nullopt);
+                   if (!chosen) return tl::unexpected(chosen.error());
+                   if (chosen->kind == Selection::Kind::constant) return chosen->constant < 0.0 ? b : a;
+                   if (chosen->kind == Selection::Kind::alpha && chosen->function.orientation < 0) {
+                     return graph.blend(functions_[at(chosen->function.function)].alpha, b, a);
+                   }
+                   return graph.blend(value(*chosen), a, b);
+                 })
+      .map([&](const SXElem& value) {
+        return marked(value, {WrittenTerm::Kind::choice, difference, a, b});
+      });
 }
 
 Expected<SXElem> Recognition::abs(const SXElem& e, const std::string& name) { return choose(e, name, e, -e); }

@@ -46,6 +46,23 @@ struct BothValues {
   SXElem at_one, at_zero;
 };
 
+/// Holds how a term with selections or cells inside was written: what it is at an instant is made of its parts there.
+struct WrittenTerm {
+  enum class Kind { step, whole_part, choice } kind = Kind::step;
+  SXElem argument;  ///< of a choice: a where it is positive, else b
+  SXElem a = 0.0, b = 0.0;
+  [[nodiscard]] std::vector<SXElem> parts() const { return {argument, a, b}; }
+};
+
+/// Holds what jumps need to know to read values at an instant.
+struct Instant {
+  /// Returns what is left of a value by rounding, also by that of the time at which it is read.
+  FunctionRef<SXElem(const SXElem&)> rounding;
+  std::vector<bool> followed;  ///< by function: a run knows when it is at zero, whatever is left of it there
+  std::vector<bool> moving;    ///< by function: f depends on it; its selection may lie between 0 and 1
+  std::vector<int> inputs;     ///< nodes, by control
+};
+
 /// Largest number of smooth branches a chain of nested nonsmooth terms may unfold into.
 inline constexpr int branch_limit = 64;
 
@@ -63,9 +80,14 @@ class Recognition {
   [[nodiscard]] Expected<SXElem> min(const SXElem& a, const SXElem& b, const std::string& name);
   [[nodiscard]] Expected<SXElem> select(const Condition& condition, const SXElem& a, const SXElem& b);
 
-  /// Returns the value at an instant, over the alphas there: 1 beyond the surface, 0 below, between them on it. A
-  /// condition is 1 where it holds as written, equality included, else 0.
-  [[nodiscard]] Expected<SXElem> at_instant(const SXElem& e);
+  /// Makes expressions values at an instant, over the alphas there: 1 beyond the surface, 0 below, between them on it.
+  /// A condition is 1 where it holds as written, equality included, else 0; floor is that of its argument. What is
+  /// inside of a term comes first.
+  [[nodiscard]] std::optional<Error> put_at_instant(const std::vector<casadi::SX*>& all, const Instant& instant);
+  /// Returns by function whether the roots depend on it.
+  [[nodiscard]] std::vector<bool> functions_below(const std::vector<int>& roots) const;
+  /// Returns the switching function of a node, or of a multiple of it; nothing if it is none.
+  [[nodiscard]] std::optional<SharedFunction> function_of(int node) { return find(node, std::nullopt); }
 
   /// Lets floor and mod from now on be of states and controls, too, or no longer: where nothing but a record has them.
   void take_whole_parts_of_all(bool all) { whole_parts_of_all_ = all; }
@@ -123,10 +145,9 @@ class Recognition {
                                         const SXElem& b);
   [[nodiscard]] SXElem value(const Selection& selection);
   [[nodiscard]] SXElem marked(const SXElem& truth, const Condition& condition);
+  [[nodiscard]] SXElem marked(const SXElem& value, const WrittenTerm& term);
   [[nodiscard]] Expected<SXElem> on_surfaces_only(const Condition& condition, bool elsewhere);
-  [[nodiscard]] Expected<SXElem> truth_at_instant(const Condition& condition, const KnownExpressions& known);
-  [[nodiscard]] Expected<SXElem> comparison_at_instant(const Comparison& comparison, const SXElem& difference,
-                                                       const SXElem& here);
+  class AtInstant;  ///< of an expression (instant_values.cpp)
   using MakeSelection = FunctionRef<Expected<SXElem>(const SXElem&, const std::string&)>;
   /// Returns what is made of e, or of e with every value of the two-valued states in it, blended.
   [[nodiscard]] Expected<SXElem> blended(const SXElem& e, const std::string& name, MakeSelection make);
@@ -148,6 +169,7 @@ class Recognition {
   std::vector<int> two_valued_;  ///< functions whose selections are states
   SharingIndex index_;
   std::unordered_map<const void*, Condition> conditions_;  ///< by the marks of their truth in expressions
+  std::unordered_map<const void*, WrittenTerm> terms_;     ///< by their marks
   std::vector<Decision> decisions_;
   std::set<std::tuple<Decision::Kind, int, int, std::string>> known_decisions_;
   std::shared_ptr<const CellTable> integers_ = std::make_shared<const CellTable>(integer_cells());

@@ -74,7 +74,9 @@ Expected<SXElem> Recognition::whole_part(const SXElem& e, const SXElem& written,
   if (!whole_parts_of_all_ && (graph.tape()[*node].reached & forbidden) != 0) {
     return tl::unexpected(not_of_time(name.substr(0, name.find('(')), casadi::SX(written).get_str().substr(0, 80)));
   }
-  return lookup(integers_, e, name);
+  return lookup(integers_, e, name).map([&](const SXElem& value) {
+    return marked(value, {WrittenTerm::Kind::whole_part, e});
+  });
 }
 
 Expected<SXElem> Recognition::floor(const SXElem& e, const std::string& name) { return whole_part(e, e, name); }

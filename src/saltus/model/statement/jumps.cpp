@@ -249,7 +249,7 @@ Expected<Jump> jump_of(Recognition& recognition, const JumpStatement& stated, in
   jump.at_start = stated.at_start;
   jump.persistent = stated.persistent;
   jump.forbidden = stated.forbidden;
-  jump.evaluated = stated.evaluated;
+  jump.evaluated = stated.evaluated.value_or(JumpValues::at_trigger);
   if (auto error = fill_trigger(recognition, stated, jump, warnings)) return tl::unexpected(*error);
   if (auto error = fill_set(recognition, stated, jump)) return tl::unexpected(*error);
   if (auto error = fill_execution(recognition, stated, jump)) return tl::unexpected(*error);

@@ -84,8 +84,8 @@ struct JumpStatement {
   SXElem delay = 0.0;
   bool at_start = false;
   bool persistent = true;
-  JumpValues evaluated = JumpValues::at_trigger;
-  std::string forbidden{};  ///< what its trigger means where that stops the run instead; else empty
+  std::optional<JumpValues> evaluated{};  ///< absent: at the trigger
+  std::string forbidden{};                ///< what its trigger means where that stops the run instead; else empty
   SourceLocation location{};
   SourceLocation when_location{};  ///< of the condition, guard or period
   SourceLocation delay_location{};
