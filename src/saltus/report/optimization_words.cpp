@@ -160,7 +160,7 @@ Finding path_finding(const result::Verification& verification) {
   const auto others = verification.path_violations.size() - 1;
   return {share > verification.tolerance ? Tone::bad : Tone::neutral,
           fmt::format(
-              "Along the simulation `{}` is violated by at most {}, {} of its range, at t = {:.6g}{}.", name,
+              "Along the simulation `{}` is violated by at most {} ({} of its range) at t = {:.6g}{}.", name,
               error_text(value), error_text(share), time,
               others == 0 ? "" : fmt::format("; {} more {} by a smaller share", others, others == 1 ? "is" : "are"))};
 }
@@ -204,7 +204,7 @@ std::vector<Finding> certificate_findings(const result::Certificate& certificate
   if (certificate.b_stationary == true && certificate.other_sides_tried == false) {
     findings.push_back(
         {Tone::neutral,
-         "Not every other way to write this point was tried (a limit, or too few elements of an interval): "
+         "Not every mode sequence of this point was tried (a limit, or an interval with too few elements): "
          "switches a little earlier or later may be better."});
   }
   for (auto& finding : regularity(certificate)) findings.push_back(std::move(finding));

@@ -206,8 +206,8 @@ class ComparedLoops {
     return run_.refused ? std::min(lowest, run_.refused->objective) : lowest;
   }
 
-  /// Paths that cost the same where they were compared differ by lengths of elements without a switch: one that leads to
-  /// a branch is enough.
+  /// Paths that cost the same where they were compared differ by lengths of elements without a switch: one that leads
+  /// to a branch is enough.
   void drop_equals(double objective) {
     const double most = equal_objectives * std::max(1.0, std::abs(objective));
     std::erase_if(candidates_, [&](const Candidate& other) { return std::abs(other.compared - objective) <= most; });

@@ -92,11 +92,10 @@ std::vector<SX> parts_of(const System& system) {
   const auto constants = model::Activity().values();
   const SX open =
       SX::repmat(SX(std::vector<double>(constants.begin(), constants.end())), 1, contacts.activities.size2());
-  return SX::substitute({system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses,
-                         contacts.friction, contacts.restitution, guards_of(system, &model::Jump::guards),
-                         switched_states(system)},
-                        {SX::vec(contacts.activities), contacts.forces},
-                        {SX::vec(open), SX::zeros(contacts.forces.size())});
+  return SX::substitute(
+      {system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses, contacts.friction,
+       contacts.restitution, guards_of(system, &model::Jump::guards), switched_states(system)},
+      {SX::vec(contacts.activities), contacts.forces}, {SX::vec(open), SX::zeros(contacts.forces.size())});
 }
 
 /// @param used  selections
@@ -108,7 +107,8 @@ bool is_known(const Ocp& ocp, const std::vector<int>& used) {
     const auto role = system.switching[at(k)].role;
     return role != model::SwitchingRole::discrete && role != model::SwitchingRole::region;
   });
-  return has_gaps && are_steps && system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() && ocp.stage_slacks.empty();
+  return has_gaps && are_steps && system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() &&
+         ocp.stage_slacks.empty();
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ struct Motion {
 ///   M (v' - v) = h F + N p + T b,  q' = q + h v',  0 <= p _|_ gap(q') >= 0,
 ///   0 <= b+- _|_ s +- T'v' >= 0,  0 <= s _|_ mu p - sum b >= 0
 /// [stewart1996]. Collisions need no elements of their own; the error is O(h). Of an impulse p a contact with
-/// restitution e gives e p back two steps later: Poisson's law. A hysteresis w that its jump changes to s where g > 0 is
+/// restitution e gives e p back two steps later: Poisson's law. A hysteresis w that its jump changes to s where g > 0
+/// is
 ///   w' = w + alpha(g) (s - w)
 /// with g at the end of a step that is done with w. From a threshold on it may stay between 0 and 1, which no motion
 /// does.

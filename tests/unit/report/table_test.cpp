@@ -209,7 +209,7 @@ TEST(Table, OfAnOptimisationThatFailedNamesEveryFailure) {
         "complementarity NOT reached: 0.0001", "stationarity NOT known", "(allowed 1e-08)", "NOT B-stationary (C)",
         "4 pairs have both sides at zero", "off by at most 0.02 of the range of `v`", "MORE than the allowed 0.001",
         "1 switch of the simulation not in the solution, 2 switches of the solution not in the simulation",
-        "`x^2 <= 1` is violated by at most 0.2, 0.1 of its range, at t = 0.25; 1 more is by a smaller share",
+        "`x^2 <= 1` is violated by at most 0.2 (0.1 of its range) at t = 0.25; 1 more is by a smaller share",
         "ended early (step_size_too_small)"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
@@ -251,7 +251,7 @@ TEST(Table, SaysWhichMultipliersAreNotUnique) {
   EXPECT_NE(unwrapped().find(usual), std::string::npos) << unwrapped();
   for (const char* part : {"The multiplier of `q == 200` at t = ", "is not unique: at most 2; 1 more is not.",
                            "2 of them are combinations of others (`v == 0`, `q == 200`)", "NOT second-order sufficient",
-                           "Not every other way to write this point was tried"}) {
+                           "Not every mode sequence of this point was tried"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
 }

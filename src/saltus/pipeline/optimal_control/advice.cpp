@@ -82,7 +82,7 @@ void warn_of_impacts_at_nodes(const result::Result& run, const OptimizeObservers
   const auto times = result::impacts_at_nodes(run);
   if (times.empty()) return;
   observers.on_warning(fmt::format(
-      "impacts at t = {:.6g} lie at ends of control intervals: beside them nothing that has room was better; "
+      "impacts at t = {:.6g} lie at ends of control intervals: no mode sequence that fits the elements is better; "
       "compare with an element or an interval more",
       fmt::join(times, ", ")));
 }
