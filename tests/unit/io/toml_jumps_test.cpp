@@ -46,7 +46,7 @@ TEST(TomlJumps, EveryKeyIsRead) {
   EXPECT_FALSE(jumps[1].name.has_value());
   EXPECT_FALSE(jumps[1].at_start);
   EXPECT_TRUE(jumps[1].persistent);
-  EXPECT_EQ(jumps[1].values, model::JumpValues::at_trigger);
+  EXPECT_FALSE(jumps[1].values);
   EXPECT_EQ(jumps[2].trigger, model::JumpTrigger::times);
   EXPECT_EQ(expression::to_text(*jumps[2].every), "2*0.5");
   EXPECT_EQ(jumps[3].trigger, model::JumpTrigger::times);
