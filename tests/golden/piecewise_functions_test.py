@@ -161,6 +161,17 @@ class JumpInstants(tool.ResultTest):
             self.assertAlmostEqual(found, expected, 9)
 
 
+    def test_where_a_slope_is_infinite(self):
+        """A root at 0 has no rounding that its slope tells."""
+        sets = {"a": ("if(sqrt(x^2 + z^2) < 1, 1, 2)", 1), "b": ("if(1 - x^0.5 > 0, 1, 2)", 1),
+                "c": ("max(1 - hypot(x, z), 0)", 1), "d": ("floor(sqrt(x^2 + z^2)) + 7", 7)}
+        text = ('[model]\nname = "roots"\n[parameters]\nu = 0\n[states]\nx = 0\nz = 0\n'
+                + "".join(f"{name} = 5\n" for name in sets) + '[dynamics]\nx = "u"\nz = "0*x"\n'
+                + "".join(f"{name} = 0\n" for name in sets) + "[[jumps]]\nevery = 1\nset = { "
+                + ", ".join(f'{name} = "{value}"' for name, (value, _) in sets.items()) + " }\n[simulate]\nuntil = 1.5\n")
+        self.assertEqual(self.result(text)["final"]["x"][2:], [right for _, right in sets.values()])
+
+
 class JumpsAtOneTime(tool.ResultTest):
     DOSES = """[model]
 name = "doses"

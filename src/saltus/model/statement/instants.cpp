@@ -14,16 +14,21 @@ using casadi::SX;
 
 /// Eight units in the last place of the terms of a value, and of what it moves in those of the time.
 SXElem rounding_of(const SXElem& value, SxGraph& graph, const Statement& statement) {
+  // A slope that is not finite, as that of a root at 0, says nothing: fmin takes the bound then.
+  constexpr double steepest = 1e6;
+  const auto bounded = [&](const SX& term, const SX& moved) {
+    return fmin(fabs(term), steepest * (fabs(moved) + fabs(SX(value))));
+  };
   SX terms = 0.0, rate = 0.0;
   for (const SX& symbol : SX::symvar(SX(value))) {
     const auto& variable = graph.tape().variables()[at(graph.tape()[graph.node(symbol.scalar())].variable)];
     const SX slope = SX::jacobian(SX(value), symbol);
-    terms += fabs(slope * symbol);
+    terms += bounded(slope * symbol, symbol);
     if (variable.kind == VariableKind::time) rate += slope;
     if (variable.kind == VariableKind::state) rate += slope * SX(*statement.states[at(variable.index)].dynamics);
   }
   constexpr double units = 8.0;
-  return SX::densify(units * rounding_unit * (terms + fabs(rate * SX(statement.time)))).scalar();
+  return SX::densify(units * rounding_unit * (terms + bounded(rate * SX(statement.time), SX(statement.time)))).scalar();
 }
 
 /// Functions of which a run knows when they are at zero: those that something follows, and those of guards.

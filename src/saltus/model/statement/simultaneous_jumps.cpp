@@ -59,11 +59,10 @@ void warn_of_lost_values(const Statement& statement, const System& system, std::
   const auto& jumps = system.jumps;
   for (std::size_t k = 0; k < jumps.size(); ++k) {
     for (std::size_t i = 0; i < k; ++i) {
-      if (!come_together(jumps[i], jumps[k])) continue;
       const bool in_order = comes_first(jumps[i], jumps[k]);
       const std::size_t first = in_order ? i : k, last = in_order ? k : i;
       const int state = statement.jumps[last].evaluated ? -1 : lost_state(jumps[first], jumps[last], system.x);
-      if (state < 0) continue;
+      if (state < 0 || !come_together(jumps[i], jumps[k])) continue;
       const auto& name = system.state_names[at(state)];
       warnings.push_back(located(
           statement.jumps[last].location,

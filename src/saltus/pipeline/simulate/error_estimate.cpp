@@ -97,6 +97,7 @@ double refine(SimulateOptions& options) {
   }
   long& number = (options.method == Method::fesd ? options.fesd : options.timestepping).steps;
   number = std::lround(static_cast<double>(number) / steps);
+  options.max_steps = std::lround(static_cast<double>(options.max_steps) / steps);
   return steps;
 }
 
