@@ -70,16 +70,16 @@ std::vector<const model::Jump*> jumps_of(const System& system) {
   return found;
 }
 
-SX guards_of(const System& system, SX model::Jump::*part) {
+SX all_of(const std::vector<const model::Jump*>& jumps, SX model::Jump::*part) {
   std::vector<SX> found;
-  for (const auto* jump : jumps_of(system)) found.push_back(jump->*part);
+  for (const auto* jump : jumps) found.push_back(jump->*part);
   return SX::vertcat(found);
 }
 
 /// What jumps add to the states where their conditions hold.
-SX switched_states(const System& system) {
+SX switched_states(const System& system, const std::vector<const model::Jump*>& jumps) {
   SX changes = SX::zeros(system.x.numel());
-  for (const auto* jump : jumps_of(system)) {
+  for (const auto* jump : jumps) {
     const int state = jump->targets.front();
     changes(state) = jump->value * (jump->values(0) - system.x(state));
   }
@@ -89,12 +89,13 @@ SX switched_states(const System& system) {
 /// With all contacts open.
 std::vector<SX> parts_of(const System& system) {
   const auto& contacts = system.contacts;
+  const auto jumps = jumps_of(system);
   const auto constants = model::Activity().values();
   const SX open =
       SX::repmat(SX(std::vector<double>(constants.begin(), constants.end())), 1, contacts.activities.size2());
   return SX::substitute(
       {system.f, system.outputs, contacts.gap, contacts.velocity, contacts.responses, contacts.friction,
-       contacts.restitution, guards_of(system, &model::Jump::guards), switched_states(system)},
+       contacts.restitution, all_of(jumps, &model::Jump::guards), switched_states(system, jumps)},
       {SX::vec(contacts.activities), contacts.forces}, {SX::vec(open), SX::zeros(contacts.forces.size())});
 }
 
@@ -123,11 +124,12 @@ class Builder {
         intervals_(intervals),
         guess_(guess),
         used_(std::move(used)),
+        jumps_(jumps_of(system_)),
         made_(new SteppedOcp()) {
     std::vector<SX> psi;
     for (const int k : used_) psi.push_back(system_.switching[at(k)].psi);
     parts.push_back(SX::vertcat(psi));
-    guard_alpha_ = guards_of(system_, &model::Jump::guard_alpha);
+    guard_alpha_ = all_of(jumps_, &model::Jump::guard_alpha);
     functions_ =
         casadi::Function("step", {system_.t, system_.x, system_.u, system_.p, system_.alpha, guard_alpha_}, parts);
   }
@@ -231,7 +233,7 @@ class Builder {
   /// A step is done with what hysteresis was before, and then looks at thresholds: so one over a threshold has a
   /// solution.
   [[nodiscard]] SX before_switching(const SX& before, SX x) const {
-    for (const auto* jump : jumps_of(system_)) x(jump->targets.front()) = before(jump->targets.front());
+    for (const auto* jump : jumps_) x(jump->targets.front()) = before(jump->targets.front());
     return x;
   }
 
@@ -279,7 +281,8 @@ class Builder {
   const System& system_;
   int intervals_;
   const Motion& guess_;
-  std::vector<int> used_;  ///< selections
+  std::vector<int> used_;                  ///< selections
+  std::vector<const model::Jump*> jumps_;  ///< of hysteresis
   std::unique_ptr<SteppedOcp> made_;
   foreign::Statement statement_;
   casadi::Function functions_;

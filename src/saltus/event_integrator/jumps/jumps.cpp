@@ -18,6 +18,11 @@ using model::JumpTrigger;
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
+/// @param value  of the guard, or its sign
+double step_of(const model::Layout::Guard& guard, double value) {
+  return value > 0.0 || (value == 0.0 && guard.true_at_equality) ? 1.0 : 0.0;
+}
+
 }  // namespace
 
 std::optional<std::string> compared_at_jumps_only(const model::Layout& layout, int state) {
@@ -112,8 +117,7 @@ bool Jumps::read_steps(int jump, const JumpPoint& point) const {
   bool changed = steps.size() != guards.size();
   steps.resize(guards.size());
   for (std::size_t g = 0; g < guards.size(); ++g) {
-    const int sign = guard_sign(guards[g].function, point);
-    const double step = sign > 0 || (sign == 0 && guards[g].true_at_equality) ? 1.0 : 0.0;
+    const double step = step_of(guards[g], guard_sign(guards[g].function, point));
     changed = changed || step != steps[g];
     steps[g] = step;
   }
@@ -144,10 +148,7 @@ bool Jumps::ends_itself(int jump, const JumpPoint& point) const {
   kernel_.jump_values(jump, point.t, point.x.data(), alpha.data(), set.data());
   for (std::size_t i = 0; i < set.size(); ++i) x[at(entry.targets[i])] = set[i];
   kernel_.functions(point.t, x.data(), alpha.data(), values_.data());
-  for (const auto& guard : entry.guards) {
-    const double value = values_[at(guard.function)];
-    steps.push_back(value > 0.0 || (value == 0.0 && guard.true_at_equality) ? 1.0 : 0.0);
-  }
+  for (const auto& guard : entry.guards) steps.push_back(step_of(guard, values_[at(guard.function)]));
   return !kernel_.jump_condition(jump, point.t, x.data(), alpha.data(), steps.data());
 }
 

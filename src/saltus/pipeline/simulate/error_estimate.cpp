@@ -87,7 +87,8 @@ std::vector<std::vector<double>> errors_of_rows(const result::Result& result, co
 /// What decides the error becomes so much smaller: tolerances, the width of what is smoothed, steps of elements, whose
 /// work grows with their number.
 double refine(SimulateOptions& options) {
-  constexpr double tolerances = 0.01, steps = 0.2;
+  constexpr double tolerances = 0.01;
+  constexpr long steps = 5;
   const bool has_elements = options.method == Method::fesd || options.method == Method::timestepping;
   if (!has_elements) {
     options.rtol *= tolerances;
@@ -96,9 +97,9 @@ double refine(SimulateOptions& options) {
     return tolerances;
   }
   long& number = (options.method == Method::fesd ? options.fesd : options.timestepping).steps;
-  number = std::lround(static_cast<double>(number) / steps);
-  options.max_steps = std::lround(static_cast<double>(options.max_steps) / steps);
-  return steps;
+  number *= steps;
+  options.max_steps = std::min(options.max_steps, std::numeric_limits<long>::max() / steps) * steps;
+  return 1.0 / steps;
 }
 
 }  // namespace
