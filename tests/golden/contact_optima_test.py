@@ -230,6 +230,32 @@ sigma_initial = 0.01
                                    -0.9 * impact["x"][result["states"].index("v")], delta=1e-9)
             self.assertLess(result["verification"]["interval_defect"], 1e-9)
 
+    def test_a_block_that_bounces_off_a_wall_in_least_time(self):
+        """Full thrust to the wall and none behind it take 0.67233; relaxed problems of a free horizon alone give 1.995."""
+        bounced = HEAD + """[states]
+x = 0
+v = 0
+[controls]
+F = { initial = 10, lower = 0, upper = 20 }
+[mechanics]
+positions = ["x"]
+velocities = ["v"]
+force = { v = "F - 0.6*9.81*sign(v)" }
+[[contacts]]
+name = "wall"
+gap = "1 - x"
+restitution = 0.8
+[optimize]
+horizon = { free = true, initial = 1, lower = 0.2, upper = 3 }
+control_intervals = 20
+minimize_time = true
+terminal_constraints = ["x == 0", "v <= -2"]
+"""
+        for intervals in (11, 20):
+            result = self.optimised(bounced.replace("intervals = 20", f"intervals = {intervals}"))
+            self.assertGreater(result["horizon"], 0.67233 * (1 - 1e-5))
+            self.assertLess(result["horizon"], 0.67233 * 1.015)
+
     def test_a_body_stopped_by_a_wall_at_the_end(self):
         """A block is pushed into a wall that takes its speed: the impact is the last thing that happens."""
         result = self.optimised(HEAD + """[states]

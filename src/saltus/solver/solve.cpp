@@ -199,12 +199,15 @@ Expected<Solution> solve_from(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver
   return finished(run);
 }
 
-std::optional<Solution> solve_motion(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
-                                     const SolveOptions& options, const mpcc::NamedStart& motion) {
+Solution solve_motion(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc, const SolveOptions& options,
+                      const mpcc::NamedStart& motion) {
   problem.without_method_terms();
   Run run(problem, nlp, lpcc, options);
   auto branch = run.solve_branch(motion.sides, motion.w, motion_iterations, "the motion of these controls");
-  if (!branch.is_feasible(options.tolerance) || !std::isfinite(branch.objective)) return std::nullopt;
+  if (!branch.is_feasible(options.tolerance) || !std::isfinite(branch.objective)) {
+    run.solution.w = std::move(branch.w);
+    return std::move(run.solution);
+  }
   run.branch = std::move(branch);
   descend(run);
   return finished(run);

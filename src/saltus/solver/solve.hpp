@@ -93,10 +93,10 @@ struct Start {
   MpccMultipliers multipliers;
 };
 
-/// Solves from a motion: the branch of its sides, then better ones beside it. Nothing where no point of that branch
-/// satisfies the constraints.
-[[nodiscard]] std::optional<Solution> solve_motion(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
-                                                   const SolveOptions& options, const mpcc::NamedStart& motion);
+/// Solves from a motion: the branch of its sides, then better ones beside it. Where no point of that branch satisfies
+/// the constraints, the point where its solver stands is returned as not converged, without a certificate.
+[[nodiscard]] Solution solve_motion(mpcc::Problem& problem, NlpSolver& nlp, LpccSolver& lpcc,
+                                    const SolveOptions& options, const mpcc::NamedStart& motion);
 
 /// Returns the time limit of what begins after so many seconds.
 [[nodiscard]] std::optional<double> time_left(const SolveOptions& options, double seconds);

@@ -118,11 +118,13 @@ class Builder {
  public:
   /// @param parts  of a step
   /// @param used   selections
-  Builder(const Ocp& ocp, int intervals, const Motion& guess, std::vector<SX> parts, std::vector<int> used)
+  Builder(const Ocp& ocp, int intervals, const Motion& guess, bool is_held, std::vector<SX> parts,
+          std::vector<int> used)
       : ocp_(ocp),
         system_(*ocp.physical),
         intervals_(intervals),
         guess_(guess),
+        is_held_(is_held),
         used_(std::move(used)),
         jumps_(jumps_of(system_)),
         made_(new SteppedOcp()) {
@@ -169,7 +171,9 @@ class Builder {
   /// What all steps share.
   void declare() {
     const auto& horizon = ocp_.horizon;
-    horizon_ = horizon.free ? add(guess_.horizon, horizon.lower, horizon.upper) : SX(horizon.value);
+    horizon_ = horizon.free ? add(guess_.horizon, is_held_ ? guess_.horizon : horizon.lower,
+                                  is_held_ ? guess_.horizon : horizon.upper)
+                            : SX(horizon.value);
     if (horizon.free) made_->horizon_ = last();
     for (std::size_t i = 0; i < guess_.parameters.size(); ++i) {
       const bool is_free = ocp_.free_parameters[i] && !ocp_.is_initial_value(i);
@@ -281,6 +285,7 @@ class Builder {
   const System& system_;
   int intervals_;
   const Motion& guess_;
+  bool is_held_;                           ///< the horizon
   std::vector<int> used_;                  ///< selections
   std::vector<const model::Jump*> jumps_;  ///< of hysteresis
   std::unique_ptr<SteppedOcp> made_;
@@ -299,12 +304,12 @@ std::vector<double> ends_of_steps(int intervals) {
   return fractions;
 }
 
-std::unique_ptr<SteppedOcp> SteppedOcp::make(const Ocp& ocp, int intervals, const Motion& guess) {
+std::unique_ptr<SteppedOcp> SteppedOcp::make(const Ocp& ocp, int intervals, const Motion& guess, bool is_held) {
   if (!ocp.physical) return nullptr;
   auto parts = parts_of(*ocp.physical);
   auto used = selections_in(*ocp.physical, parts);
   if (!is_known(ocp, used)) return nullptr;
-  return Builder(ocp, intervals, guess, std::move(parts), std::move(used)).build();
+  return Builder(ocp, intervals, guess, is_held, std::move(parts), std::move(used)).build();
 }
 
 SteppedOcp::~SteppedOcp() = default;

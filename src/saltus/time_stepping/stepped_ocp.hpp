@@ -38,10 +38,12 @@ class SteppedOcp {
   /// Returns nothing where time is not frozen, or where there is anything that is not stated so: other jumps, cells,
   /// measurements, complementarities of the user's.
   /// Cost: linear in the number of steps.
-  [[nodiscard]] static std::unique_ptr<SteppedOcp> make(const model::Ocp& ocp, int intervals, const Motion& guess);
+  /// @param is_held  a free horizon stays what is guessed
+  [[nodiscard]] static std::unique_ptr<SteppedOcp> make(const model::Ocp& ocp, int intervals, const Motion& guess,
+                                                        bool is_held = false);
   ~SteppedOcp();
 
-  [[nodiscard]] mpcc::Problem& problem() { return *problem_; }
+  [[nodiscard]] mpcc::Problem& problem() const { return *problem_; }
   /// Returns the start of the problem with other states, rows as Motion::states.
   [[nodiscard]] linalg::Vector start_at(const std::vector<std::vector<double>>& states) const;
   [[nodiscard]] Motion read(mpcc::ConstVectorView w) const;

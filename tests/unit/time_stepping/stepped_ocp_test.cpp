@@ -128,6 +128,20 @@ TEST(SteppedOcp, RestitutionGivesBack) {
   EXPECT_LT(before, 3e-3);
 }
 
+TEST(SteppedOcp, AFreeHorizonCanBeHeldAtItsGuess) {
+  std::string text = falling("");
+  text.replace(text.find("horizon = 0.4"), 13, "horizon = { free = true, initial = 0.3, lower = 0.1, upper = 1 }");
+  const auto ocp = ocp_of(text);
+  Motion guess = resting(ocp, 4);
+  guess.horizon = 0.3;
+  for (const bool is_held : {true, false}) {
+    const auto stepped = SteppedOcp::make(ocp, 4, guess, is_held);
+    const auto& bounds = stepped->problem().variable_bounds();
+    EXPECT_EQ(stepped->read(bounds.lower).horizon, is_held ? 0.3 : 0.1);
+    EXPECT_EQ(stepped->read(bounds.upper).horizon, is_held ? 0.3 : 1.0);
+  }
+}
+
 TEST(SteppedOcp, StepsAreEquallyManyInEachInterval) {
   const auto fractions = ends_of_steps(4);
   EXPECT_EQ(fractions.size() % 4, 0U);

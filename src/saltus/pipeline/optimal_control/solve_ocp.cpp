@@ -19,6 +19,8 @@ using result::Termination;
 
 /// Times that intervals may get an element more.
 constexpr int most_rounds = 3;
+/// Of controls that time stepping finds, one after the other: each has other modes.
+constexpr int most_motions = 4;
 /// Of the objective of time stepping, relative.
 constexpr double error_of_steps = 0.05;
 /// Of the objective: by less an element more is not worth it.
@@ -125,38 +127,60 @@ struct FromSteps {
   bool is_as_good = false;  ///< as the steps
 };
 
-/// From the motion of the controls that time stepping finds: with an element for each of its modes. Nothing where that
-/// leads to no solution. Its states are one more start.
+/// From a motion of the controls in w, with an element for each of its modes. Where its branch has no solution, these
+/// modes cannot meet the constraints: the controls of the point that comes nearest have a motion of other modes.
+std::optional<FromSteps> solve_motion_of(const model::Ocp& ocp, const solver::SolveOptions& wanted, linalg::Vector w,
+                                         const StatedProblem& stated, solver::Solution& record) {
+  const Stopwatch clock;
+  const auto is_over = [&] {
+    return wanted.is_interrupted() || (wanted.time_limit && clock.seconds() >= *wanted.time_limit);
+  };
+  solver::SolveOptions rest = wanted;
+  rest.make_workplace = {};  // they have other elements
+  adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
+  adapters::HighsLpcc highs;
+  FromSteps found;
+  for (int motion_number = 0; motion_number < most_motions; ++motion_number) {
+    auto& before = found.problem ? *found.problem : *stated.problem;
+    const auto modes = before.motion_modes(w, is_over);
+    if (!modes) return std::nullopt;
+    found.elements = discretization::elements_of(*modes);
+    for (std::size_t k = 0; k < found.elements.size(); ++k) {
+      found.elements[k] = std::max(found.elements[k], stated.elements[k]);
+    }
+    auto problem = discretization::OcpProblem::make(stated.kernel, ocp, *stated.dcs, found.elements);
+    if (!problem) return std::nullopt;
+    (*problem)->set_start(before, w);
+    found.problem = std::move(*problem);
+    const auto motion = found.problem->motion(found.problem->start(), *modes);
+    if (!motion) return std::nullopt;
+    rest.time_limit = solver::time_left(wanted, clock.seconds());
+    found.solution = solver::solve_motion(*found.problem, ipopt, highs, rest, *motion);
+    if (found.solution.termination == Termination::completed) return found;
+    if (found.solution.crossed_over) return std::nullopt;  // a solution that nothing certifies
+    add_path(found.solution, record);
+    w = std::move(found.solution.w);
+  }
+  return std::nullopt;
+}
+
+/// From the motion of the controls that time stepping finds. Nothing where that leads to no solution. Its states are
+/// one more start.
 std::optional<FromSteps> solve_from_steps(const model::Ocp& ocp, const OptimizeOptions& options,
                                           const solver::SolveOptions& wanted, SolvedOcp& solved) {
   auto& [stated, record, has_more, seconds, distance] = solved;
   const Stopwatch clock;
   const auto start = stepped_start(ocp, options, wanted, stated.problem->start_fractions(), record);
   if (!start) return std::nullopt;
-  const linalg::Vector w = stated.problem->add_start("the motion of time stepping", start->guess);
-  const auto is_over = [&] {
-    return wanted.is_interrupted() || (wanted.time_limit && clock.seconds() >= *wanted.time_limit);
-  };
-  const auto modes = stated.problem->motion_modes(w, is_over);
-  if (!modes) return std::nullopt;
-  auto elements = discretization::elements_of(*modes);
-  for (std::size_t k = 0; k < elements.size(); ++k) elements[k] = std::max(elements[k], stated.elements[k]);
-  auto problem = discretization::OcpProblem::make(stated.kernel, ocp, *stated.dcs, elements);
-  if (!problem) return std::nullopt;
-  (*problem)->set_start(*stated.problem, w);
-  const auto motion = (*problem)->motion((*problem)->start(), *modes);
-  if (!motion) return std::nullopt;
+  linalg::Vector w = stated.problem->add_start("the motion of time stepping", start->guess);
   solver::SolveOptions rest = wanted;
   rest.time_limit = solver::time_left(wanted, clock.seconds());
-  rest.make_workplace = {};  // they have other elements
-  adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
-  adapters::HighsLpcc highs;
-  auto found = solver::solve_motion(**problem, ipopt, highs, rest, *motion);
-  if (!found || found->termination != Termination::completed) return std::nullopt;
+  auto found = solve_motion_of(ocp, rest, std::move(w), stated, record);
+  if (!found) return std::nullopt;
   const double most = start->objective + error_of_steps * std::abs(start->objective);
   // Steps can leave a hysteresis between 0 and 1, which no motion does: they promise too much.
-  const bool is_as_good = found->objective <= most && !ocp.physical->contacts.empty();
-  return FromSteps{std::move(*found), std::move(*problem), std::move(elements), is_as_good};
+  found->is_as_good = found->solution.objective <= most && !ocp.physical->contacts.empty();
+  return found;
 }
 
 /// Where steps promise more than their motion has come to, or lead nowhere, relaxed problems are solved, too.
@@ -230,8 +254,8 @@ bool keep_off_touched(const OptimizeOptions& options, const OptimizeObservers& o
   adapters::HighsLpcc highs;
   const mpcc::NamedStart start{.name = "off what is touched", .w = solution.w, .sides = solution.sides};
   auto next = solver::solve_motion(*stated.problem, ipopt, highs, one_start(options, observers), start);
-  if (!next || next->termination != Termination::completed) return false;
-  go_on_with(std::move(*next), solution);
+  if (next.termination != Termination::completed) return false;
+  go_on_with(std::move(next), solution);
   return true;
 }
 

@@ -18,8 +18,12 @@ constexpr double last_sigma = 1e-6;
 /// Of constraints, for the same reason.
 constexpr double feasible = 1e-3;
 constexpr int most_of_steps = 1500;  // iterations of all starts together
+/// Of a free horizon: the next one that is tried.
+constexpr double shorter = 0.9;
 /// So large that motions hardly know of contacts, and so small that they stay near their start.
 constexpr double large_sigma = 1.0, small_sigma = 0.01;
+/// So small that modes stay.
+constexpr double least_sigma = 1e-4;
 
 /// Without the hidden states of frozen time.
 std::vector<double> shown(std::vector<double> x, const model::Ocp& ocp) {
@@ -38,36 +42,77 @@ struct Beginning {
   double sigma = 1.0;
 };
 
-/// Each order of collisions has optima of its own: the lowest one.
-std::optional<solver::Solution> best_of(const std::vector<Beginning>& beginnings, mpcc::Problem& problem,
-                                        solver::SolveOptions wanted, solver::Solution& record) {
-  wanted.on_step = [tell = wanted.on_step](const result::HomotopyStep& step) { tell(named(step)); };
-  adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
-  adapters::HighsLpcc highs;
-  const Stopwatch clock;
-  std::optional<solver::Solution> best;
-  int left = std::min(wanted.iteration_limit, most_of_steps);
-  for (const auto& [w, sigma] : beginnings) {
-    if (wanted.is_interrupted() || left <= 0) break;
-    solver::SolveOptions one = wanted;
-    one.iteration_limit = left;
-    one.sigma_initial = sigma;
-    one.time_limit = solver::time_left(wanted, clock.seconds());
-    auto solution = solver::solve(problem, ipopt, highs, one, solver::Start{.w = w, .multipliers = {}});
-    if (!solution) continue;
-    for (const auto& step : solution->homotopy) record.homotopy.push_back(named(step));
-    record.iterations += solution->iterations;
-    left -= solution->iterations;
-    record.evaluation_seconds += solution->evaluation_seconds;
-    record.solver_seconds += solution->solver_seconds;
+/// Follows paths one after the other, as long as iterations and time are left.
+class Paths {
+ public:
+  Paths(solver::SolveOptions wanted, solver::Solution& record)
+      : wanted_(std::move(wanted)), record_(record), left_(std::min(wanted_.iteration_limit, most_of_steps)) {
+    wanted_.on_step = [tell = wanted_.on_step](const result::HomotopyStep& step) { tell(named(step)); };
+  }
+
+  /// Each order of collisions has optima of its own: returns the lowest one.
+  std::optional<solver::Solution> best_of(const std::vector<Beginning>& beginnings, mpcc::Problem& problem) {
+    std::optional<solver::Solution> best;
+    for (const auto& beginning : beginnings) {
+      auto solution = follow(beginning, problem);
+      if (solution && !(best && solution->objective >= best->objective)) best = std::move(solution);
+    }
+    return best;
+  }
+
+ private:
+  /// Nothing where that leads to no motion.
+  std::optional<solver::Solution> follow(const Beginning& beginning, mpcc::Problem& problem) {
+    if (wanted_.is_interrupted() || left_ <= 0) return std::nullopt;
+    solver::SolveOptions one = wanted_;
+    one.iteration_limit = left_;
+    one.sigma_initial = beginning.sigma;
+    one.time_limit = solver::time_left(wanted_, clock_.seconds());
+    auto solution = solver::solve(problem, ipopt_, highs_, one, solver::Start{.w = beginning.w, .multipliers = {}});
+    if (!solution) return std::nullopt;
+    for (auto& step : solution->homotopy) step = named(std::move(step));
+    add_path(*solution, record_);
+    left_ -= solution->iterations;
     const auto& of = solution->certificate;
     const bool is_feasible = of.primal_infeasibility <= feasible && of.complementarity_residual <= feasible;
-    if (is_feasible && !(best && solution->objective >= best->objective)) best = std::move(*solution);
+    return is_feasible ? std::optional(std::move(*solution)) : std::nullopt;
+  }
+
+  solver::SolveOptions wanted_;
+  solver::Solution& record_;
+  int left_;  ///< iterations
+  adapters::IpoptSolver ipopt_{adapters::linear_solver_of(wanted_.strategy)};
+  adapters::HighsLpcc highs_;
+  Stopwatch clock_;
+};
+
+/// Relaxed problems shorten a free horizon until no motion is left, and lead nowhere from there. So motions of a
+/// horizon that is held come first, from which it is let go where hardly anything is relaxed; then shorter ones, as
+/// long as there are any.
+std::optional<solver::Solution> shortened(const model::Ocp& ocp, int intervals, time_stepping::Motion guess,
+                                          const time_stepping::SteppedOcp& stepped, Paths paths) {
+  std::optional<solver::Solution> best;
+  linalg::Vector w = stepped.problem().start();
+  for (; guess.horizon >= ocp.horizon.lower; guess.horizon *= shorter) {
+    const auto held = time_stepping::SteppedOcp::make(ocp, intervals, guess, true);
+    const auto motion = paths.best_of({{w, large_sigma}}, held->problem());
+    auto found = motion ? paths.best_of({{motion->w, least_sigma}}, stepped.problem()) : std::nullopt;
+    if (!found || (best && found->objective >= best->objective)) break;
+    guess.horizon = stepped.read(found->w).horizon;
+    w = found->w;
+    best = std::move(found);
   }
   return best;
 }
 
 }  // namespace
+
+void add_path(const solver::Solution& solution, solver::Solution& record) {
+  record.homotopy.insert(record.homotopy.end(), solution.homotopy.begin(), solution.homotopy.end());
+  record.iterations += solution.iterations;
+  record.evaluation_seconds += solution.evaluation_seconds;
+  record.solver_seconds += solution.solver_seconds;
+}
 
 std::optional<SteppedStart> stepped_start(const model::Ocp& ocp, const OptimizeOptions& options,
                                           solver::SolveOptions wanted, const std::vector<double>& fractions,
@@ -93,7 +138,8 @@ std::optional<SteppedStart> stepped_start(const model::Ocp& ocp, const OptimizeO
   const linalg::Vector w = stepped->problem().start();
   std::vector<Beginning> beginnings{{w, large_sigma}, {w, small_sigma}};
   for (const auto& [name, states] : begin->others) beginnings.push_back({stepped->start_at(states), small_sigma});
-  const auto solution = best_of(beginnings, stepped->problem(), std::move(wanted), record);
+  auto solution = Paths(wanted, record).best_of(beginnings, stepped->problem());
+  if (!solution && ocp.horizon.free) solution = shortened(ocp, intervals, guess, *stepped, Paths(wanted, record));
   if (!solution) return std::nullopt;
   auto motion = stepped->read(solution->w);
   const auto with_clock = [&](std::vector<double> x, double fraction) {

@@ -19,6 +19,9 @@ struct SteppedStart {
   double objective = 0.0;  ///< of the steps
 };
 
+/// Adds the path that led to a solution to a record, with its iterations and seconds.
+void add_path(const solver::Solution& solution, solver::Solution& record);
+
 /// Solves the problem by time stepping, and returns controls and states at fractions of the horizon; nothing where it
 /// cannot be stated or solved so.
 /// @param record  its relaxed problems are added to the path, iterations and seconds
