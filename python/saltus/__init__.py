@@ -62,7 +62,7 @@ from ._functions import (  # noqa: E402
 )
 from ._model import Model  # noqa: E402
 from ._mpcc import Mpcc, mpcc  # noqa: E402
-from ._outcome import Final, Sensitivities, Status  # noqa: E402
+from ._outcome import Final, Intervals, Sensitivities, Status  # noqa: E402
 from ._result import Result, Stopped, load  # noqa: E402
 from ._sweep import Sweep  # noqa: E402
 
@@ -82,6 +82,7 @@ __all__ = [
     "Events",
     "Expression",
     "Final",
+    "Intervals",
     "Intersection",
     "Model",
     "ModelError",

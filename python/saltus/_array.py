@@ -19,7 +19,12 @@ _WRITTEN = {
     **dict.fromkeys(("select", "piecewise", "digitize"), "saltus.if_(x > 1, a, saltus.if_(x > 0, b, c))"),
     **dict.fromkeys(("isclose", "allclose"), "a condition of both sides: (x > a) & (x < b)"),
     **dict.fromkeys(("isnan", "isinf", "isfinite"), "nothing: a run ends where a value is no finite number"),
-    **dict.fromkeys(("inv", "solve", "det"), "the formula, or compute with numbers before: A = np.linalg.inv(A), then A @ X"),
+    **dict.fromkeys(
+        ("inv", "solve", "det"),
+        "the formula, as (d*p - b*q)/(a*d - b*c) of two equations; of a matrix of numbers np.linalg.inv(A) @ X",
+    ),
+    **dict.fromkeys(("gradient", "trapezoid"), "the quotients: (x[2:] - x[:-2])/(2*h), with x = saltus.array(x)"),
+    **dict.fromkeys(("linspace", "arange"), "numbers: their ends are known before the simulation only"),
     "interp": 'road = m.table("road", x=[0, 1], y=[0, 2]), then road(x)',
     "ceil": "-saltus.floor(-x), of times only",
     "cbrt": "saltus.sign(x)*abs(x)**(1/3)",

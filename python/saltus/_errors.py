@@ -7,6 +7,7 @@ import sys
 import typing
 import warnings
 
+from . import _core
 from ._spelling import at_option, in_python, is_option, keywords
 
 class ModelError(ValueError):
@@ -68,7 +69,7 @@ def warn(messages: typing.Iterable[str]) -> None:
     depth, frame = 1, sys._getframe()
     while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("saltus"):
         depth, frame = depth + 1, frame.f_back
-    for message in messages:
+    for message in _core.told_together(list(messages)):
         warnings.warn(in_python(message), ModelWarning, stacklevel=depth)
 
 

@@ -24,16 +24,17 @@ from ._settings import (
     check_together,
     count_of,
     entry_by_entry,
+    is_option,
     is_several,
     mapping_of,
     names_in,
     names_no_keys,
     nearest,
     not_two_things,
-    is_option,
     once,
     optimize_options,
     parameters_among,
+    series_of,
     settings_of,
     simulate_options,
     sweep_name,
@@ -187,13 +188,7 @@ class Model(Source):
         >>> series[0]["stages"]
         2
         """
-        try:
-            more = (",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps))
-        except (TypeError, ValueError):
-            raise refuse(
-                f"schemes={schemes!r}, steps={steps!r}: expected lists", 'e.g. schemes=[("radau_iia", 2)], steps=[50, 100]'
-            ) from None
-        return Result(self._run("order", until, set, options, None, more)[0])
+        return Result(self._run("order", until, set, options, None, series_of(until, schemes, steps))[0])
 
     @with_options("optimize")
     def optimize(

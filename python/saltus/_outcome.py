@@ -120,6 +120,44 @@ class Sensitivities(typing.NamedTuple):
     parameters: list[str]
 
 
+class Intervals:
+    """The controls of an optimum, constant in every interval: ``ends`` of the intervals (one more than there are),
+    ``u`` (a row for every interval), and the values of one control by its name.
+
+    >>> m = saltus.catalogue("voice-coil-time")
+    >>> found = m.optimize(control_intervals=4).intervals
+    >>> found.u.shape, found["u"].shape, found.ends.shape
+    ((4, 1), (4,), (5,))
+    """
+
+    def __init__(self, ends: list[float], u: list[list[float]], names: list[str]) -> None:
+        self.ends: Array = np.array(ends, dtype=float)
+        self.u: Array = np.array(u, dtype=float).reshape(len(ends) - 1, len(names))
+        self._names = names
+
+    def __getitem__(self, name: typing.Any) -> Array:
+        """The values of one control.
+
+        >>> len(saltus.catalogue("voice-coil-time").optimize(control_intervals=4).intervals["u"])
+        4
+        """
+        name = name.text if isinstance(name, Expression) else name
+        if name not in self._names:
+            raise unknown(name, self._names, "the optimum")
+        return self.u[:, self._names.index(name)]
+
+    def keys(self) -> list[str]:
+        """Names of the controls.
+
+        >>> saltus.catalogue("voice-coil-time").optimize(control_intervals=4).intervals.keys()
+        ['u']
+        """
+        return list(self._names)
+
+    def __repr__(self) -> str:
+        return f"<{len(self.u)} intervals of {', '.join(self._names) or 'no control'}>"
+
+
 class Kept(typing.NamedTuple):
     """What a sweep kept of a run ("final", "events" or "trajectory"), and how many events happened."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import typing
+import weakref
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from ._shape import as_drawn, broken_at_jumps, edges, is_alone, is_stepwise, sli
 SLIDING = "#d95f02"
 #: Of the first result in a picture, and of those that are drawn over it.
 LINES = ("#1f5fa8", "#1b9e77", "#e7298a", "#66a61e", "#a6761d", "#7570b3")
+DASHES = ("-", "--", "-.", ":")
 #: Marks a line as a result's.
 _OURS = "saltus"
 #: Of more events than this the marks hide the curves.
@@ -112,7 +114,7 @@ def plot(
     color: typing.Any = None,
 ) -> typing.Any:
     """A row of axes for every name; sliding is shaded, events are marked at their values."""
-    r = as_drawn(r)
+    r, of = as_drawn(r), weakref.ref(r)
     pyplot, is_own = _matplotlib(), axes is None
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
@@ -131,18 +133,16 @@ def plot(
         for begin, end in sliding_spans(r):
             axis.axvspan(begin, end, color=SLIDING, alpha=0.13, linewidth=0)
         for name in group.names:
-            words = [*([name] if len(group.names) > 1 else []), *([label] if label is not None else [])]
-            line = _line(axis, broken_at_jumps(r, r.t, columns[name]), ", ".join(words) or None, color)
+            line = _line(axis, broken_at_jumps(r, r.t, columns[name]), _Drawn(of, name, label), color)
             if is_stepwise(r.t, columns[name]):
                 axis.plot(*edges(r.t, columns[name]), color=line.get_color(), linewidth=0.6)
             _mark_events(axis, r, "t", name, events)
-        axis.set_ylabel(_title(r, group))
+        _caption_once(axis, "y", _title(r, group))
         axis.margins(x=0)
-        if axis is axes[0] or len(group.names) > 1:
-            _legend(axis)
-    axes[0].set_title(r.model)
-    axes[-1].set_xlabel("t")
+        _legend(axis, axis is axes[0])
+    _caption_once(axes[-1], "x", "t")
     if is_own:
+        axes[0].set_title(r.model)
         # The room for labels is that of the ticks, which change with the height that the first layout gives.
         axes[0].figure.get_layout_engine().execute(axes[0].figure)
     return axes
@@ -169,22 +169,50 @@ def _title(r: Recorded, group: Group) -> str:
     return " ".join(filter(None, [group.title or (", ".join(group.names) if len(group.names) < 4 else ""), unit]))
 
 
-def _line(axis: typing.Any, curve: list[typing.Any], label: str | None, color: typing.Any = None) -> typing.Any:
-    """Another result over one that is there has another colour; a value between two gaps is a dot."""
-    before = sum(line.get_gid() == _OURS for line in axis.lines)
-    named = {"label": label} if label is not None else {}
+class _Drawn(typing.NamedTuple):
+    """What a line shows: a column of a result, and the label that was given."""
+
+    of: weakref.ref[Recorded]
+    name: str
+    label: str | None
+
+
+def _line(axis: typing.Any, curve: list[typing.Any], drawn: _Drawn, color: typing.Any = None) -> typing.Any:
+    """Every further line has another colour, then another dash; a value between two gaps is a dot."""
+    round, place = divmod(len(_ours(axis)), len(LINES))
     dots = np.flatnonzero(is_alone(curve[0] + curve[1])).tolist()
     style = {"marker": ".", "markersize": 2.4, "markevery": dots} if dots else {}
-    color = LINES[before % len(LINES)] if color is None else color
-    (line,) = axis.plot(*curve, color=color, linewidth=1.2, gid=_OURS, **style, **named)
+    color, dash = (LINES[place], DASHES[round % len(DASHES)]) if color is None else (color, "-")
+    (line,) = axis.plot(*curve, color=color, linestyle=dash, linewidth=1.2, gid=_OURS, **style)
+    line._saltus = drawn
     return line
 
 
-def _legend(axis: typing.Any) -> None:
-    """Of the results that were given a label."""
-    named = [line for line in axis.lines if line.get_gid() == _OURS and not line.get_label().startswith("_")]
-    if named:
+def _ours(axis: typing.Any) -> list[typing.Any]:
+    return [line for line in axis.lines if line.get_gid() == _OURS and hasattr(line, "_saltus")]
+
+
+def _legend(axis: typing.Any, with_labels: bool = True) -> None:
+    """Names what tells the lines apart: their columns, their results, and labels that were given."""
+    lines = _ours(axis)
+    names = {line._saltus.name for line in lines}
+    results = list(dict.fromkeys(line._saltus.of for line in lines))
+    for line in lines:
+        of, name, label = line._saltus
+        if label is None and len(results) > 1:
+            label = f"result {results.index(of) + 1}"
+        words = [*([name] if len(names) > 1 else []), *([label] if label is not None else [])]
+        if words:
+            line.set_label(", ".join(words))
+    named = [line for line in lines if not line.get_label().startswith("_")]
+    if named and (with_labels or len(names) > 1):
         axis.legend(handles=named)
+
+
+def _caption_once(axis: typing.Any, side: str, caption: str) -> None:
+    """Axes of one's own keep the captions that they have."""
+    if not getattr(axis, f"get_{side}label")():
+        getattr(axis, f"set_{side}label")(caption)
 
 
 def caption_of(r: Recorded, name: str) -> str:
@@ -226,20 +254,21 @@ def phase(
     color: typing.Any = None,
 ) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
-    r = as_drawn(r)
-    pyplot = _matplotlib()
+    r, of = as_drawn(r), weakref.ref(r)
+    pyplot, is_own = _matplotlib(), axis is None
     x, y = str(x), str(y)
-    if axis is None:
+    if is_own:
         _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")
-    _line(axis, broken_at_jumps(r, r[x], r[y]), label, color)
+    _line(axis, broken_at_jumps(r, r[x], r[y]), _Drawn(of, y, label), color)
     held = slides(r)
     here, there = r[x].astype(float), r[y].astype(float)
     here[~held] = float("nan")
     axis.plot(*broken_at_jumps(r, here, there), color=SLIDING, linewidth=2.6, solid_capstyle="butt")
     _mark_events(axis, r, x, y, events)
     axis.plot(r[x][0], r[y][0], "o", color="black", markersize=4)
-    axis.set_xlabel(caption_of(r, x))
-    axis.set_ylabel(caption_of(r, y))
-    axis.set_title(r.model)
+    _caption_once(axis, "x", caption_of(r, x))
+    _caption_once(axis, "y", caption_of(r, y))
+    if is_own:
+        axis.set_title(r.model)
     _legend(axis)
     return axis

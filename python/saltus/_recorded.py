@@ -11,7 +11,7 @@ import numpy as np
 from . import _core
 from ._events import Events
 from ._facts import Facts
-from ._outcome import Final, Kept, Sensitivities, Status
+from ._outcome import Final, Intervals, Kept, Sensitivities, Status
 
 _OF_OPTIMUM = (
     "objective objective_terms horizon parameters u grid h speed_of_time multipliers homotopy starts certificate "
@@ -110,6 +110,16 @@ class Recorded(Facts):
         return {key: self._facts[key] for key in _OF_OPTIMUM if key in self._facts}
 
     @property
+    def intervals(self) -> Intervals | None:
+        """The controls that an optimisation found, interval by interval; None of a simulation.
+
+        >>> saltus.catalogue("stick-slip").simulate(until=1).intervals is None
+        True
+        """
+        found = self.optimization
+        return None if found is None or "u" not in found else Intervals(found["grid"], found["u"], self.controls)
+
+    @property
     def objective(self) -> float | None:
         """The value of the costs that an optimisation found; None of a simulation.
 
@@ -195,7 +205,8 @@ class Recorded(Facts):
 
         def __getattr__(self, name):
             if name in _OF_OPTIMUM and self._run.command == "optimize":
-                raise AttributeError(f'{name} is what an optimisation found: r.optimization["{name}"]')
+                where = "r.intervals.ends" if name == "grid" else f'r.optimization["{name}"]'
+                raise AttributeError(f"{name} is what an optimisation found: {where}")
             if not name.startswith("_") and name in self.names:
                 raise AttributeError(f'{name} is a column of the result: r["{name}"]')
             raise AttributeError(f"a result has no attribute {name!r}")

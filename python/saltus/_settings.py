@@ -318,6 +318,18 @@ def axis(name: str, values: Value) -> str:
     return text_of(values, name)[1:-1]
 
 
+def series_of(until: Value, schemes: Value, steps: Value) -> tuple[str, str]:
+    """Schemes and numbers of steps of an order study, as the tool reads them."""
+    if is_list(until):
+        raise refuse(f"until={until!r}: expected the end time, a number", f"numbers of steps are steps={until!r}")
+    schemes = schemes if isinstance(schemes, (list, tuple)) else [schemes]
+    if not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in schemes):
+        raise refuse(f"schemes={schemes!r}: expected pairs of a name and a number of stages", 'e.g. schemes=[("radau_iia", 2)]')
+    if not isinstance(steps, typing.Iterable) or isinstance(steps, str):
+        raise refuse(f"steps={steps!r}: expected a list of numbers of steps", "e.g. steps=[50, 100, 200]")
+    return ",".join(f"{name}:{stages}" for name, stages in schemes), ",".join(str(n) for n in steps)
+
+
 def is_several(value: Value) -> bool:
     """Whether a keyword of a sweep is swept; arrays of several axes are, to be refused."""
     return is_list(value) or isinstance(value, np.ndarray) and value.ndim > 1

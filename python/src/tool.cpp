@@ -10,6 +10,7 @@
 
 #include "errors.hpp"
 #include "parts.hpp"
+#include "saltus/base/told_together.hpp"
 #include "saltus/base/version.hpp"
 #include "saltus/frontend/catalogue.hpp"
 #include "saltus/frontend/sized_models.hpp"
@@ -56,6 +57,7 @@ void add_tool(nb::module_& module) {
   module.attr("version") = nb::str(std::string(version).c_str());
   module.def("run_tool", run_tool);
   module.def("models", models);
+  module.def("told_together", told_together, nb::arg("texts"));
   module.def("set_shared_folder", [](const std::string& folder) { frontend::set_shared_folder(folder); });
   module.def("find_catalogue", find_catalogue);
   module.def("sized_model", sized_model, nb::arg("name"), nb::arg("sizes"));

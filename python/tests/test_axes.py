@@ -33,6 +33,44 @@ def test_several_columns_share_axes(slip):
     assert [axis.get_ylabel() for axis in m.sweep(x1=[1, 2], until=1).plot("x")] == ["x1 [mol]", "x2 [mol]"]
 
 
+def test_axes_of_ones_own_keep_what_they_have(slip):
+    figure, (left, right) = pyplot.subplots(1, 2)
+    figure.suptitle("mine")
+    left.set_title("left")
+    left.set_ylabel("speed")
+    slip.plot("v", ax=left)
+    slip.phase("q", "v", ax=right)
+    assert (left.get_title(), left.get_ylabel(), left.get_xlabel(), right.get_title()) == ("left", "speed", "t", "")
+    assert figure.get_suptitle() == "mine" and slip.plot("v")[0].get_title() == slip.model
+
+
+def test_results_over_each_other_are_told_apart(slip):
+    m = saltus.catalogue("stick-slip")
+    other = m.simulate(until=10, set={"belt": 0.1})
+
+    def words(axis):
+        return [text.get_text() for text in axis.get_legend().get_texts()]
+
+    def looks(axis):
+        return {(line.get_color(), line.get_linestyle()) for line in axis.lines if line.get_gid() == "saltus"}
+
+    (axis,) = slip.plot("v")
+    assert axis.get_legend() is None
+    other.plot("v", ax=axis)
+    assert words(axis) == ["result 1", "result 2"] and len(looks(axis)) == 2
+    (axis,) = slip.plot([["q", "v"]])
+    other.plot([["q", "v"]], ax=axis, label="slow")
+    assert words(axis) == ["q, result 1", "v, result 1", "q, slow", "v, slow"]
+    for _ in range(3):
+        other.plot([["q", "v"]], ax=axis)
+    assert len(looks(axis)) == 10
+    both = other.phase("q", "v", ax=slip.phase("q", "v"))
+    assert words(both) == ["result 1", "result 2"]
+    (axis,) = slip.plot("q")
+    slip.plot("v", ax=axis)
+    assert words(axis) == ["q", "v"]
+
+
 def test_pictures_have_one_word_for_axes_and_say_it(slip):
     s = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=40)
     events = saltus.catalogue("stick-slip").sweep(belt=[0.1, 0.2], until=40, keep="events")

@@ -151,8 +151,8 @@ def test_optimisations(block, slip):
 
 def test_studies(slip):
     assert "steps=[25,50,100,200]" in said_by(lambda: slip.order(until=1, steps=[2, 1]))
-    for wrong in ({"schemes": "radau_iia:2"}, {"steps": 10}):
-        assert 'schemes=[("radau_iia", 2)]' in said_by(lambda wrong=wrong: slip.order(until=1, **wrong))
+    assert 'schemes=[("radau_iia", 2)]' in said_by(lambda: slip.order(until=1, schemes="radau_iia:2"))
+    assert "steps=[50, 100, 200]" in said_by(lambda: slip.order(until=1, steps=10))
 
 
 def test_results(slip, tmp_path):
@@ -273,3 +273,30 @@ def test_files_with_another_name_are_not_meant(tmp_path):
         with pytest.raises(saltus.ModelError) as refused:
             saltus.Model(tmp_path / f"{name}.toml")
         assert ("did you mean" in str(refused.value)) == bool(meant) and meant in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        ({"until": [10, 20]}, "until=[10, 20]: expected the end time, a number\n  numbers of steps are steps=[10, 20]"),
+        ({"steps": 10}, "steps=10: expected a list of numbers of steps"),
+        ({"schemes": ["radau_iia"]}, "schemes=['radau_iia']: expected pairs of a name and a number of stages"),
+        ({"schemes": "radau_iia"}, "expected pairs of a name and a number of stages"),
+        ({"schemes": ("radau_iia", 2)}, 'e.g. schemes=[("radau_iia", 2)]'),
+    ],
+)
+def test_order_says_which_list_it_expects(call, told):
+    with pytest.raises(saltus.ModelError) as refused:
+        saltus.catalogue("stick-slip").order(**call)
+    assert told in str(refused.value)
+
+
+def test_warnings_of_one_kind_are_one():
+    m = saltus.Builder("unused")
+    x = m.state("x", 1)
+    for i in range(20):
+        m.parameter(f"p{i}", i)
+    m.rate(x, -x)
+    with pytest.warns(saltus.ModelWarning) as warned:
+        m.simulate(until=1)
+    assert len(warned) == 1 and "(and 19 more like it: 'p1', 'p2', 'p3', …)" in str(warned[0].message)

@@ -52,3 +52,13 @@ def test_every_problem_is_told(problem, capsys, monkeypatch):
     p = saltus.mpcc(problem, progress=True)
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) >= 1 and len(p.homotopy) >= 1
+
+
+def test_a_problem_of_casadi_as_the_page_writes_it(source, tmp_path, monkeypatch):
+    pytest.importorskip("casadi")
+    page = (source / "docs" / "foreign-mpcc.md").read_text(encoding="utf-8")
+    block = page.partition("### From CasADi")[2].partition("```python\n")[2].partition("```")[0]
+    monkeypatch.chdir(tmp_path)
+    exec(compile(block, "foreign-mpcc.md", "exec"), {})
+    p = saltus.mpcc("two.json")
+    assert p.done and p.x == pytest.approx([0, 2], abs=1e-8) and p.objective == pytest.approx(1)

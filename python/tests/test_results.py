@@ -155,7 +155,10 @@ def test_optimal_control(source):
     assert r.objective == r.optimization["objective"] == pytest.approx(r.t[-1], rel=1e-6)
     assert r.certificate == r.optimization["certificate"] and r.certificate["b_stationary"]
     assert r.verification == r.optimization["verification"] and r.verification["interval_defect"] < 1e-3
-    assert r.u.shape == (len(r.t), 1)
+    assert r.u.shape == (len(r.t), 1) and r.intervals.u.shape == (6, 1) and r.intervals.ends[-1] == r.t[-1]
+    assert r.intervals["u"].tolist() == [row[0] for row in r.optimization["u"]] and list(r.intervals.keys()) == ["u"]
+    with pytest.raises(KeyError, match="the optimum has no 'q'; known: u"):
+        r.intervals["q"]
     again = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start=r, control_intervals=6)
     assert again.optimization["objective"] == pytest.approx(r.optimization["objective"], rel=1e-5)
     simulated = saltus.Model(source / "examples" / "optimize" / "block.toml").optimize(start="simulated", control_intervals=6)

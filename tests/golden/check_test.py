@@ -94,8 +94,8 @@ delay = "d"
 
 
 class Mistakes(tool.ToolTest):
-    def check(self, text, *arguments):
-        out, err = self.run_tool("check", self.write("m.toml", text), *arguments, code=2)
+    def check(self, text, *arguments, code=2):
+        out, err = self.run_tool("check", self.write("m.toml", text), *arguments, code=code)
         return out, err.replace(f"{self.folder}/", "")
 
     def test_runs_show_the_line_of_their_first_mistake(self):
@@ -112,6 +112,28 @@ class Mistakes(tool.ToolTest):
         self.assertIn('\n    4 | x = "one"\n      |      ^\n', err)
         self.assertIn('\n    8 | until = "10 s"\n      |         ^\n', err)
         self.assertTrue(err.endswith("2 mistakes\n"), err)
+
+    def test_warnings_of_one_kind_are_told_together_and_long_lists_shortened(self):
+        unused = TWO_MISTAKES.replace('"one"', "1").replace('"10 s"', "1").replace(
+            "[states]", "[parameters]\n" + "".join(f"p{i} = {i}\n" for i in range(30)) + "[states]")
+        told = "m.toml:4: parameter 'p0' is never used (and 29 more like it: 'p1', 'p2', 'p3', …)"
+        out, err = self.check(unused, code=0)
+        self.assertTrue(out.replace(f"{self.folder}/", "").endswith(f"warnings (30)\n  {told}\n"), out)
+        _, err = self.run_tool("simulate", "m.toml", "--quiet", code=0)
+        self.assertEqual(err, f"warning: {told}\n")
+        jumps = "".join(f'[[jumps]]\nname = "j{i}"\nwhen = "x < {-i}"\nset = {{ x = 1 }}\n' for i in range(300))
+        out, _ = self.check(unused + jumps, code=0)
+        self.assertIn("jumps (300)\n  j0: ", out)
+        self.assertIn("\n  … (276 more; --json shows all)\n  j296: ", out)
+
+    def test_what_a_misspelt_key_was_to_be_is_not_missing(self):
+        for text, key in ((TWO_MISTAKES.replace("name =", "nane ="), "nane"),
+                          (TWO_MISTAKES + '[[hysteresis]]\nname = "h"\ninput = "x"\nupper = 1\nlower = 0\n', "upper"),
+                          (TWO_MISTAKES + '[[events]]\nwen = "x"\n', "wen")):
+            with self.subTest(key):
+                _, err = self.check(text)
+                self.assertIn(f"unknown key '{key}'", err)
+                self.assertNotRegex(err, "has no|no table")
 
     def test_one_is_told_once_and_what_follows_from_it_is_not(self):
         _, err = self.check(MANY)

@@ -145,7 +145,7 @@ class GrowingFiles(tool.ToolTest):
         self.write("m.toml", PARABOLAS)
         table, notes = self.run_tool("simulate", "m.toml", "--out", "r.json", "--out", "r.events.csv", code=0)
         # The file is announced when it gets large, before it is written.
-        self.assertRegex(notes, r"note: r.json grows beyond 50 MB; .*npz.*\nnote: r.json has \d+ MB\n")
+        self.assertRegex(notes, r"note: r.json grows beyond 50 MB; .*npz.*simulate.output.points=1000 .*simulate.output.states=x1 .*\nnote: r.json has \d+ MB\n")
         result = json.loads((self.folder / "r.json").read_text(encoding="utf-8"))
         rows, thinned_from = result["trajectory"]["t"], result["statistics"]["thinned_from"]
         times = [event["t"] for event in result["events"]]

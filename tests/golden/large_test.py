@@ -180,7 +180,7 @@ class Large(tool.ToolTest):
         self.assertRegex(table, r"i1 … i50  +50  from ")
         self.assertLess(len(table.splitlines()), 40)
         checked, _ = self.run_tool("check", self.model("ladder", 120), code=0)
-        self.assertIn("… (216 more)", checked)
+        self.assertIn("… (216 more; --json shows all)", checked)
         self.assertIn("more than 100 switching functions", checked)
         self.assertLess(len(checked.splitlines()), 120)
 

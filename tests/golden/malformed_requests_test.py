@@ -89,6 +89,11 @@ class Settings(RequestTest):
 
 class CommandLine(RequestTest):
     CASES = {
+        ("sweep", "m.toml", "--over", "mu=1..5"): ["--over mu=1..5: expected values with commas between, or FROM:TO:NUMBER"],
+        ("sweep", "m.toml", "--over", "mu=[1,2]"): ["--over mu=[1,2]: expected values with commas", "--over k=1,2,4"],
+        ("sweep", "m.toml", "--over", "mu=1 2"): ["--over mu=1 2: expected values with commas"],
+        ("sweep", "m.toml", "--over", "nu=1,2"): ["--over nu=1: error: ", "found 'nu'", "did you mean 'mu'?"],
+        ("sweep", "m.toml", "--over", "mu=1,2"): ["--out is missing"],
         ("simulat", "m.toml"): ["'simulat' is no command of saltus", "did you mean 'simulate'"],
         ("m.toml",): ["'m.toml' is no command of saltus", "did you mean `saltus simulate m.toml`?"],
         ("nonsense",): ["'nonsense' is no command of saltus", "known: help, simulate"],
@@ -111,7 +116,7 @@ class CommandLine(RequestTest):
         ("simulate", "m.toml", "--rtol", "0"): ["--rtol 0: error: expected a finite number > 0, found 0"],
         ("simulate", "m.toml", "--method", "euler"): ['expected "event"', 'found "euler"'],
         ("simulate", "m.toml", "--integrator", "rk4"): ['"dopri5", "dop853", "radau5", "radau9", "radau13" or "taylor"', 'found "rk4"'],
-        ("simulate", "m.toml", "--integrator", "RK45"): ['found "RK45"', "did you mean the integrator dopri5?"],
+        ("simulate", "m.toml", "--integrator", "RK45"): ['found "RK45"', "did you mean 'dopri5'?"],
         ("simulate", "m.toml", "--method", "radau5"): ['expected "event"', "did you mean the integrator radau5?"],
         ("simulate", "m.toml", "--quiet=maybe"): ["--quiet"],
         ("check", "m.toml", "--until", "1"): ["unexpected argument '--until'"],

@@ -215,6 +215,16 @@ test("a surface that moves is drawn at its times within the window", () => {
   assert.match(saltus.surfaceNote({moving: [surface]}, {t: 0}), /drawn at t = 0, 1, 2: psi/);
 });
 
+test("of two hundred surfaces some are drawn, those with events first, and the others counted", () => {
+  const drawn = Array.from({length: 200}, (_, i) => ({surface: {name: `s${i}`}}));
+  const result = {events: [{surfaces: ["s150"]}, {surfaces: ["s7", "s199"]}]};
+  const some = saltus.surfacesToDraw(result, {events: [0, 1]}, drawn).map(({surface}) => surface.name);
+  assert.equal(some.length, saltus.mostSurfaces);
+  assert.deepEqual(some.slice(0, 4), ["s7", "s150", "s199", "s0"]);
+  assert.equal(saltus.surfacesToDraw(result, {events: [0]}, drawn.slice(0, 9)).length, 9);
+  assert.match(saltus.surfaceNote({leftOut: 160}, {t: 0}), /^160 more surfaces not drawn/);
+});
+
 test("drawings begin with the states of the first surface", () => {
   const moving = [0, 1, 2, 1.5, 0.5], stepping = [1, 1, 1, 2, 2];
   const choice = (surfaces, size, x = [moving, moving, moving, moving, moving]) =>

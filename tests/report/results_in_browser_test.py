@@ -78,6 +78,17 @@ class Overlays(Page):
 
 
 class Comparison(Page):
+    def test_on_narrow_screens_it_scrolls_in_its_card_and_says_so(self):
+        self.tool("compare", "stick-slip", "--until", "5", "--quiet", "--report", "c.html")
+        self.browser.open((self.folder / "c.html").as_uri(), 390, 844, "light")
+        card = "document.querySelector('.comparison')"
+        self.assertEqual(self.value("document.documentElement.scrollWidth"), 390)
+        self.assertGreater(self.value(f"{card}.scrollWidth - {card}.clientWidth"), 100)
+        self.assertIn("local", self.value(f"getComputedStyle({card}).backgroundAttachment"))
+        self.value(f"(() => {{ {card}.scrollLeft = 10000; }})()")
+        left = f"{card}.querySelector('tbody td').getBoundingClientRect().left - {card}.getBoundingClientRect().left"
+        self.assertLess(abs(self.value(left)), 2)
+
     def test_a_run_without_states_has_all_its_cells(self):
         self.tool("compare", "stick-slip", "--until", "5", "--quiet", "--out", "c.json")
         compared = json.loads((self.folder / "c.json").read_text(encoding="utf-8"))

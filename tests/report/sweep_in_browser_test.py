@@ -48,6 +48,8 @@ class Sweep(Page):
         self.assertNotIn("undefined", self.value(kinds))
         self.value(CLICK.format("[...document.querySelectorAll('section.picture')].at(-1).querySelectorAll('.run')[2]"))
         self.assertIn("run 3: belt = 5; completed, 0 events", self.value("document.getElementById('chosen').textContent"))
+        command = self.value("document.getElementById('command').textContent")
+        self.assertEqual(command.split(" ", 1)[1], "simulate stick-slip --until 5 --set belt=5 --report run3.html")
 
     def test_the_page_opens_on_a_value_that_varies(self):
         """At the threshold that an event is about the state has one value in all runs."""

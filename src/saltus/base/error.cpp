@@ -4,6 +4,8 @@
 #include <cctype>
 #include <numeric>
 
+#include "saltus/base/other_words.hpp"
+
 namespace saltus {
 namespace {
 
@@ -84,6 +86,7 @@ std::string to_text(const Error& error) {
 }
 
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& known) {
+  if (auto meant = names_meant(name, known); !meant.empty()) return meant;
   std::vector<std::pair<std::size_t, std::string>> ranked;
   std::vector<std::string> longer_or_shorter;
   for (const auto& candidate : known) {

@@ -12,7 +12,10 @@ namespace saltus::cli {
 void SizeNote::grows(const std::string& file) {
   said_ = true;
   print_error(fmt::format("note: {} grows beyond {} MB{}", file, large / 1000000,
-                          file.ends_with(".npz") ? "" : "; --out NAME.npz holds the same numbers in a fraction of it"));
+                          file.ends_with(".npz") ? ""
+                                                 : "; --out NAME.npz holds the same numbers in a fraction of it, --set "
+                                                   "simulate.output.points=1000 has fewer rows, "
+                                                   "simulate.output.states=x1 fewer columns; events stay whole"));
 }
 
 void SizeNote::end(const std::string& file, std::size_t bytes) const {

@@ -137,15 +137,15 @@ ExitCode run_mpcc(const MpccArguments& arguments) {
   return finish(arguments, *result);
 }
 
-/// What is expected, broken into lines behind the column of keys.
-std::string wrapped_words(std::string_view words) {
-  constexpr std::size_t widest = 90;
+/// Words broken into lines that begin behind a column.
+std::string wrapped_words(std::string_view words, std::size_t behind) {
+  const std::size_t widest = 110 - behind;
   std::string text;
   std::size_t column = 0;
   while (!words.empty()) {
     const auto end = std::min(words.find(' '), words.size());
     if (column > 0 && column + end > widest) {
-      text += "\n" + std::string(20, ' ');
+      text += "\n" + std::string(behind, ' ');
       column = 0;
     }
     text += fmt::format("{}{}", column > 0 ? " " : "", words.substr(0, end));
@@ -158,7 +158,8 @@ std::string wrapped_words(std::string_view words) {
 std::string keys_help() {
   std::string text = "Keys of --set mpcc.KEY=VALUE:\n";
   for (const auto& field : pipeline::mpcc_fields()) {
-    text += fmt::format("  {:<17} {}\n        {}\n", field.key, wrapped_words(expects(field.kind)), field.doc);
+    text += fmt::format("  {:<17} {}\n        {}\n", field.key, wrapped_words(expects(field.kind), 20),
+                        wrapped_words(field.doc, 8));
   }
   return text;
 }

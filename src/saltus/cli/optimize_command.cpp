@@ -77,8 +77,8 @@ Expected<result::Result> compute_optimum(const OptimizeArguments& arguments, con
                                          const Outputs& outputs) {
   const auto ocp = model::build_ocp(input.file.description, input.overrides);
   if (!ocp) return tl::unexpected(ocp.error());
-  for (const auto& warning : ocp->system.warnings) print_error(fmt::format("warning: {}", warning));
-  for (const auto& warning : ocp->warnings) print_error(fmt::format("warning: {}", warning));
+  print_warnings(ocp->system.warnings);
+  print_warnings(ocp->warnings);
   auto result = pipeline::optimize(*ocp, *input.file.optimize, observers_of(arguments.run));
   if (!result) return result;
   if (const auto note = frontend::complete_optimum(input, *result)) print_error(*note);

@@ -27,9 +27,8 @@ std::string progress_text(const pipeline::StepRecord& step) {
 
 PreparationScope preparation_shown(ProgressLine& progress) {
   return PreparationScope([&progress](const Preparation& preparation) {
-    if (progress.has_begun()) return true;
     progress.show([&] { return "preparing   " + preparation.text(); });
-    return !interrupted();
+    return progress.has_begun() || !interrupted();
   });
 }
 

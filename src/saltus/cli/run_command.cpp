@@ -11,6 +11,7 @@
 
 #include "saltus/base/docs_page.hpp"
 #include "saltus/base/text.hpp"
+#include "saltus/base/told_together.hpp"
 #include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/outputs.hpp"
 #include "saltus/cli/progress.hpp"
@@ -158,11 +159,9 @@ ExitCode report_stops(const result::Result& result, bool table_shown) {
 
 void print_warnings(const std::vector<std::string>& warnings) {
   constexpr std::size_t most = 12;
-  for (std::size_t i = 0; i < std::min(most, warnings.size()); ++i)
-    print_error(fmt::format("warning: {}", warnings[i]));
-  if (warnings.size() > most) {
-    print_error(fmt::format("and {} more warnings: saltus check lists them", warnings.size() - most));
-  }
+  const auto told = told_together(warnings);
+  for (std::size_t i = 0; i < std::min(most, told.size()); ++i) print_error(fmt::format("warning: {}", told[i]));
+  if (told.size() > most) print_error(fmt::format("and {} more warnings: saltus check lists them", told.size() - most));
 }
 
 void add_model_options(CLI::App& command, RunArguments& arguments, std::span<const Shortcut> shortcuts) {

@@ -155,6 +155,20 @@ Expected<void> check_settings(const std::vector<std::string>& settings, const fr
   return {};
 }
 
+/// The first run, where all of what was typed makes sense: values are looked at before files.
+Expected<frontend::ModelInput> first_run(const SweepArguments& arguments, const frontend::ModelInput& model,
+                                         const frontend::SweepPlan& plan) {
+  if (auto once = check_settings(arguments.run.settings, plan); !once) return tl::unexpected(once.error());
+  auto first = frontend::input_of_run(model, plan, 0);
+  if (!first) return first;
+  if (auto one = frontend::check_branches(*first, plan); !one) return tl::unexpected(one.error());
+  if (auto writable = check_output(arguments, model.path); !writable) {
+    const auto stated = frontend::state_run(model, plan, 0);
+    return tl::unexpected(stated ? writable.error() : stated.error());
+  }
+  return first;
+}
+
 ExitCode run_sweep(const SweepArguments& arguments) {
   if (arguments.run.model.empty()) return refuse(misuse("MODEL is missing", "see: saltus help sweep"));
   const auto stated = request_of(arguments);
@@ -168,11 +182,8 @@ ExitCode run_sweep(const SweepArguments& arguments) {
   if (!jobs) return refuse(jobs.error());
   const auto model = stated_model(arguments.run);
   if (!model) return refuse(model.error());
-  if (auto writable = check_output(arguments, model->path); !writable) return refuse(writable.error());
-  if (auto once = check_settings(arguments.run.settings, *plan); !once) return refuse(once.error());
-  const auto first = frontend::input_of_run(*model, *plan, 0);
+  const auto first = first_run(arguments, *model, *plan);
   if (!first) return refuse(first.error());
-  if (auto one = frontend::check_branches(*first, *plan); !one) return refuse(one.error());
   print_warnings(frontend::options_without_effect(first->file));
 
   const bool grid = !request.paired && request.samples.empty();

@@ -1,7 +1,6 @@
 #include "saltus/cli/tool.hpp"
 
 #include <algorithm>
-#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <exception>
@@ -14,6 +13,7 @@
 
 #include "saltus/base/contains.hpp"
 #include "saltus/base/contracts.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/base/version.hpp"
 #include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
@@ -32,38 +32,15 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// What an option of other programs is called here; the name itself for others.
-std::string option_meant(const std::string& name) {
-  constexpr std::array<std::array<std::string_view, 2>, 16> elsewhere{{{"--engine", "--method"},
-                                                                       {"--backend", "--method"},
-                                                                       {"--stepper", "--integrator"},
-                                                                       {"--sweep", "--over"},
-                                                                       {"--scan", "--over"},
-                                                                       {"--range", "--over"},
-                                                                       {"--samples", "--runs"},
-                                                                       {"--threads", "--jobs"},
-                                                                       {"--workers", "--jobs"},
-                                                                       {"--end", "--until"},
-                                                                       {"--t-end", "--until"},
-                                                                       {"--tend", "--until"},
-                                                                       {"--tstop", "--until"},
-                                                                       {"--param", "--set"},
-                                                                       {"--parameter", "--set"},
-                                                                       {"--plot", "--report"}}};
-  for (const auto& [theirs, ours] : elsewhere) {
-    if (theirs == name) return std::string(ours);
-  }
-  return name;
-}
-
 /// The option of this command that was meant, or the command that has it.
-/// @param name  as it was typed, or what it means
-std::string about_option(const std::string& name, const CLI::App& app, const CLI::App& reader) {
+std::string about_option(const std::string& typed, const CLI::App& app, const CLI::App& reader) {
   const auto known = option_names(reader);
-  if (!nearest_names(name, known).empty()) return suggest(name, known);
+  if (!nearest_names(typed, known).empty()) return suggest(typed, known);
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     const auto names = option_names(*command);
-    if (!contains(names, name)) continue;
+    const auto meant = names_meant(typed, names);
+    if (meant.empty() && !contains(names, typed)) continue;
+    const auto& name = meant.empty() ? typed : meant.front();
     auto remedy = fmt::format("{} is an option of `saltus {}`", name, command->get_name());
     const bool writes_results = reader.get_option_no_throw("--format") != nullptr;
     const bool draws = reader.get_option_no_throw("--report") != nullptr;
@@ -74,7 +51,7 @@ std::string about_option(const std::string& name, const CLI::App& app, const CLI
     }
     return remedy;
   }
-  return suggest(name, known);
+  return suggest(typed, known);
 }
 
 /// NAME=VALUE without its option: values of a sweep where there are several.
@@ -97,7 +74,7 @@ Error unexpected_argument(const CLI::App& app, const CLI::ParseError& failure) {
     if (argument == "--") continue;
     const auto name = argument.substr(0, argument.find('='));
     error.message = fmt::format("unexpected argument '{}'", argument);
-    if (name.starts_with("--")) error.remedy = about_option(option_meant(name), app, reader);
+    if (name.starts_with("--")) error.remedy = about_option(name, app, reader);
     if (name.starts_with('-') || name == argument) break;
     if (auto remedy = about_setting(argument, reader); !remedy.empty()) error.remedy = std::move(remedy);
     break;

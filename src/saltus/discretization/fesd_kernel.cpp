@@ -1,9 +1,12 @@
 #include <cmath>
 #include <exception>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "saltus/base/preparation.hpp"
+#include "saltus/base/stop.hpp"
 #include "saltus/discretization/fesd_checks_internal.hpp"
 #include "saltus/discretization/fesd_kernel_internal.hpp"
 
@@ -60,7 +63,11 @@ Expected<std::shared_ptr<FesdKernel>> FesdKernel::compile(const reformulation::D
     for (const auto& part : dcs.parts) {
       if (part.form == reformulation::Form::stewart) kernel->simplices.emplace_back(part.first, part.count);
     }
+    constexpr std::string_view stating = "stating finite elements";  // of a thousand regions that takes a minute
+    constexpr std::size_t functions_of_element = 2;
+    prepares(stating, 0, functions_of_element);
     kernel->element = LocalFunction("saltus_element", built->element_inputs, built->parameters, built->element);
+    prepares(stating, 1, functions_of_element);
     kernel->boundary = LocalFunction("saltus_boundary", built->boundary_inputs, built->parameters,
                                      built->neighbours.joined(built->boundary));
     kernel->boundary_bounds = built->boundary_own_bounds;
@@ -74,6 +81,8 @@ Expected<std::shared_ptr<FesdKernel>> FesdKernel::compile(const reformulation::D
     auto started = kernel->native.start(native, std::move(functions));
     if (!started) return tl::unexpected(started.error());
     return std::shared_ptr<FesdKernel>(new FesdKernel(std::move(kernel)));
+  } catch (const Stopped&) {
+    throw;
   } catch (const std::exception& error) {
     return refusal(ErrorCode::invalid_model,
                    std::string("the model's finite element cannot be compiled: ") + error.what());

@@ -158,7 +158,37 @@ constexpr std::string_view no_chance =
     "nothing in a run is random: samples of parameters are for a sweep (--sample), noise is data by times, "
     "inputs = { w = { file = \"w.csv\" } }";
 
+constexpr std::string_view dead_zone = "write x - min(max(x, -w), w), of half width w";
+constexpr std::string_view two_thresholds =
+    "write sign(x), or with two thresholds [[hysteresis]], whose name is then 0 or 1";
+constexpr std::string_view by_table = "write [tables.road] with x = [0, 1] and y = [0, 2], then road(x)";
+constexpr std::string_view all_terms =
+    "write the terms: x1 + x2 + x3; arrays are in saltus.Builder of the Python package";
+
 constexpr std::array function_mistakes{
+    FunctionMistake{"deadzone", dead_zone},
+    FunctionMistake{"dead_zone", dead_zone},
+    FunctionMistake{"deadband", dead_zone},
+    FunctionMistake{"relay", two_thresholds},
+    FunctionMistake{"hysteresis", two_thresholds},
+    FunctionMistake{"hill", "write x^n/(K^n + x^n)"},
+    FunctionMistake{"sigmoid", "write 1/(1 + exp(-x))"},
+    FunctionMistake{"logistic", "write 1/(1 + exp(-x))"},
+    FunctionMistake{"ramp", "write max(t - t0, 0)"},
+    FunctionMistake{"pulse", "write step(t - t0) - step(t - t1)"},
+    FunctionMistake{"square_wave", "write sign(mod(t, T) - T/2)"},
+    FunctionMistake{"sawtooth", "write mod(t, T)/T"},
+    FunctionMistake{"linspace",
+                    "values at times are inputs = { u = { times = [0, 1], values = [2, 3] } } of [simulate]"},
+    FunctionMistake{"interp", by_table},
+    FunctionMistake{"interp1", by_table},
+    FunctionMistake{"lookup", by_table},
+    FunctionMistake{"table", by_table},
+    FunctionMistake{"spline", by_table},
+    FunctionMistake{"sum", all_terms},
+    FunctionMistake{"mean", all_terms},
+    FunctionMistake{"norm", "write sqrt(x^2 + y^2)"},
+    FunctionMistake{"integral", "add a state z under [states], with z = \"what is integrated\" under [dynamics]"},
     FunctionMistake{"delay", no_delay},
     FunctionMistake{"rand", no_chance},
     FunctionMistake{"randn", no_chance},

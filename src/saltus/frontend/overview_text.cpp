@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "saltus/base/told_together.hpp"
+
 namespace saltus::frontend {
 namespace {
 
@@ -23,7 +25,7 @@ std::string shown_lines(const Entries& entries, LineOf line_of) {
   std::string text;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     if (entries.size() > most && i == at_front) {
-      text += fmt::format("  … ({} more)\n", entries.size() - at_front - at_back);
+      text += fmt::format("  … ({} more; --json shows all)\n", entries.size() - at_front - at_back);
       i = entries.size() - at_back;
     }
     text += line_of(entries[i]);
@@ -133,32 +135,29 @@ std::string surfaces_text(const ModelOverview& overview) {
 std::string cells_text(const ModelOverview& overview) {
   if (overview.cells.empty()) return "";
   std::string text = heading("piecewise functions", overview.cells.size());
-  for (const auto& cell : overview.cells) text += fmt::format("  {}: {}\n", cell.name, cell.text);
+  text += shown_lines(overview.cells, [](const auto& cell) { return fmt::format("  {}: {}\n", cell.name, cell.text); });
   return text + "  the integrator restarts where an argument leaves its piece\n";
 }
 
 std::string events_text(const ModelOverview& overview) {
   if (overview.events.empty()) return "";
   std::string text = heading("events", overview.events.size());
-  for (const auto& event : overview.events) {
-    text += fmt::format("  {}: {}{}\n", event.name, event.when, event.stops ? ": stops the simulation" : "");
-  }
-  return text;
+  return text + shown_lines(overview.events, [](const auto& event) {
+           return fmt::format("  {}: {}{}\n", event.name, event.when, event.stops ? ": stops the simulation" : "");
+         });
 }
 
 std::string jumps_text(const ModelOverview& overview) {
   if (overview.jumps.empty()) return "";
-  std::string text = heading("jumps", overview.jumps.size());
-  for (const auto& jump : overview.jumps) {
-    std::vector<std::string> targets, values;
-    for (const auto& [name, value, caption] : jump.set) {
-      targets.push_back(name);
-      values.push_back(fmt::format("{} becomes {}", name, value));
-    }
-    text +=
-        fmt::format("  {}: {}; sets {}: {}\n", jump.name, jump.when, fmt::join(targets, ", "), fmt::join(values, ", "));
-  }
-  return text;
+  return heading("jumps", overview.jumps.size()) + shown_lines(overview.jumps, [](const auto& jump) {
+           std::vector<std::string> targets, values;
+           for (const auto& [name, value, caption] : jump.set) {
+             targets.push_back(name);
+             values.push_back(fmt::format("{} becomes {}", name, value));
+           }
+           return fmt::format("  {}: {}; sets {}: {}\n", jump.name, jump.when, fmt::join(targets, ", "),
+                              fmt::join(values, ", "));
+         });
 }
 
 /// Of two ways to state the motion on several surfaces, where it matters which.
@@ -201,7 +200,7 @@ std::string overview_text(const ModelOverview& overview, const std::string& path
 
 std::string warnings_text(const ModelOverview& overview) {
   std::string text = heading("warnings", overview.warnings.size());
-  for (const auto& warning : overview.warnings) text += fmt::format("  {}\n", warning);
+  for (const auto& warning : told_together(overview.warnings)) text += fmt::format("  {}\n", warning);
   return text;
 }
 

@@ -52,7 +52,19 @@ Expected<std::vector<std::string>> range_values(const std::string& typed, std::s
   return values;
 }
 
+/// Values as other programs list them: 1..5, [1, 2], {1, 2}, 1 2 3.
+bool is_list_of_others(std::string_view text) {
+  const auto last = text.find_last_of(' ');
+  const bool has_blanks = last != std::string_view::npos && number_in(text.substr(0, text.find(' '))) &&
+                          number_in(text.substr(last)) && text.find(',') == std::string_view::npos;
+  return text.starts_with('[') || text.starts_with('{') || text.find("..") != std::string_view::npos || has_blanks;
+}
+
 Expected<std::vector<std::string>> listed_values(const std::string& typed, std::string_view text) {
+  if (is_list_of_others(text)) {
+    return refused_plan(fmt::format("--over {}: expected values with commas between, or FROM:TO:NUMBER", typed),
+                        std::string(over_remedy));
+  }
   std::vector<std::string> values;
   for (const auto piece : split(text, ',')) {
     const auto part = trimmed(piece);

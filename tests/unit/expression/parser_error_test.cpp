@@ -114,6 +114,9 @@ TEST(Mistakes, comparisons) {
 
 TEST(Mistakes, functions) {
   expect_explained({{"1+sgn(x)", 3, "unknown function 'sgn'", "'sign'"},
+                    {"deadzone(x, w)", 1, "unknown function 'deadzone'", "x - min(max(x, -w), w)"},
+                    {"hill(x, n)", 1, "unknown function 'hill'", "x^n/(K^n + x^n)"},
+                    {"linspace(0, 1, 5)", 1, "unknown function 'linspace'", "times = [0, 1]"},
                     {"heaviside(x)", 1, "unknown function", "'step'"},
                     {"ln(x)", 1, "unknown function 'ln'", "'log'"},
                     {"fabs(x)", 1, "unknown function", "'abs'"},

@@ -114,7 +114,15 @@ TEST(OptionFields, ProblemsBetweenOptionsAreFound) {
   options.from = 0.0;
   options.rtol = options.atol = 0.0;
   EXPECT_EQ(find_problem(options)->key, "atol");
+  options.rtol = -1.0;
+  options.atol = 2.0;
+  ASSERT_TRUE(find_problem(options));
+  EXPECT_EQ(find_problem(options)->key, "rtol");
+  EXPECT_EQ(find_problem(options)->error.message, "rtol: expected a finite number > 0, found -1");
   options.rtol = 1e-8;
+  options.max_steps = 0;
+  EXPECT_EQ(find_problem(options)->key, "max_steps");
+  options.max_steps = 100;
   options.output = AtTimes{{0.0, 1.0}};
   EXPECT_FALSE(find_problem(options));
   options.output = AtTimes{{0.0, 1.0 + 1e-15}};

@@ -71,7 +71,8 @@ saltus.runText = (table, row) => {
 saltus.runCommand = (table, data, row) => {
   const settings = table.swept.map((name, k) => `--set ${data.names[k]}=${table.at(name, row) ?? "nan"}`);
   const unknown = "The shares do not say their model and its other settings. What was changed:";
-  return [data.command || unknown, ...settings].join(" ");
+  const page = data.command ? [`--report run${table.columns.run[row]}.html`] : [];
+  return [data.command || unknown, ...settings, ...page].join(" ");
 };
 
 /** Value at the end of a run, of a table of events; null where it is not known. */

@@ -61,7 +61,7 @@ class ContactReader {
     fail("`tangent` and `tangents` beside each other", "write one tangent, or a list of two in `tangents`", location);
   }
   void missing(const char* key, const char* remedy) {
-    fail(fmt::format("this contact has no `{}`", key), remedy, contact_.location);
+    reader_.missing(fmt::format("this contact has no `{}`", key), remedy, contact_.location);
   }
   void fail(std::string message, std::string remedy, const SourceLocation& location) {
     reader_.fail({ErrorCode::parse_failure, std::move(message), std::move(remedy), location, {}});

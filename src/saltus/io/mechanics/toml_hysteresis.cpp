@@ -28,8 +28,7 @@ model::HysteresisDescription read_hysteresis_entry(TomlReader& reader, const Tom
     }
   }
   const auto missing = [&](const char* key, const char* remedy) {
-    reader.fail(
-        {ErrorCode::parse_failure, fmt::format("this hysteresis has no `{}`", key), remedy, hysteresis.location, {}});
+    reader.missing(fmt::format("this hysteresis has no `{}`", key), remedy, hysteresis.location);
     return expression::unreadable(hysteresis.location);
   };
   if (hysteresis.name.empty()) missing("name", "write name = \"turbo\": what is 0 or 1");

@@ -134,7 +134,7 @@ class MechanicsReader {
   }
 
   void missing(const char* key, const char* remedy) {
-    fail(fmt::format("[mechanics] has no `{}`", key), remedy, mechanics_.location);
+    reader_.missing(fmt::format("[mechanics] has no `{}`", key), remedy, mechanics_.location);
   }
   void fail(std::string message, std::string remedy, const SourceLocation& location) {
     reader_.fail({ErrorCode::parse_failure, std::move(message), std::move(remedy), location, {}});

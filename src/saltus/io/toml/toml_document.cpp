@@ -10,6 +10,7 @@
 #include "saltus/base/text.hpp"
 #include "saltus/io/text_encoding_internal.hpp"
 #include "saltus/io/toml/toml_document_internal.hpp"
+#include "saltus/io/toml/toml_slips_internal.hpp"
 
 namespace saltus::io {
 namespace {
@@ -128,90 +129,10 @@ bool has_endless_key(std::string_view text) {
   return false;
 }
 
-/// The habit of leaving the quotes away: x = -x + 1, x = sin(t).
-bool looks_like_bare_expression(std::string_view line) {
-  const auto equal = line.find('=');
-  if (equal == std::string_view::npos) return false;
-  const auto value = line.substr(equal + 1);
-  const auto first = value.find_first_not_of(" \t");
-  if (first == std::string_view::npos || std::string_view("\"'[{").find(value[first]) != std::string_view::npos) {
-    return false;
-  }
-  return std::any_of(value.begin(), value.end(), [](unsigned char c) { return std::isalpha(c) != 0; }) ||
-         value.find_first_of("+-*/^(", first) != std::string_view::npos;
-}
-
-/// Without "Error while parsing value: ": that it is an error stands there already, and the place, too.
-std::string_view shortened(std::string_view description) {
-  constexpr std::string_view prefix = "Error while parsing ";
-  const auto colon = description.find(": ");
-  const bool has_prefix = description.starts_with(prefix) && colon != std::string_view::npos;
-  return has_prefix ? description.substr(colon + 2) : description;
-}
-
-/// What a person meant who wrote this line, if it is one of the usual slips: another message, a remedy.
-struct Slip {
-  std::string message;
-  std::string remedy;
-};
-
-/// mass = 1 [kg], T = 300 K
-std::optional<Slip> unit_behind_number(std::string_view line) {
-  const auto equal = line.find('=');
-  if (equal == std::string_view::npos) return std::nullopt;
-  constexpr std::string_view blanks = " \t\r";
-  const auto name = trimmed(line.substr(0, equal), blanks);
-  const auto value = trimmed(line.substr(equal + 1, line.find('#', equal) - equal - 1), blanks);
-  const auto space = value.find_first_of(" \t");
-  if (space == std::string_view::npos || value.find_first_not_of("0123456789.eE+-_") != space) return std::nullopt;
-  auto unit = trimmed(value.substr(space), blanks);
-  if (unit.starts_with('[') && unit.ends_with(']')) unit = unit.substr(1, unit.size() - 2);
-  const bool is_word = !unit.empty() && (std::isalpha(static_cast<unsigned char>(unit.front())) != 0 ||
-                                         static_cast<unsigned char>(unit.front()) >= 0x80U);
-  if (!is_word || unit.find_first_of("\"'=[]{}(),") != std::string_view::npos) return std::nullopt;
-  return Slip{fmt::format("not valid TOML: '{}' behind a number", unit),
-              fmt::format("a unit is a text of its own: {} = {{ initial = {}, unit = \"{}\" }}", name,
-                          value.substr(0, space), unit)};
-}
-
-std::optional<Slip> usual_slip(std::string_view line, std::size_t column, std::string_view description) {
-  for (const std::string_view quote : {"\u201C", "\u201D", "\u2018", "\u2019"}) {
-    if (line.find(quote) == std::string_view::npos) continue;
-    return Slip{fmt::format("not valid TOML: typographic quotes ({})", quote), "write straight quotes: x = \"-x\""};
-  }
-  if (column > line.size() && description.find("control characters") != std::string_view::npos) {
-    return Slip{"not valid TOML: a text in quotes does not end on its line", "close the quotes where the text ends"};
-  }
-  if (auto slip = unit_behind_number(line)) return slip;
-  const auto prime = line.find('\''), equal = line.find('=');
-  const bool primed =
-      prime != std::string_view::npos && prime > 0 && prime < equal && line.find('\'', prime + 1) > equal;
-  if (primed && description.find("expected '='") != std::string_view::npos) {
-    return Slip{fmt::format("not valid TOML: {}", shortened(description)),
-                fmt::format("right-hand sides stand under the state's name, without a prime: {} = \"…\"",
-                            line.substr(0, prime))};
-  }
-  return std::nullopt;
-}
-
 Error toml_syntax_error(const SourceText& source, const toml::parse_error& failure) {
   const auto& position = failure.source().begin;
-  if (auto slip = usual_slip(source.line(position.line), position.column, failure.description())) {
-    return {ErrorCode::parse_failure, std::move(slip->message), std::move(slip->remedy), source.location(position), {}};
-  }
-  std::string remedy = "see toml.io for the syntax of TOML";
-  const std::string_view description = failure.description();
-  const bool is_number = description.find("could not be interpreted as a value") != std::string_view::npos;
-  if (!is_number && looks_like_bare_expression(source.line(position.line))) {
-    remedy = "expressions stand in quotes: x = \"-x + sin(t)\"";
-  } else if (description.find("cannot redefine") != std::string_view::npos) {
-    remedy = "every name stands once in its table: remove or rename one of them";
-  }
-  return {ErrorCode::parse_failure,
-          fmt::format("not valid TOML: {}", shortened(description)),
-          std::move(remedy),
-          source.location(position),
-          {}};
+  auto slip = slip_in(source.line(position.line), position.column, failure.description());
+  return {ErrorCode::parse_failure, std::move(slip.message), std::move(slip.remedy), source.location(position), {}};
 }
 
 }  // namespace

@@ -25,7 +25,8 @@ class JumpReader {
     for (const auto& entry : table) read_key(entry);
     check_trigger();
     if (!has_set_)
-      fail("this jump has no `set`", "write set = { x = \"…\" }: the states that change and their new values");
+      reader_.missing("this jump has no `set`",
+                      "write set = { x = \"…\" }: the states that change and their new values", jump_.location);
     return std::move(jump_);
   }
 
@@ -94,8 +95,10 @@ class JumpReader {
   void check_trigger() {
     const int triggers = (jump_.when ? 1 : 0) + (jump_.every ? 1 : 0) + (jump_.at.empty() ? 0 : 1);
     if (triggers == 0) {
-      fail("this jump has no `when`",
-           "write when = \"condition\", or an expression with direction = \"down\"; or every = 0.5; or at = [1, 2.5]");
+      reader_.missing(
+          "this jump has no `when`",
+          "write when = \"condition\", or an expression with direction = \"down\"; or every = 0.5; or at = [1, 2.5]",
+          jump_.location);
     } else if (triggers > 1) {
       fail(fmt::format("this jump has {}",
                        jump_.when ? (jump_.every ? "`when` and `every`" : "`when` and `at`") : "`every` and `at`"),

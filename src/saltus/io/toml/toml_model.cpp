@@ -146,7 +146,7 @@ std::vector<Error> read_document(const TomlTable& document, ModelFile& model, Af
     if (!reader.errors().empty() && after == AfterMistake::stop) return reader.errors();
   }
   auto errors = reader.errors();
-  if (model.description.name.empty()) {
+  if (std::none_of(document.begin(), document.end(), [](const auto& entry) { return entry.key == "model"; })) {
     errors.push_back({ErrorCode::parse_failure,
                       "the model has no table [model] with a name",
                       "begin the file with [model] and name = \"my-model\"",

@@ -43,15 +43,20 @@ void TomlReader::fail(Error error) {
   errors_.push_back(std::move(error));
 }
 
-void TomlReader::wrong_type(std::string_view expected, const TomlValue& found) {
+void TomlReader::wrong_type(std::string_view expected, const TomlValue& found, std::string remedy) {
   fail({ErrorCode::parse_failure,
         fmt::format("expected {}, found {}", expected, description_of(found)),
-        "",
+        std::move(remedy),
         found.location,
         {}});
 }
 
+void TomlReader::missing(std::string message, std::string remedy, const SourceLocation& location) {
+  if (!has_unknown_key_) fail({ErrorCode::parse_failure, std::move(message), std::move(remedy), location, {}});
+}
+
 void TomlReader::unknown_key(const TomlEntry& entry, const std::vector<std::string>& known) {
+  has_unknown_key_ = true;
   fail({ErrorCode::unknown_name,
         fmt::format("unknown key '{}'", entry.key),
         suggest(entry.key, known),
@@ -69,14 +74,23 @@ void TomlReader::not_available(const SourceLocation& location, std::string_view 
 
 const TomlTable* TomlReader::table(const TomlValue& value, std::string_view expected) {
   const auto* table = std::get_if<TomlTable>(&value.value);
-  if (table == nullptr) wrong_type(expected, value);
+  const auto* list = std::get_if<TomlArray>(&value.value);
+  const bool is_doubled = list != nullptr && !list->empty() && std::holds_alternative<TomlTable>(list->front().value);
+  if (is_doubled) {
+    wrong_type(expected, value, fmt::format("write {} in single brackets, once", table_));
+  } else if (table == nullptr) {
+    wrong_type(expected, value);
+  }
   return table;
 }
 
 const TomlArray& TomlReader::tables(const TomlValue& value, std::string_view name) {
   static const TomlArray none;
   const auto* array = std::get_if<TomlArray>(&value.value);
-  if (array == nullptr) wrong_type(fmt::format("tables that begin with [[{}]]", name), value);
+  if (array == nullptr) {
+    wrong_type(fmt::format("tables that begin with [[{}]]", name), value,
+               fmt::format("write [[{}]] in double brackets, before each of them", name));
+  }
   return array != nullptr ? *array : none;
 }
 

@@ -38,11 +38,14 @@ class TomlReader {
   void enter(std::string table) {
     table_ = std::move(table);
     errors_before_ = errors_.size();
+    has_unknown_key_ = false;
   }
 
   /// Keeps the error, with the table it is in; of several at one place the first.
   void fail(Error error);
-  void wrong_type(std::string_view expected, const TomlValue& found);
+  void wrong_type(std::string_view expected, const TomlValue& found, std::string remedy = "");
+  /// Notes what a table does not have; nothing beside an unknown key, which may be meant by it.
+  void missing(std::string message, std::string remedy, const SourceLocation& location);
   /// Notes an unknown key, with the nearest of `known`.
   void unknown_key(const TomlEntry& entry, const std::vector<std::string>& known);
   void not_available(const SourceLocation& location, std::string_view what);
@@ -69,6 +72,7 @@ class TomlReader {
   std::vector<std::string> functions_, declared_;
   std::vector<Error> errors_;
   std::size_t errors_before_ = 0;  ///< when the table was entered
+  bool has_unknown_key_ = false;   ///< in the table that was entered last
 };
 
 /// Returns where a byte of a string stands in the file.

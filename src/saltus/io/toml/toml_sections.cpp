@@ -23,12 +23,6 @@ void read_caption(TomlReader& reader, const TomlEntry& field, result::Caption& c
   (field.key == "unit" ? caption.unit : caption.label) = reader.string(field.value, "a text in quotes");
 }
 
-/// The number of a quantity is what [outputs] calls `value`.
-void unknown_quantity_key(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
-  if (entry.key != "value") return reader.unknown_key(entry, known);
-  reader.fail({ErrorCode::unknown_name, "unknown key 'value'", "did you mean 'initial'?", entry.location, {}});
-}
-
 /// Reads `name = value` or `name = { initial = value }`, with more keys in the table.
 Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
   Quantity quantity;
@@ -50,7 +44,7 @@ Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::ve
   }
   for (const auto& [key, location, value] : *table) {
     if (!contains(known, key)) {
-      unknown_quantity_key(reader, {key, location, value}, known);
+      reader.unknown_key({key, location, value}, known);
       // Perhaps it was to be the initial value: that this is missing, and what follows from it, is the same mistake.
       if (quantity.initial == nullptr) quantity.initial = expression::unreadable(location);
     } else if (key == "initial") {
@@ -79,11 +73,8 @@ void add_caption(ModelFile& model, const std::string& name, result::Caption capt
 
 void require_initial(TomlReader& reader, const TomlEntry& entry, const Quantity& quantity) {
   if (quantity.initial != nullptr) return;
-  reader.fail({ErrorCode::parse_failure,
-               fmt::format("'{}' has no initial value", entry.key),
-               fmt::format("write {} = {{ initial = 0, … }}", entry.key),
-               entry.location,
-               {}});
+  reader.missing(fmt::format("'{}' has no initial value", entry.key),
+                 fmt::format("write {} = {{ initial = 0, … }}", entry.key), entry.location);
 }
 
 /// `name = "value"` or `name = { value = "value", unit = "unit", label = "label" }`.
@@ -102,11 +93,8 @@ model::NamedExpression read_output(TomlReader& reader, const TomlEntry& entry, M
     }
   }
   if (output.expression == nullptr) {
-    reader.fail({ErrorCode::parse_failure,
-                 fmt::format("the output '{}' has no value", entry.key),
-                 fmt::format("write {} = {{ value = \"…\", unit = \"…\" }}", entry.key),
-                 entry.location,
-                 {}});
+    reader.missing(fmt::format("the output '{}' has no value", entry.key),
+                   fmt::format("write {} = {{ value = \"…\", unit = \"…\" }}", entry.key), entry.location);
     output.expression = expression::unreadable(entry.location);
   }
   add_caption(model, entry.key, std::move(caption));
@@ -164,11 +152,8 @@ void read_event(TomlReader& reader, const TomlValue& value, ModelFile& model) {
     }
   }
   if (event.when == nullptr) {
-    reader.fail({ErrorCode::parse_failure,
-                 "this event has no `when`",
-                 "write when = \"expression\" (its zeros) or a condition (its edges)",
-                 value.location,
-                 {}});
+    reader.missing("this event has no `when`", "write when = \"expression\" (its zeros) or a condition (its edges)",
+                   value.location);
     event.when = expression::unreadable(value.location);
   }
   model.description.events.push_back(std::move(event));
@@ -197,11 +182,8 @@ void read_mode(TomlReader& reader, const TomlValue& value, ModelFile& model) {
     }
   }
   if (!has_dynamics) {
-    reader.fail({ErrorCode::parse_failure,
-                 "this mode has no `dynamics`",
-                 "write dynamics = { x = \"…\" }; states that are absent get 0",
-                 value.location,
-                 {}});
+    reader.missing("this mode has no `dynamics`", "write dynamics = { x = \"…\" }; states that are absent get 0",
+                   value.location);
   }
   model.description.modes.push_back(std::move(mode));
 }
@@ -231,12 +213,8 @@ void read_model_table(TomlReader& reader, const TomlEntry& entry, ModelFile& mod
       reader.unknown_key(field, {"name", "description", "inclusion"});
     }
   }
-  if (model.description.name.empty()) {
-    reader.fail({ErrorCode::parse_failure,
-                 "the model has no name",
-                 "write name = \"my-model\" in [model]",
-                 entry.location,
-                 {}});
+  if (model.description.name.empty() && !reader.failed()) {
+    reader.missing("the model has no name", "write name = \"my-model\" in [model]", entry.location);
   }
 }
 

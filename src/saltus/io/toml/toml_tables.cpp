@@ -10,6 +10,7 @@
 #include "saltus/io/named_files_internal.hpp"
 #include "saltus/io/sample_files.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
+#include "saltus/io/toml/toml_words_internal.hpp"
 
 namespace saltus::io {
 namespace {
@@ -46,18 +47,8 @@ struct StatedTable {
   model::TableKind kind = model::TableKind::linear;
 };
 
-void read_kind(TomlReader& reader, const TomlValue& value, model::TableKind& kind) {
-  const auto word = reader.string(value, "\"linear\" or \"cubic\"");
-  if (word == "linear" || word == "cubic") {
-    kind = word == "linear" ? model::TableKind::linear : model::TableKind::cubic;
-    return;
-  }
-  reader.fail({ErrorCode::invalid_option,
-               fmt::format("expected \"linear\" or \"cubic\", found the string \"{}\"", word),
-               "",
-               value.location,
-               {}});
-}
+const std::vector<std::pair<std::string, model::TableKind>> table_kinds{{"linear", model::TableKind::linear},
+                                                                        {"cubic", model::TableKind::cubic}};
 
 void missing_points(TomlReader& reader, const TomlEntry& entry, const StatedTable& stated) {
   const bool one = stated.x.has_value() != stated.y.has_value();
@@ -128,7 +119,7 @@ void read_one_table(TomlReader& reader, const TomlEntry& entry, ModelFile& model
       stated.file = reader.string(field.value, "a file name in quotes");
       stated.file_location = field.value.location;
     } else if (field.key == "kind") {
-      read_kind(reader, field.value, stated.kind);
+      stated.kind = read_enum(reader, field.value, table_kinds, stated.kind);
     } else {
       reader.unknown_key(field, {"x", "y", "file", "kind"});
     }

@@ -12,14 +12,20 @@
 
 namespace saltus::io {
 
+template <class Enum>
+std::vector<std::string> names_of(const std::vector<std::pair<std::string, Enum>>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) names.push_back(name);
+  return names;
+}
+
 /// Returns the value that a word names, or an error without location.
 template <class Enum>
 Expected<Enum> enum_named(const std::string& word, const std::vector<std::pair<std::string, Enum>>& choices) {
-  std::vector<std::string> known;
   for (const auto& [name, value] : choices) {
     if (name == word) return value;
-    known.push_back(name);
   }
+  const auto known = names_of(choices);
   return tl::unexpected(
       Error{ErrorCode::invalid_option,
             fmt::format("expected \"{}\", found the string \"{}\"", fmt::join(known, "\" or \""), word),
@@ -34,7 +40,7 @@ Enum read_enum(TomlReader& reader, const TomlValue& value, const std::vector<std
                Enum fallback) {
   const auto* word = std::get_if<TomlString>(&value.value);
   if (word == nullptr) {
-    reader.wrong_type(fmt::format("\"{}\" or another of its words", choices.front().first), value);
+    reader.wrong_type(fmt::format("\"{}\"", fmt::join(names_of(choices), "\" or \"")), value);
     return fallback;
   }
   auto found = enum_named(word->text, choices);

@@ -82,10 +82,13 @@ const std::array fields_of_mpcc{
     choice_field<warm_start_of, warm_starts, SolveOptions>("warm_start", "What the next relaxed problem starts with."),
     choice_field<first_of, first_problems, SolveOptions>(
         "first",
-        "The problem that is solved first: the relaxed one of sigma_initial; that of the sides of the start, for a "
-        "start at a result of a similar problem; or that of the modes of the states that initial_guess states, with a "
-        "price on what they cannot do, which changes them. auto: branch, where the start is a stored result that was "
-        "solved with the same intervals and elements, and neither sigma_initial nor compared_starts is given; else "
+        "The problem that is solved first. relaxed: that of sigma_initial. branch: every pair keeps the side that is "
+        "zero "
+        "at the start, for a start at a result of a similar problem. modes: sides are those of the states that "
+        "initial_guess states, at a price that changes them; for optimal control only. auto: branch, where the start "
+        "is a "
+        "stored result with the same intervals and elements, and neither sigma_initial nor compared_starts is given; "
+        "else "
         "relaxed."),
     truth_field<crossover_of, SolveOptions>(
         "crossover",

@@ -45,33 +45,12 @@ constexpr Choices<Integrator, 7> integrators{
      name(ode::Method::radau13), name(ode::Method::taylor)},
     {Integrator::automatic, Integrator::dopri5, Integrator::dop853, Integrator::radau5, Integrator::radau9,
      Integrator::radau13, Integrator::taylor}};
-/// What a word of other programs, or one in the wrong place, stands for; empty for others.
-std::string_view integrator_meant(std::string word) {
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::array<std::array<std::string_view, 2>, 10> elsewhere{{{"rk45", "dopri5"},
-                                                                       {"ode45", "dopri5"},
-                                                                       {"tsit5", "dopri5"},
-                                                                       {"ode89", "dop853"},
-                                                                       {"vern9", "dop853"},
-                                                                       {"radau", "radau5"},
-                                                                       {"bdf", "radau5"},
-                                                                       {"lsoda", "auto"},
-                                                                       {"ode15s", "radau5"},
-                                                                       {"rodas5", "radau5"}}};
-  for (const auto& [name, integrator] : elsewhere) {
-    if (name == word) return integrator;
-  }
-  const auto* found = std::find(integrators.names.begin(), integrators.names.end(), word);
-  return found == integrators.names.end() ? std::string_view() : *found;
-}
-
-/// Of methods and integrators.
+/// An integrator where a method is expected.
 void name_integrator(Error& error, const OptionValue& value) {
   const auto* word = std::get_if<std::string>(&value);
   if (word == nullptr || !error.remedy.empty()) return;
-  if (const auto meant = integrator_meant(*word); !meant.empty())
-    error.remedy = fmt::format("did you mean the integrator {}?", meant);
+  const auto meant = nearest_names(*word, {integrators.names.begin(), integrators.names.end()});
+  if (!meant.empty()) error.remedy = fmt::format("did you mean the integrator {}?", meant.front());
 }
 
 constexpr Choices<Native, 3> natives{{"auto", "on", "off"}, {Native::automatic, Native::on, Native::off}};
@@ -268,8 +247,7 @@ constexpr std::array fields{
                 set_initial_mode,
                 record_initial_mode},
     choice_field<integrator_of, integrators>(
-        "event.integrator", "Chosen (auto), or Runge-Kutta of order 5, 8, 5, 9, 13 (radau: stiff), or Taylor series.",
-        name_integrator),
+        "event.integrator", "Chosen (auto), or Runge-Kutta of order 5, 8, 5, 9, 13 (radau: stiff), or Taylor series."),
     number_or_none_field<max_step_of, none_word>("event.max_step", positive_number, "Longest step."),
     truth_field<local_steps_of>("event.local_steps",
                                 "Of many states only those that a switch moves are integrated again after it."),
@@ -379,8 +357,21 @@ std::optional<OptionProblem> find_problem_of_span(const SimulateOptions& options
 }
 
 std::optional<OptionProblem> find_problem_of_tolerances(const SimulateOptions& options) {
-  if (!(options.rtol + options.atol > 0.0)) {
+  if (options.rtol == 0.0 && options.atol == 0.0) {
     return problem("atol", "rtol and atol are both 0", "one of them must be positive, e.g. rtol = 1e-8");
+  }
+  return std::nullopt;
+}
+
+/// Of options one by one, which a program may have set to anything.
+std::optional<OptionProblem> find_problem_of_values(const SimulateOptions& options) {
+  for (const auto& field : simulate_fields()) {
+    OptionRecord record;
+    field.record(options, field.key, record);
+    for (const auto& [key, value] : record) {
+      if (auto fits = check(field.kind, value); !fits)
+        return problem(key, fmt::format("{}: {}", key, fits.error().message), fits.error().remedy);
+    }
   }
   return std::nullopt;
 }
@@ -390,6 +381,7 @@ std::optional<OptionProblem> find_problem_of_tolerances(const SimulateOptions& o
 std::optional<OptionProblem> find_problem(const SimulateOptions& options) {
   if (auto found = find_problem_of_span(options)) return found;
   if (auto found = find_problem_of_tolerances(options)) return found;
+  if (auto found = find_problem_of_values(options)) return found;
   if (options.method == Method::fesd && options.fesd.elements < 2) {
     return problem("fesd.elements", "switch detection needs at least 2 elements in a simulation step",
                    "choose elements = 2 or more, or method = \"timestepping\"");

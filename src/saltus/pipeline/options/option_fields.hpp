@@ -57,8 +57,9 @@ struct OptionProblem {
 /// Returns the number of rows an output grid asks for between two times, both ends among them; 0 for every step.
 [[nodiscard]] double number_of_rows(const OutputGrid& grid, double begin, double end);
 
-/// Checks the options against each other: `until` given and after `from`, rtol + atol > 0, output times within
-/// the span and not too many, no initial_mode where no modes are decided.
+/// Checks the options, which a program may have set to anything, one by one and against each other: `until` given and
+/// after `from`, rtol + atol > 0, output times within the span and not too many, no initial_mode where no modes are
+/// decided.
 /// @return the first problem, or nullopt if a simulation may start.
 [[nodiscard]] std::optional<OptionProblem> find_problem(const SimulateOptions& options);
 

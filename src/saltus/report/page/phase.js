@@ -92,8 +92,19 @@ saltus.phaseView = (result, timeline, choice, sliding, buckets) => {
 saltus.surfaceStyle = (index, surface, palette) =>
     ({color: palette.surfaces[index % palette.surfaces.length], jump: surface.role === "jump"});
 
+/** More surfaces than this are a wall. */
+saltus.mostSurfaces = 40;
+
+/** Of too many surfaces those that events of the window lie on come first. */
+saltus.surfacesToDraw = (result, view, drawn) => {
+  if (drawn.length <= saltus.mostSurfaces) return drawn;
+  const met = new Set(view.events.flatMap((i) => result.events[i].surfaces));
+  const [first, others] = [true, false].map((is) => drawn.filter(({surface}) => met.has(surface.name) === is));
+  return [...first, ...others].slice(0, saltus.mostSurfaces);
+};
+
 /** What a drawing of surfaces says in words: which are cuts, which move, and which it cannot show. */
-saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
+saltus.surfaceNote = ({cuts = [], moving = [], absent = [], leftOut = 0}, at) => {
   const names = (list) => {
     const unique = [...new Set(list.map((surface) => surface.name))];
     const shown = unique.slice(0, 4).map((name) => saltus.shorten(name, 24)).join(", ");
@@ -106,6 +117,8 @@ saltus.surfaceNote = ({cuts = [], moving = [], absent = []}, at) => {
     const times = [...new Set(moving.flatMap((surface) => surface.curves.map(({t}) => saltus.brief(t, 4))))];
     notes.push(`Moving surfaces, drawn at t = ${times.slice(0, 9).join(", ")}: ${names(moving)}.`);
   }
+  if (leftOut > 0)
+    notes.push(`${saltus.count(leftOut, "more surface")} not drawn: those with events in the window of time come first.`);
   if (absent.length > 0) notes.push(`Not drawn, since they depend on time or on other states: ${names(absent)}.`);
   return notes.join(" ");
 };

@@ -7,13 +7,14 @@ saltus.maximumLegendSurfaces = 8;
 saltus.planeSurfaces = (result, choice, view, palette, logs = [false, false]) => {
   // Wider than what is shown at first: lines still reach the border when one zooms out or moves.
   const [x, y] = view.box.map(([from, to]) => [from - 2 * (to - from), to + 2 * (to - from)]);
-  const drawn = [];
+  const all = [];
   result.surfaces.forEach((surface, index) => {
     const parts = saltus.surfaceInPlane(surface, choice, view.at, view.window);
     if (parts === null) return;
     const path = saltus.surfacePath(parts, {x, y}, logs.includes(true) ? 200 : 1);
-    if (path.x.length > 0) drawn.push({surface, index, kind: parts.kind, path});
+    if (path.x.length > 0) all.push({surface, index, kind: parts.kind, path});
   });
+  const drawn = saltus.surfacesToDraw(result, view, all);
   const labels = new Set(drawn.map(({surface}) => saltus.surfaceLabel(surface)));
   const single = labels.size <= saltus.maximumLegendSurfaces;
   const seen = new Map();
@@ -39,7 +40,7 @@ saltus.planeSurfaces = (result, choice, view, palette, logs = [false, false]) =>
     };
   });
   const ofKind = (kind) => drawn.filter((entry) => entry.kind === kind).map((entry) => entry.surface);
-  return {traces, cuts: ofKind("cut"), moving: ofKind("moving")};
+  return {traces, cuts: ofKind("cut"), moving: ofKind("moving"), leftOut: all.length - drawn.length};
 };
 
 saltus.planeTraces = (result, choice, view, palette) => {

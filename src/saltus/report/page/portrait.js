@@ -60,17 +60,17 @@ saltus.portraitTraces = (result, choice, view, palette) => {
 };
 
 saltus.portraitSurfaces = (result, choice, view, palette) => {
-  const cuts = [];
-  const traces = [];
+  const all = result.surfaces
+                  .map((surface, index) => ({surface, index, sheet: saltus.surfaceInSpace(surface, choice, view.at, view.box)}))
+                  .filter(({sheet}) => sheet !== null);
+  const drawn = saltus.surfacesToDraw(result, view, all);
+  const cuts = drawn.map(({surface}) => surface).filter((surface) => !saltus.isExact(surface, choice, view.at.timeAxis));
   const seen = new Map();
-  result.surfaces.forEach((surface, index) => {
-    const sheet = saltus.surfaceInSpace(surface, choice, view.at, view.box);
-    if (sheet === null) return;
-    if (!saltus.isExact(surface, choice, view.at.timeAxis)) cuts.push(surface);
+  const traces = drawn.map(({surface, index, sheet}) => {
     const label = saltus.surfaceLabel(surface);
     const isFirst = !seen.has(label);
     if (isFirst) seen.set(label, saltus.surfaceStyle(index, surface, palette).color);
-    traces.push({
+    return {
       type: "mesh3d",
       ...sheet,
       name: saltus.plain(label),
@@ -81,9 +81,9 @@ saltus.portraitSurfaces = (result, choice, view, palette) => {
       flatshading: true,
       lighting: {ambient: 1, diffuse: 0, specular: 0},
       color: seen.get(label),
-    });
+    };
   });
-  return {traces, cuts};
+  return {traces, cuts, leftOut: all.length - drawn.length};
 };
 
 saltus.portraitLayout = (result, choice, view, holder, palette) => {
@@ -138,7 +138,7 @@ saltus.phasePortrait = (result, timeline, select, address) => {
     if (view === null) return Plotly.purge(holder);
     const surfaces = saltus.portraitSurfaces(result, choice, view, palette);
     const absent = result.surfaces.filter((surface) => surface.affine === null && !saltus.isExact(surface, choice));
-    note.textContent = saltus.surfaceNote({cuts: surfaces.cuts, absent}, view.at);
+    note.textContent = saltus.surfaceNote({...surfaces, absent}, view.at);
     return Plotly.react(
         holder, [...saltus.portraitTraces(result, choice, view, palette), ...surfaces.traces],
         saltus.portraitLayout(result, choice, view, holder, palette), saltus.plotConfig);
