@@ -256,6 +256,11 @@ terminal_constraints = ["x == 0", "v <= -2"]
             self.assertGreater(result["horizon"], 0.67233 * (1 - 1e-5))
             self.assertLess(result["horizon"], 0.67233 * 1.015)
 
+    def test_a_load_on_a_tether(self):
+        """Controls of an unstable motion have another motion; 25 of them cost 2.5 % more than 50."""
+        text = (tool.SOURCE / "models/optima/drone-load.toml").read_text(encoding="utf-8")
+        self.assertLess(self.optimised(text)["objective"], 15.106 * 1.03)
+
     def test_a_body_stopped_by_a_wall_at_the_end(self):
         """A block is pushed into a wall that takes its speed: the impact is the last thing that happens."""
         result = self.optimised(HEAD + """[states]

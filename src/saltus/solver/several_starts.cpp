@@ -96,6 +96,11 @@ std::optional<double> time_left(const SolveOptions& options, double seconds) {
   return options.time_limit ? std::optional(std::max(*options.time_limit - seconds, least)) : std::nullopt;
 }
 
+bool is_over(const SolveOptions& options, double seconds) {
+  const bool is_interrupted = options.is_interrupted && options.is_interrupted();
+  return is_interrupted || (options.time_limit && seconds >= *options.time_limit);
+}
+
 linalg::Vector start_of_seed(const mpcc::Problem& problem, ConstVectorView w, int seed) {
   linalg::Vector moved = w;
   if (seed == 0) return moved;

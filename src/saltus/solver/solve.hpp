@@ -101,6 +101,9 @@ struct Start {
 /// Returns the time limit of what begins after so many seconds.
 [[nodiscard]] std::optional<double> time_left(const SolveOptions& options, double seconds);
 
+/// Returns whether what has taken so many seconds is interrupted, or its time is up.
+[[nodiscard]] bool is_over(const SolveOptions& options, double seconds);
+
 /// Returns the start of a seed: 0 the given one, else one half way from it to a random point, which is drawn between
 /// finite bounds, else within max(1, |w|) of w. Same seed, same bits on every machine.
 [[nodiscard]] linalg::Vector start_of_seed(const mpcc::Problem& problem, ConstVectorView w, int seed);

@@ -1,5 +1,6 @@
 // The motion of controls on the elements of a problem: its equations hold, and elements end where it switches.
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -143,6 +144,105 @@ TEST(Motion, ABallThatBouncesBySimulationIsABranch) {
   const auto branch = solver::crossover::solve_branch(problem, motion->sides, motion->w, ipopt, {});
   EXPECT_TRUE(branch.is_feasible(1e-8));
   EXPECT_NEAR(branch.objective, 0.0, 1e-9);
+}
+
+/// While it lies there numerical time goes on faster; intervals end at their physical times.
+TEST(Motion, ABoxThatLiesOnTheGroundIsPushedInPhysicalTime) {
+  const auto stated = stated_problem(R"toml(
+[model]
+name = "box"
+[states]
+x = 0
+z = 0
+vx = 0
+vz = 0
+[controls]
+u = { lower = -8, upper = 8, initial = 2 }
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+force = { vx = "u*if(t > 0.7, 2, 1)", vz = "-9.81" }
+[[contacts]]
+name = "ground"
+gap = "z"
+[time_freezing]
+a_n = 20
+[optimize]
+horizon = 1
+control_intervals = 4
+elements = 2
+running_cost = "u^2"
+)toml");
+  auto& problem = *stated.problem;
+  const auto motion = problem.motion(problem.start(), never);
+  ASSERT_TRUE(motion);
+  expect_feasible(problem, motion->w);
+  EXPECT_NEAR(problem.read(motion->w).elements.back().back().end[2], 2.0 * 0.7 + 4.0 * 0.3, 1e-9);
+}
+
+/// Its rate has a second selection, which has no side of its own: the ball stays on the hump.
+TEST(Motion, ACurvedGapIsHeld) {
+  const auto stated = stated_problem(R"toml(
+[model]
+name = "hump"
+[states]
+x = -1
+z = -0.25
+vx = 1
+vz = 0.5
+[controls]
+u = { lower = -8, upper = 8, initial = 0.5 }
+[mechanics]
+positions = ["x", "z"]
+velocities = ["vx", "vz"]
+force = { vx = "u", vz = "-9.81" }
+[[contacts]]
+name = "hump"
+gap = "z + x^2/4"
+[time_freezing]
+a_n = 20
+[optimize]
+horizon = 1
+control_intervals = 4
+elements = 1
+running_cost = "u^2"
+)toml");
+  auto& problem = *stated.problem;
+  const auto motion = problem.motion(problem.start(), never);
+  ASSERT_TRUE(motion);
+  expect_feasible(problem, motion->w);
+  const auto end = problem.read(motion->w).elements.back().back().end;
+  EXPECT_NEAR(end[1] + end[0] * end[0] / 4.0, 0.0, 1e-9);
+}
+
+/// At its start it leaves 0.1 and crosses 0.2, once; the states it is meant to have do not.
+TEST(NearStates, LeadAMotionThatIsNotStable) {
+  const auto stated = stated_problem(R"toml(
+[model]
+name = "unstable"
+[states]
+x = 0.1
+[controls]
+u = { lower = -8, upper = 8, initial = -0.88 }
+[dynamics]
+x = "4*x + u - 0.5*sign(x - 0.2)"
+[optimize]
+horizon = 1
+control_intervals = 5
+elements = 2
+running_cost = "u^2"
+[optimize.initial_guess]
+x = "0.1"
+)toml");
+  auto& problem = *stated.problem;
+  const auto alone = problem.motion_modes(problem.start(), never);
+  const auto near = problem.motion_modes(problem.start(), never, true);
+  ASSERT_TRUE(alone && near);
+  EXPECT_NE(elements_of(*alone), std::vector<int>(5, 1));
+  EXPECT_EQ(elements_of(*near), std::vector<int>(5, 1));
+  const auto motion = problem.motion(problem.start(), *near);
+  ASSERT_TRUE(motion);
+  for (const auto& interval : problem.read(motion->w).elements) EXPECT_NEAR(interval.back().end[0], 0.1, 0.02);
 }
 
 }  // namespace

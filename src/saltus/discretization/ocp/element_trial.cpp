@@ -268,8 +268,9 @@ bool ElementTrial::is_admissible(const linalg::Vector& own, double below) const 
 bool ElementTrial::stands_still(const std::vector<double>& left, const linalg::Vector& own) const {
   const int clock = made_.kernel.clock;
   if (clock < 0) return false;
-  const double length = value_at(made_.horizon, w_, made_.constants) / made_.intervals;
-  return right_of(own)[at(clock)] - left[at(clock)] <= vanished * length;
+  return right_of(own)[at(clock)] - left[at(clock)] <= vanished * interval_length();
 }
+
+double ElementTrial::interval_length() const { return value_at(made_.horizon, w_, made_.constants) / made_.intervals; }
 
 }  // namespace saltus::discretization

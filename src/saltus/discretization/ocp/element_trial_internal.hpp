@@ -64,6 +64,7 @@ class ElementTrial {
   /// @param length  where to begin; then that of the element
   [[nodiscard]] std::optional<linalg::Vector> solve_to_end(const std::vector<double>& left, std::size_t interval,
                                                            const Modes& modes, double& length) const;
+  [[nodiscard]] double interval_length() const;
   /// Returns whether selections and multipliers are within their bounds.
   /// @param below  0: by which multipliers may be
   [[nodiscard]] bool is_admissible(const linalg::Vector& own, double below = allowed_beyond) const;

@@ -83,6 +83,7 @@ class Writer {
     auto left = trial.left_of(e);
     bool is_solved = true;
     for (const auto& stretch : stretches) {
+      if (!stretch.left.empty()) left = stretch.left;
       for (int i = 0; i < stretch.elements; ++i, ++e) {
         const bool has_own = stretch.own.size() > 0;
         const auto found =

@@ -14,9 +14,10 @@ struct Stretch {
   ElementSides::Sides modes;
   double length = 0.0;  ///< of all of them, in parts of a control interval
   int elements = 1;
-  bool stands = false;     ///< time stands still
-  std::size_t origin = 0;  ///< an element: where equations have no solution its variables are a start
-  linalg::Vector own{};    ///< those of one element instead, if they are known
+  bool stands = false;         ///< time stands still
+  std::size_t origin = 0;      ///< an element: where equations have no solution its variables are a start
+  linalg::Vector own{};        ///< those of one element instead, if they are known
+  std::vector<double> left{};  ///< where it begins, if not where the one before ends
   [[nodiscard]] double of_element() const { return length / elements; }
   [[nodiscard]] bool has_vanished() const { return length <= vanished; }
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -20,6 +21,8 @@ constexpr int most_trials = 1000;
 constexpr int bisections = 45;
 /// Of multipliers that have come to 0: the next mode may hold them there.
 constexpr double at_bound = 3e-11;
+/// Of what is left of an interval.
+constexpr double at_end = 1e-12;
 
 }  // namespace
 
@@ -45,34 +48,46 @@ std::optional<Stretch> Motion::step(std::size_t k, const std::vector<double>& le
   return std::nullopt;
 }
 
-/// As long as the mode does.
+/// While contacts hold time is slower than the numerical one: in parts of an interval.
+double Motion::passed(const std::vector<double>& left, const Stretch& stretch) const {
+  const int clock = made_.kernel.clock;
+  if (clock < 0) return stretch.length;
+  return (trial_.right_of(stretch.own)[at(clock)] - left[at(clock)]) / trial_.interval_length();
+}
+
+/// As long as the mode does, or until the interval ends.
 void Motion::go_on(std::size_t k, const std::vector<double>& left, double rest, double below, Stretch& stretch) const {
-  double low = stretch.length, high = rest;
-  for (int bisection = 0; bisection < bisections && low < high; ++bisection) {
-    const double length = bisection == 0 ? rest : 0.5 * (low + high);
+  double length = stretch.length * rest / passed(left, stretch), high = 0.0;
+  for (int bisection = 0; bisection < bisections && (high == 0.0 || stretch.length < high); ++bisection) {
     auto own = trial_.solve(left, k, stretch.modes, length, &stretch.own);
     if (own && trial_.is_admissible(*own, below)) {
-      low = length;
+      stretch.length = length;
       stretch.own = std::move(*own);
+      const double part = rest / passed(left, stretch);
+      if (high == 0.0 && std::abs(part - 1.0) <= at_end) return;
+      if (high == 0.0) length *= part;
     } else {
       high = length;
     }
+    if (high > 0.0) length = 0.5 * (stretch.length + high);
   }
-  stretch.length = low;
 }
 
 std::optional<Stretches> Motion::interval(std::size_t k, std::vector<double>& left) {
   Stretches stretches;
+  auto back = near_ && k > 0 ? near_->at_begin_of(k, left) : std::nullopt;
+  if (back) left = *back;
   double rest = 1.0;
   while (rest > short_share) {
     if (stretches.size() == most_stretches) return std::nullopt;
     auto next = step(k, left, rest);
     if (!next) return std::nullopt;
-    if (!next->stands) rest -= next->length;
+    if (!next->stands) rest -= passed(left, *next);
     left = trial_.right_of(next->own);
     last_ = next->modes;
     stretches.push_back(std::move(*next));
   }
+  if (back) stretches.front().left = std::move(*back);
   return stretches;
 }
 
@@ -87,10 +102,12 @@ std::vector<int> elements_of(const MotionModes& modes) {
 }
 
 std::shared_ptr<const MotionModes> OcpProblem::motion_modes(mpcc::ConstVectorView w,
-                                                            const std::function<bool()>& is_over) const {
+                                                            const std::function<bool()>& is_over,
+                                                            bool stays_near) const {
   const auto& made = *implementation_->structure;
   if (made.kernel.pairs.empty()) return nullptr;
-  Motion motion(made, w, is_over);
+  const auto near = stays_near ? std::optional<NearStates>(std::in_place, made, w, read(w).parameters) : std::nullopt;
+  Motion motion(made, w, near ? &*near : nullptr, is_over);
   std::vector<double> left = ElementTrial(made, w).left_of(0);
   MotionModes modes;
   for (std::size_t k = 0; k < made.interval.size(); ++k) {

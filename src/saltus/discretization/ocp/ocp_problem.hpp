@@ -128,8 +128,10 @@ class OcpProblem final : public mpcc::Problem {
   [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w,
                                                        const std::function<bool()>& is_over) override;
   /// Returns the modes of that motion, however many elements it needs; null where there is none, or time is over.
+  /// @param stays_near  it goes on from the states of w where both are in the same mode
   [[nodiscard]] std::shared_ptr<const MotionModes> motion_modes(mpcc::ConstVectorView w,
-                                                                const std::function<bool()>& is_over) const;
+                                                                const std::function<bool()>& is_over,
+                                                                bool stays_near = false) const;
   /// Gives the motion of the same controls in modes that are known, of a problem of the same kernel.
   [[nodiscard]] std::optional<mpcc::NamedStart> motion(mpcc::ConstVectorView w, const MotionModes& modes);
   [[nodiscard]] std::string name(int variable) const override;

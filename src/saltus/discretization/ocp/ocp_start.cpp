@@ -100,16 +100,8 @@ class StartWriter {
     if (block.size == 0) return;
     linalg::Vector lambda = linalg::Vector::constant(block.size, 0.5);
     if (guess_.simulated) {
-      linalg::Vector psi = indicator(element, t, x);
-      for (const auto& [first, count] : kernel_.simplex_parts) {
-        psi.segment(first, count).add_to_all(-psi.segment(first, count).min());
-      }
-      for (std::size_t k = 0; k < kernel_.pairs.size(); ++k) {
-        const auto& pair = kernel_.pairs[k];
-        const double value = psi[pair.selection];
-        lambda[static_cast<linalg::Index>(k)] =
-            std::max(!pair.is_region && !pair.complement ? -value : value, 0.0) + interior;
-      }
+      lambda = multipliers_of(kernel_, indicator(element, t, x));
+      lambda.add_to_all(interior);
     }
     w_.segment(element.variable(block.at(point)), block.size) = lambda;
   }

@@ -88,25 +88,14 @@ class StructureBuilder {
     made_->chain.start = {first, variables_.next() - first};
   }
 
-  /// eq. (17): lambda_p = max(psi, 0), lambda_n = -min(psi, 0); lambda_i = g_i - min g.
   [[nodiscard]] linalg::Vector constant_start_lambda() const {
-    linalg::Vector lambda = linalg::Vector::zero(static_cast<linalg::Index>(kernel_.pairs.size()));
-    if (kernel_.pairs.empty()) return lambda;
+    if (kernel_.pairs.empty()) return {};
     std::vector<double> known = ocp_.system.parameter_values;
     for (linalg::Index i = 0; i < held_.inside.cols(); ++i) known.push_back(held_.inside(0, i));
     known.resize(known.size() + static_cast<std::size_t>(kernel_.shared.controls), 0.0);
     const std::vector<casadi::DM> in{ocp_.from, ocp_.system.initial_state, known};
     const auto values = casadi::DM::densify(kernel_.indicator(in).front()).nonzeros();
-    linalg::Vector indicator = linalg::ConstView(values);
-    for (const auto& [first, count] : kernel_.simplex_parts) {
-      indicator.segment(first, count).add_to_all(-indicator.segment(first, count).min());
-    }
-    for (std::size_t k = 0; k < kernel_.pairs.size(); ++k) {
-      const auto& pair = kernel_.pairs[k];
-      const double value = indicator[pair.selection];
-      lambda[static_cast<linalg::Index>(k)] = std::max(!pair.is_region && !pair.complement ? -value : value, 0.0);
-    }
-    return lambda;
+    return multipliers_of(kernel_, linalg::ConstView(values));
   }
 
   void add_interval(int k) {
@@ -202,6 +191,19 @@ class StructureBuilder {
 };
 
 }  // namespace
+
+linalg::Vector multipliers_of(const OcpKernel::Implementation& kernel, linalg::Vector psi) {
+  linalg::Vector lambda = linalg::Vector::zero(static_cast<linalg::Index>(kernel.pairs.size()));
+  for (const auto& [first, count] : kernel.simplex_parts) {
+    psi.segment(first, count).add_to_all(-psi.segment(first, count).min());
+  }
+  for (std::size_t k = 0; k < kernel.pairs.size(); ++k) {
+    const auto& pair = kernel.pairs[k];
+    const double value = psi[pair.selection];
+    lambda[static_cast<linalg::Index>(k)] = std::max(!pair.is_region && !pair.complement ? -value : value, 0.0);
+  }
+  return lambda;
+}
 
 std::vector<int> right_state(const OcpStructure& made, const OcpElement& element) {
   std::vector<int> places;

@@ -111,6 +111,10 @@ struct OcpStructure {
   [[nodiscard]] std::vector<int> end_places(int element_number) const;  ///< t, x, selections of its last stage
 };
 
+/// Returns multipliers of all pairs: lambda_p = max(psi, 0), lambda_n = -min(psi, 0); lambda_i = g_i - min g
+/// [nurkanovic2024] eq. (17).
+[[nodiscard]] linalg::Vector multipliers_of(const OcpKernel::Implementation& kernel, linalg::Vector psi);
+
 /// Returns variables of the state at the right end of an element.
 [[nodiscard]] std::vector<int> right_state(const OcpStructure& made, const OcpElement& element);
 

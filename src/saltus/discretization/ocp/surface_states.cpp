@@ -18,6 +18,23 @@ SurfaceStates::SurfaceStates(const OcpStructure& made) : made_(made) {
     if (columns == 0) regions_.push_back({pair, part.count});
     pair += is_step ? 2 * part.count : part.count;
   }
+  find_followers();
+}
+
+/// Decision 26: the second selection of a rate has no side of its own.
+void SurfaceStates::find_followers() {
+  const auto surface_of = [&](int pair) {
+    return std::find_if(surfaces_.begin(), surfaces_.end(), [&](const Surface& surface) {
+      return is_step(surface) && (pair == surface.first_pair || pair == surface.first_pair + 1);
+    });
+  };
+  for (const auto& gap : made_.kernel.closing_gaps) {
+    if (gap.held < 0) continue;
+    const auto rate = surface_of(gap.closing), held = surface_of(gap.held);
+    rate->follower = static_cast<int>(held - surfaces_.begin());
+    rate->follows_as = gap.closing == rate->first_pair ? 1 : -1;
+    held->follows = true;
+  }
 }
 
 int SurfaceStates::mirrored(const Surface& surface, int region) {
@@ -45,7 +62,7 @@ SurfaceStates::Modes SurfaceStates::with(Modes modes, std::size_t number, int st
   if (is_step(surface)) {
     modes[at(surface.first_pair)] = state < 0 ? ActiveSide::G : ActiveSide::H;
     modes[at(surface.first_pair + 1)] = state > 0 ? ActiveSide::G : ActiveSide::H;
-    return modes;
+    return surface.follower < 0 ? modes : with(std::move(modes), at(surface.follower), surface.follows_as * state);
   }
   const Modes before = modes;
   for (int region = 0; region < surface.part->count; ++region) {
@@ -61,6 +78,7 @@ SurfaceStates::Modes SurfaceStates::with(Modes modes, std::size_t number, int st
 std::vector<SurfaceStates::Modes> SurfaceStates::others(std::size_t surface, const std::vector<double>& lambda,
                                                         const Modes& from) const {
   std::vector<Modes> list;
+  if (surfaces_[surface].follows) return list;
   for (const int state : {0, -1, 1}) {
     if (is_on(surface, lambda) && state != of(from, surface)) list.push_back(with(from, surface, state));
   }
@@ -106,7 +124,19 @@ std::vector<SurfaceStates::Modes> SurfaceStates::candidates(const std::vector<do
     for (const auto& one : longer) list.push_back(one.modes);
     level = std::move(longer);
   }
+  const auto drifts = [&](const Modes& modes) { return drifts_from(lambda, modes); };
+  list.erase(std::remove_if(list.begin() + 1, list.end(), drifts), list.end());
   return list;
+}
+
+/// Where only its rate is held nothing says what the correction of a gap is (decision 26): it is held itself.
+bool SurfaceStates::drifts_from(const std::vector<double>& lambda, const Modes& modes) const {
+  return std::any_of(made_.kernel.closing_gaps.begin(), made_.kernel.closing_gaps.end(), [&](const ClosingGap& gap) {
+    const bool is_on = lambda[at(gap.open)] <= on_surface && lambda[at(gap.closed)] <= on_surface;
+    const bool is_held = modes[at(gap.open)] == ActiveSide::H && modes[at(gap.closed)] == ActiveSide::H;
+    if (gap.held < 0 || !is_on || is_held) return false;
+    return modes[at(gap.held)] == ActiveSide::H && modes[at(gap.held + 1)] == ActiveSide::H;
+  });
 }
 
 SurfaceStates::Modes SurfaceStates::on_all(const std::vector<double>& lambda) {

@@ -41,7 +41,12 @@ class SurfaceStates {
     const reformulation::DcsPart* part = nullptr;
     int column = 0;
     int first_pair = 0;  ///< step: of the selection; else of the part
+    int follower = -1;   ///< surface that is on the same side (follows_as 1) or the other one (-1)
+    int follows_as = 1;
+    bool follows = false;
   };
+  void find_followers();
+  [[nodiscard]] bool drifts_from(const std::vector<double>& lambda, const Modes& modes) const;
   [[nodiscard]] static bool is_step(const Surface& surface) { return surface.part->form == reformulation::Form::step; }
   /// Returns the region on the other side of the surface.
   [[nodiscard]] static int mirrored(const Surface& surface, int region);

@@ -64,7 +64,7 @@ void go_on_with(solver::Solution next, solver::Solution& solution) {
 class MoreElements {
  public:
   MoreElements(const model::Ocp& ocp, solver::SolveOptions options, SolvedOcp& solved)
-      : ocp_(ocp), options_(std::move(options)), most_iterations_(options_.iteration_limit), solved_(solved) {
+      : ocp_(ocp), limits_(std::move(options)), options_(limits_), solved_(solved) {
     options_.first = solver::FirstProblem::branch;
     options_.starts = 1;
     options_.seed.reset();
@@ -75,8 +75,10 @@ class MoreElements {
   /// @return whether there are intervals that are better with an element more; they have it
   [[nodiscard]] bool add() {
     auto& [stated, solution, has_more, seconds, distance] = solved_;
-    options_.iteration_limit = std::min(solution.iterations, most_iterations_ - solution.iterations);
-    if (solution.termination != Termination::completed || options_.iteration_limit < 1 || !has_time()) return false;
+    options_.iteration_limit = std::min(solution.iterations, limits_.iteration_limit - solution.iterations);
+    if (solution.termination != Termination::completed || options_.iteration_limit < 1) return false;
+    if (solver::is_over(limits_, clock_.seconds())) return false;
+    options_.time_limit = solver::time_left(limits_, clock_.seconds());
     const auto crowded = stated.problem->crowded_intervals(solution.w, solution.multipliers.upper, options_.tolerance);
     if (crowded.empty()) return false;
     auto elements = stated.elements;
@@ -95,16 +97,9 @@ class MoreElements {
   }
 
  private:
-  [[nodiscard]] bool has_time() {
-    if (!options_.time_limit) return true;
-    *options_.time_limit -= clock_.seconds();
-    clock_ = Stopwatch();
-    return *options_.time_limit > 0.0;
-  }
-
   const model::Ocp& ocp_;
+  solver::SolveOptions limits_;  ///< of all solutions together
   solver::SolveOptions options_;
-  int most_iterations_;  ///< of all solutions together
   SolvedOcp& solved_;
   Stopwatch clock_;
   adapters::IpoptSolver ipopt_{adapters::linear_solver_of(options_.strategy)};
@@ -132,9 +127,7 @@ struct FromSteps {
 std::optional<FromSteps> solve_motion_of(const model::Ocp& ocp, const solver::SolveOptions& wanted, linalg::Vector w,
                                          const StatedProblem& stated, solver::Solution& record) {
   const Stopwatch clock;
-  const auto is_over = [&] {
-    return wanted.is_interrupted() || (wanted.time_limit && clock.seconds() >= *wanted.time_limit);
-  };
+  const auto is_over = [&] { return solver::is_over(wanted, clock.seconds()); };
   solver::SolveOptions rest = wanted;
   rest.make_workplace = {};  // they have other elements
   adapters::IpoptSolver ipopt(adapters::linear_solver_of(wanted.strategy));
@@ -142,7 +135,7 @@ std::optional<FromSteps> solve_motion_of(const model::Ocp& ocp, const solver::So
   FromSteps found;
   for (int motion_number = 0; motion_number < most_motions; ++motion_number) {
     auto& before = found.problem ? *found.problem : *stated.problem;
-    const auto modes = before.motion_modes(w, is_over);
+    const auto modes = before.motion_modes(w, is_over, true);
     if (!modes) return std::nullopt;
     found.elements = discretization::elements_of(*modes);
     for (std::size_t k = 0; k < found.elements.size(); ++k) {

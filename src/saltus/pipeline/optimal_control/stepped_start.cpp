@@ -17,7 +17,7 @@ namespace {
 constexpr double last_sigma = 1e-6;
 /// Of constraints, for the same reason.
 constexpr double feasible = 1e-3;
-constexpr int most_of_steps = 1500;  // iterations of all starts together
+constexpr int most_of_steps = 1500;  // iterations of all starts together, and again of all shorter horizons
 /// Of a free horizon: the next one that is tried.
 constexpr double shorter = 0.9;
 /// So large that motions hardly know of contacts, and so small that they stay near their start.
@@ -46,9 +46,15 @@ struct Beginning {
 class Paths {
  public:
   Paths(solver::SolveOptions wanted, solver::Solution& record)
-      : wanted_(std::move(wanted)), record_(record), left_(std::min(wanted_.iteration_limit, most_of_steps)) {
+      : wanted_(std::move(wanted)), record_(record), left_in_all_(wanted_.iteration_limit) {
+    allow_more();
     wanted_.on_step = [tell = wanted_.on_step](const result::HomotopyStep& step) { tell(named(step)); };
   }
+
+  /// From here on `most_of_steps` iterations, as far as the limit of all goes.
+  void allow_more() { left_ = std::min(left_in_all_, most_of_steps); }
+
+  [[nodiscard]] bool are_over() const { return left_ <= 0 || solver::is_over(wanted_, clock_.seconds()); }
 
   /// Each order of collisions has optima of its own: returns the lowest one.
   std::optional<solver::Solution> best_of(const std::vector<Beginning>& beginnings, mpcc::Problem& problem) {
@@ -63,7 +69,7 @@ class Paths {
  private:
   /// Nothing where that leads to no motion.
   std::optional<solver::Solution> follow(const Beginning& beginning, mpcc::Problem& problem) {
-    if (wanted_.is_interrupted() || left_ <= 0) return std::nullopt;
+    if (are_over()) return std::nullopt;
     solver::SolveOptions one = wanted_;
     one.iteration_limit = left_;
     one.sigma_initial = beginning.sigma;
@@ -73,6 +79,7 @@ class Paths {
     for (auto& step : solution->homotopy) step = named(std::move(step));
     add_path(*solution, record_);
     left_ -= solution->iterations;
+    left_in_all_ -= solution->iterations;
     const auto& of = solution->certificate;
     const bool is_feasible = of.primal_infeasibility <= feasible && of.complementarity_residual <= feasible;
     return is_feasible ? std::optional(std::move(*solution)) : std::nullopt;
@@ -80,7 +87,7 @@ class Paths {
 
   solver::SolveOptions wanted_;
   solver::Solution& record_;
-  int left_;  ///< iterations
+  int left_in_all_, left_ = 0;  ///< iterations
   adapters::IpoptSolver ipopt_{adapters::linear_solver_of(wanted_.strategy)};
   adapters::HighsLpcc highs_;
   Stopwatch clock_;
@@ -90,10 +97,11 @@ class Paths {
 /// horizon that is held come first, from which it is let go where hardly anything is relaxed; then shorter ones, as
 /// long as there are any.
 std::optional<solver::Solution> shortened(const model::Ocp& ocp, int intervals, time_stepping::Motion guess,
-                                          const time_stepping::SteppedOcp& stepped, Paths paths) {
+                                          const time_stepping::SteppedOcp& stepped, Paths& paths) {
+  paths.allow_more();
   std::optional<solver::Solution> best;
   linalg::Vector w = stepped.problem().start();
-  for (; guess.horizon >= ocp.horizon.lower; guess.horizon *= shorter) {
+  for (; guess.horizon >= ocp.horizon.lower && !paths.are_over(); guess.horizon *= shorter) {
     const auto held = time_stepping::SteppedOcp::make(ocp, intervals, guess, true);
     const auto motion = paths.best_of({{w, large_sigma}}, held->problem());
     auto found = motion ? paths.best_of({{motion->w, least_sigma}}, stepped.problem()) : std::nullopt;
@@ -138,8 +146,9 @@ std::optional<SteppedStart> stepped_start(const model::Ocp& ocp, const OptimizeO
   const linalg::Vector w = stepped->problem().start();
   std::vector<Beginning> beginnings{{w, large_sigma}, {w, small_sigma}};
   for (const auto& [name, states] : begin->others) beginnings.push_back({stepped->start_at(states), small_sigma});
-  auto solution = Paths(wanted, record).best_of(beginnings, stepped->problem());
-  if (!solution && ocp.horizon.free) solution = shortened(ocp, intervals, guess, *stepped, Paths(wanted, record));
+  Paths paths(wanted, record);
+  auto solution = paths.best_of(beginnings, stepped->problem());
+  if (!solution && ocp.horizon.free) solution = shortened(ocp, intervals, guess, *stepped, paths);
   if (!solution) return std::nullopt;
   auto motion = stepped->read(solution->w);
   const auto with_clock = [&](std::vector<double> x, double fraction) {
