@@ -77,7 +77,11 @@ const TomlTable* TomlReader::table(const TomlValue& value, std::string_view expe
   const auto* list = std::get_if<TomlArray>(&value.value);
   const bool is_doubled = list != nullptr && !list->empty() && std::holds_alternative<TomlTable>(list->front().value);
   if (is_doubled) {
-    wrong_type(expected, value, fmt::format("write {} in single brackets, once", table_));
+    constexpr std::string_view has_name = "the table [";
+    const auto name = expected.substr(0, expected.find(']')).substr(std::min(has_name.size(), expected.size()));
+    wrong_type(expected, value,
+               expected.starts_with(has_name) ? fmt::format("write [{}] in single brackets, once", name)
+                                              : "write one table, without square brackets around it");
   } else if (table == nullptr) {
     wrong_type(expected, value);
   }

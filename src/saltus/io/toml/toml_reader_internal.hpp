@@ -38,8 +38,13 @@ class TomlReader {
   void enter(std::string table) {
     table_ = std::move(table);
     errors_before_ = errors_.size();
-    has_unknown_key_ = false;
+    begin_entry();
   }
+
+  /// Sets that what follows is an entry of its own, like one of [[jumps]].
+  void begin_entry() { has_unknown_key_ = false; }
+  /// Returns whether all keys of the entry are known; of another one it is not known what it states.
+  [[nodiscard]] bool is_understood() const { return !has_unknown_key_; }
 
   /// Keeps the error, with the table it is in; of several at one place the first.
   void fail(Error error);
@@ -51,6 +56,7 @@ class TomlReader {
   void not_available(const SourceLocation& location, std::string_view what);
 
   /// Reads the value as a table, or null and an error.
+  /// @param expected  "the table [name]", or what stands in braces
   const TomlTable* table(const TomlValue& value, std::string_view expected);
   /// Reads the value as tables that begin with [[name]], none and an error where it is not.
   const TomlArray& tables(const TomlValue& value, std::string_view name);
@@ -72,7 +78,7 @@ class TomlReader {
   std::vector<std::string> functions_, declared_;
   std::vector<Error> errors_;
   std::size_t errors_before_ = 0;  ///< when the table was entered
-  bool has_unknown_key_ = false;   ///< in the table that was entered last
+  bool has_unknown_key_ = false;   ///< in the entry that was begun last
 };
 
 /// Returns where a byte of a string stands in the file.

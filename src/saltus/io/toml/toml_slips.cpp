@@ -126,9 +126,7 @@ std::optional<Slip> start(const Line& line) {
 
 /// mu k = 2, μ = 2
 std::optional<Slip> key_without_quotes(const Line& line) {
-  constexpr std::string_view letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
-  const auto odd = line.key.find_first_not_of(letters);
-  if (!line.is_assignment || odd == std::string_view::npos || line.key.find_first_of("[]{}\"'%") < line.key.size())
+  if (!line.is_assignment || is_plain_name(line.key) || line.key.find_first_of("[]{}\"'%") < line.key.size())
     return std::nullopt;
   return Slip{invalid(fmt::format("the name '{}'", line.key)),
               "names consist of the letters a to z, digits and underscores; what pictures call them is a label: "
@@ -215,6 +213,12 @@ std::optional<Slip> bare_expression(const Line& line) {
 }
 
 }  // namespace
+
+bool is_plain_name(std::string_view key) {
+  return std::all_of(key.begin(), key.end(), [](unsigned char c) {
+    return c < 0x80U && (std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.');
+  });
+}
 
 Slip slip_in(std::string_view line, std::size_t column, std::string_view description) {
   const auto code = trimmed(line.substr(0, end_of_code(line)), blanks);
