@@ -118,7 +118,8 @@ class Mistakes(tool.ToolTest):
             "[states]", "[parameters]\n" + "".join(f"p{i} = {i}\n" for i in range(30)) + "[states]")
         told = "m.toml:4: parameter 'p0' is never used (and 29 more like it: 'p1', 'p2', 'p3', …)"
         out, err = self.check(unused, code=0)
-        self.assertTrue(out.replace(f"{self.folder}/", "").endswith(f"warnings (30)\n  {told}\n"), out)
+        self.assertTrue(out.replace(f"{self.folder}/", "").endswith(f"warnings (30)\n  {told}\n  (--json shows all)\n"), out)
+        self.assertEqual(len(json.loads(self.check(unused, "--json", code=0)[0])["warnings"]), 30)
         _, err = self.run_tool("simulate", "m.toml", "--quiet", code=0)
         self.assertEqual(err, f"warning: {told}\n")
         jumps = "".join(f'[[jumps]]\nname = "j{i}"\nwhen = "x < {-i}"\nset = {{ x = 1 }}\n' for i in range(300))

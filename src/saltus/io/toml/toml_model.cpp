@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/base/same_place.hpp"
 #include "saltus/base/text.hpp"
 #include "saltus/io/atomic_file.hpp"
@@ -98,7 +99,7 @@ void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) 
   reader.fail({ErrorCode::unknown_name,
                is_table ? fmt::format("unknown table [{}]", entry.key)
                         : fmt::format("unknown key '{}' outside of all tables", entry.key),
-               suggest(entry.key, known_tables()),
+               suggest_word(entry.key, known_tables()),
                entry.location,
                {}});
 }

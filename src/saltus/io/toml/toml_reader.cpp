@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/other_words.hpp"
 #include "saltus/base/same_place.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/toml/toml_reader_internal.hpp"
@@ -59,7 +60,7 @@ void TomlReader::unknown_key(const TomlEntry& entry, const std::vector<std::stri
   has_unknown_key_ = true;
   fail({ErrorCode::unknown_name,
         fmt::format("unknown key '{}'", entry.key),
-        suggest(entry.key, known),
+        suggest_word(entry.key, known),
         entry.location,
         {}});
 }
