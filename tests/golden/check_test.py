@@ -161,6 +161,15 @@ class Mistakes(tool.ToolTest):
         self.assertIn("this jump has no `set`", err)
         self.assertTrue(err.endswith("2 mistakes\n"), err)
 
+        head = "[model]\nname = 'm'\n[states]\nx = 1\n[dynamics]\nx = 0\n"
+        tables = "[tables.a]\nx = [0, 1]\nyy = [0, 1]\n[tables.b]\nx = [0, 1]\n"
+        squares = "[optimize]\nhorizon = 1\ncontrol_intervals = 2\n" + (
+            "[[optimize.least_squares]]\nfo = ['x']\n[[optimize.least_squares]]\nreference = [1]\n")
+        for text, told in ((tables, ["unknown key 'yy'", "table 'b' has no y"]),
+                           (squares, ["unknown key 'fo'", "this table has no `of`"])):
+            _, err = self.check(head + text + "[simulate]\nuntil = 1\n")
+            self.assertTrue(err.endswith("2 mistakes\n") and all(part in err for part in told), err)
+
     def test_what_stands_in_a_line_without_readable_name_is_not_missing(self):
         head = "[model]\nname = 'm'\n[states]\nx = 1\n[dynamics]\n"
         for text in (head + "dx/dt = '-x'\n", head + "dx/dt = -x\n", head.replace("x = 1", "x(0) = 1") + "x = '-x'\n",

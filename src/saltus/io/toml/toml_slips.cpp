@@ -99,8 +99,10 @@ std::optional<Slip> prime(const Line& line) {
   const bool primed = !name.empty() && !primes.empty() && primes.find_first_not_of('\'') == std::string_view::npos;
   if (!primed || !line.says("expected '='")) return std::nullopt;
   if (primes.size() > 1) {
-    return Slip{invalid(shortened(line.said)),
-                fmt::format("every derivative but the last is a state of its own: {} = \"v\" and v = \"…\"", name)};
+    return Slip{
+        invalid(shortened(line.said)),
+        fmt::format("the first derivative is a state of its own: add v to [states], with {} = \"v\" and v = \"…\"",
+                    name)};
   }
   return Slip{invalid(shortened(line.said)),
               fmt::format("right-hand sides stand under the state's name, without a prime: {} = \"…\"", name)};
