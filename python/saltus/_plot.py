@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import inspect
 import typing
+import uuid
 import weakref
 
 import numpy as np
@@ -20,8 +21,10 @@ SLIDING = "#d95f02"
 #: Of the first result in a picture, and of those that are drawn over it.
 LINES = ("#1f5fa8", "#1b9e77", "#e7298a", "#66a61e", "#a6761d", "#7570b3")
 DASHES = ("-", "--", "-.", ":")
-#: Marks a line as a result's.
+#: Marks a line as a result's, and a legend as ours.
 _OURS = "saltus"
+#: What tells results apart, also in figures that were stored.
+_TOKENS: weakref.WeakKeyDictionary[Recorded, str] = weakref.WeakKeyDictionary()
 #: Of more events than this the marks hide the curves.
 MOST_MARKS = 100
 MARKS = {
@@ -114,7 +117,7 @@ def plot(
     color: typing.Any = None,
 ) -> typing.Any:
     """A row of axes for every name; sliding is shaded, events are marked at their values."""
-    r, of = as_drawn(r), weakref.ref(r)
+    r, of = as_drawn(r), _token(r)
     pyplot, is_own = _matplotlib(), axes is None
     if isinstance(axes, (str, Expression)):
         raise TypeError(f'r.plot({names!r}, {axes!r}): names are one list, r.plot(["{names}", "{axes}"]); axes are those of matplotlib')
@@ -170,11 +173,16 @@ def _title(r: Recorded, group: Group) -> str:
 
 
 class _Drawn(typing.NamedTuple):
-    """What a line shows: a column of a result, and the label that was given."""
+    """What a line shows: a column of a result, the label that was given, and the one that the line has got."""
 
-    of: weakref.ref[Recorded]
+    of: str
     name: str
     label: str | None
+    shown: str = ""
+
+
+def _token(r: Recorded) -> str:
+    return _TOKENS.setdefault(r, uuid.uuid4().hex)
 
 
 def _line(axis: typing.Any, curve: list[typing.Any], drawn: _Drawn, color: typing.Any = None) -> typing.Any:
@@ -184,7 +192,7 @@ def _line(axis: typing.Any, curve: list[typing.Any], drawn: _Drawn, color: typin
     style = {"marker": ".", "markersize": 2.4, "markevery": dots} if dots else {}
     color, dash = (LINES[place], DASHES[round % len(DASHES)]) if color is None else (color, "-")
     (line,) = axis.plot(*curve, color=color, linestyle=dash, linewidth=1.2, gid=_OURS, **style)
-    line._saltus = drawn
+    line._saltus = drawn._replace(shown=line.get_label())
     return line
 
 
@@ -193,20 +201,25 @@ def _ours(axis: typing.Any) -> list[typing.Any]:
 
 
 def _legend(axis: typing.Any, with_labels: bool = True) -> None:
-    """Names what tells the lines apart: their columns, their results, and labels that were given."""
+    """Names what tells the lines apart: their columns, their results, and labels that were given.
+
+    A label that somebody else has set stays, and so does a legend.
+    """
     lines = _ours(axis)
     names = {line._saltus.name for line in lines}
     results = list(dict.fromkeys(line._saltus.of for line in lines))
     for line in lines:
-        of, name, label = line._saltus
+        of, name, label, shown = line._saltus
         if label is None and len(results) > 1:
             label = f"result {results.index(of) + 1}"
-        words = [*([name] if len(names) > 1 else []), *([label] if label is not None else [])]
-        if words:
-            line.set_label(", ".join(words))
-    named = [line for line in lines if not line.get_label().startswith("_")]
-    if named and (with_labels or len(names) > 1):
-        axis.legend(handles=named)
+        words = ", ".join(filter(None, [name if len(names) > 1 else "", label]))
+        if words and line.get_label() == shown:
+            line.set_label(words)
+            line._saltus = line._saltus._replace(shown=words)
+    named = [line for line in lines if line.get_label() and not line.get_label().startswith("_")]
+    legend = axis.get_legend()
+    if named and (with_labels or len(names) > 1) and (legend is None or legend.get_gid() == _OURS):
+        axis.legend(handles=named).set_gid(_OURS)
 
 
 def _caption_once(axis: typing.Any, side: str, caption: str) -> None:
@@ -254,12 +267,12 @@ def phase(
     color: typing.Any = None,
 ) -> typing.Any:
     """One column over another; where the solution slides the line is thick."""
-    r, of = as_drawn(r), weakref.ref(r)
+    r, of = as_drawn(r), _token(r)
     pyplot, is_own = _matplotlib(), axis is None
     x, y = str(x), str(y)
     if is_own:
         _, axis = pyplot.subplots(figsize=(5, 4.5), layout="constrained")
-    _line(axis, broken_at_jumps(r, r[x], r[y]), _Drawn(of, y, label), color)
+    _line(axis, broken_at_jumps(r, r[x], r[y]), _Drawn(of, f"{y} over {x}", label), color)
     held = slides(r)
     here, there = r[x].astype(float), r[y].astype(float)
     here[~held] = float("nan")

@@ -322,8 +322,8 @@ def series_of(until: Value, schemes: Value, steps: Value) -> tuple[str, str]:
     """Schemes and numbers of steps of an order study, as the tool reads them."""
     if is_list(until):
         raise refuse(f"until={until!r}: expected the end time, a number", f"numbers of steps are steps={until!r}")
-    schemes = schemes if isinstance(schemes, (list, tuple)) else [schemes]
-    if not all(isinstance(one, (list, tuple)) and len(one) == 2 for one in schemes):
+    schemes = [schemes] if isinstance(schemes, str) or not isinstance(schemes, typing.Iterable) else list(schemes)
+    if not all(isinstance(one, (list, tuple, np.ndarray)) and len(one) == 2 for one in schemes):
         raise refuse(f"schemes={schemes!r}: expected pairs of a name and a number of stages", 'e.g. schemes=[("radau_iia", 2)]')
     if not isinstance(steps, typing.Iterable) or isinstance(steps, str):
         raise refuse(f"steps={steps!r}: expected a list of numbers of steps", "e.g. steps=[50, 100, 200]")

@@ -14,6 +14,7 @@
 #include "model.hpp"
 #include "parts.hpp"
 #include "result.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/frontend/sweep_input.hpp"
 #include "saltus/frontend/sweep_page.hpp"
 #include "saltus/frontend/sweep_share.hpp"
@@ -33,7 +34,7 @@ pipeline::Keep keep_named(const std::string& word) {
   if (word == "trajectory") return pipeline::Keep::trajectory;
   raise({ErrorCode::invalid_option,
          "keep='" + word + "': expected final, events or trajectory",
-         suggest(word, {"final", "events", "trajectory"}),
+         suggest_word(word, {"final", "events", "trajectory"}),
          {},
          {}});
 }

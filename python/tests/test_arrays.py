@@ -226,6 +226,7 @@ def test_functions_of_numpy_take_expressions_of_no_axis():
 
 @pytest.mark.parametrize("name, arguments, written", [
     ("gradient", (), "the quotients: (x[2:] - x[:-2])/(2*h)"),
+    ("trapezoid", (), 'an integral is a state: z = m.state("z", 0), m.rate(z, …)'),
     ("interp", ([0, 1], [0, 2]), 'road = m.table("road", x=[0, 1], y=[0, 2]), then road(x)'),
     ("round", (), "saltus.floor(x + 0.5), of times only"),
     ("around", (2,), "saltus.floor(x + 0.5), of times only"),

@@ -1,5 +1,8 @@
 """Pictures in axes of one's own: several columns, several calls, the words for them."""
 
+import copy
+import pickle
+
 import matplotlib
 import numpy as np
 import pytest
@@ -69,6 +72,34 @@ def test_results_over_each_other_are_told_apart(slip):
     (axis,) = slip.plot("q")
     slip.plot("v", ax=axis)
     assert words(axis) == ["q", "v"]
+
+
+def test_figures_of_results_are_stored_and_copied(slip):
+    (axis,) = slip.plot("v")
+    other = saltus.catalogue("stick-slip").simulate(until=1)
+    for again in (pickle.loads(pickle.dumps(axis.figure)), copy.deepcopy(axis.figure)):
+        other.plot("v", ax=again.axes[0])
+        assert [text.get_text() for text in again.axes[0].get_legend().get_texts()] == ["result 1", "result 2"]
+
+
+def test_labels_and_legends_of_ones_own_stay(slip):
+    other = saltus.catalogue("stick-slip").simulate(until=1)
+    (axis,) = slip.plot("v")
+    axis.lines[0].set_label("mine")
+    other.plot("v", ax=axis)
+    assert [text.get_text() for text in axis.get_legend().get_texts()] == ["mine", "result 2"]
+    own = axis.legend(["only this"])
+    other.plot("v", ax=axis, label="again")
+    assert axis.get_legend() is own
+    (axis,) = slip.plot("v", label="")
+    assert axis.get_legend() is None
+    other.plot("v", ax=axis, label="named")
+    assert [text.get_text() for text in axis.get_legend().get_texts()] == ["named"]
+
+
+def test_phase_lines_are_told_apart_by_both_columns(slip):
+    axis = slip.phase("v", "q", ax=slip.phase("t", "q"))
+    assert [text.get_text() for text in axis.get_legend().get_texts()] == ["q over t", "q over v"]
 
 
 def test_pictures_have_one_word_for_axes_and_say_it(slip):

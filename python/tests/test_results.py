@@ -176,7 +176,7 @@ def test_optimal_control(source):
 def test_methods_compared():
     r = saltus.compare(saltus.catalogue("stick-slip"), until=3)
     assert {run["method"] for run in r.comparison["runs"]} >= {"event", "fesd", "smoothed"}
-    study = saltus.order(saltus.catalogue("stick-slip"), until=2, schemes=[("radau_iia", 2)], steps=[20, 40, 80])
+    study = saltus.order(saltus.catalogue("stick-slip"), until=2, schemes=iter([("radau_iia", 2)]), steps=[20, 40, 80])
     assert study.order["series"]
     with pytest.raises(saltus.ModelError, match="ascending"):
         saltus.order(saltus.catalogue("stick-slip"), until=2, steps=[40, 20])

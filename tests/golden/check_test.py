@@ -118,7 +118,8 @@ class Mistakes(tool.ToolTest):
             "[states]", "[parameters]\n" + "".join(f"p{i} = {i}\n" for i in range(30)) + "[states]")
         told = "m.toml:4: parameter 'p0' is never used (and 29 more like it: 'p1', 'p2', 'p3', …)"
         out, err = self.check(unused, code=0)
-        self.assertTrue(out.replace(f"{self.folder}/", "").endswith(f"warnings (30)\n  {told}\n"), out)
+        self.assertTrue(out.replace(f"{self.folder}/", "").endswith(f"warnings (30)\n  {told}\n  (--json shows all)\n"), out)
+        self.assertEqual(len(json.loads(self.check(unused, "--json", code=0)[0])["warnings"]), 30)
         _, err = self.run_tool("simulate", "m.toml", "--quiet", code=0)
         self.assertEqual(err, f"warning: {told}\n")
         jumps = "".join(f'[[jumps]]\nname = "j{i}"\nwhen = "x < {-i}"\nset = {{ x = 1 }}\n' for i in range(300))
@@ -134,6 +135,49 @@ class Mistakes(tool.ToolTest):
                 _, err = self.check(text)
                 self.assertIn(f"unknown key '{key}'", err)
                 self.assertNotRegex(err, "has no|no table")
+
+    def test_an_entry_with_an_unknown_key_is_not_judged_further(self):
+        plain = "[model]\nname = 'm'\n[states]\nx = 1\nv = 0\n[dynamics]\nx = 'v'\nv = '-x'\n"
+        switched = plain.replace("'-x'", "'-x + relay'")
+        fallen = plain.split("[dynamics]")[0] + "[mechanics]\npositions = ['x']\nvelocities = ['v']\nmass = [[1]]\n"
+        tables = {"[[jumps]]": (plain, {"when": "'x < 0'", "set": "{ v = '-v' }"}),
+                  "[[events]]": (plain, {"when": "'x'"}),
+                  "[[hysteresis]]": (switched, {"name": "'relay'", "input": "'x'", "on": "1", "off": "0.5"}),
+                  "[[contacts]]": (fallen, {"name": "'floor'", "gap": "'x'", "restitution": "0.5"}),
+                  "[mechanics]": (plain.split("[dynamics]")[0], {"positions": "['x']", "velocities": "['v']", "mass": "[[1]]"}),
+                  "[[modes]]": (plain.split("[dynamics]")[0], {"when": "'otherwise'", "dynamics": "{ x = 'v', v = '-x' }"})}
+        for table, (head, keys) in tables.items():
+            for wrong in keys:
+                with self.subTest(f"{table} {wrong}"):
+                    lines = [f"{key}_ = {value}" if key == wrong else f"{key} = {value}" for key, value in keys.items()]
+                    _, err = self.check(head + table + "\n" + "\n".join(lines) + "\n[simulate]\nuntil = 1\n")
+                    self.assertIn(f"unknown key '{wrong}_'", err)
+                    self.assertEqual(err.count(": error: "), 1, err)
+
+    def test_every_entry_is_judged_by_itself(self):
+        jumps = "[[jumps]]\nwen = 'x < 0'\nset = { x = 1 }\n[[jumps]]\nwhen = 'x > 1'\n"
+        _, err = self.check("[model]\nname = 'm'\n[states]\nx = 1\n[dynamics]\nx = 0\n" + jumps)
+        self.assertIn("unknown key 'wen'", err)
+        self.assertIn("this jump has no `set`", err)
+        self.assertTrue(err.endswith("2 mistakes\n"), err)
+
+        head = "[model]\nname = 'm'\n[states]\nx = 1\n[dynamics]\nx = 0\n"
+        tables = "[tables.a]\nx = [0, 1]\nyy = [0, 1]\n[tables.b]\nx = [0, 1]\n"
+        squares = "[optimize]\nhorizon = 1\ncontrol_intervals = 2\n" + (
+            "[[optimize.least_squares]]\nfo = ['x']\n[[optimize.least_squares]]\nreference = [1]\n")
+        for text, told in ((tables, ["unknown key 'yy'", "table 'b' has no y"]),
+                           (squares, ["unknown key 'fo'", "this table has no `of`"])):
+            _, err = self.check(head + text + "[simulate]\nuntil = 1\n")
+            self.assertTrue(err.endswith("2 mistakes\n") and all(part in err for part in told), err)
+
+    def test_what_stands_in_a_line_without_readable_name_is_not_missing(self):
+        head = "[model]\nname = 'm'\n[states]\nx = 1\n[dynamics]\n"
+        for text in (head + "dx/dt = '-x'\n", head + "dx/dt = -x\n", head.replace("x = 1", "x(0) = 1") + "x = '-x'\n",
+                     head + "x = 0\n[[jumps]]\nwh en = 'x < 0'\nset = { x = 1 }\n",
+                     head.replace("[states]", "[parameters]\nk k = 1\n[states]") + "x = '-kk*x'\n"):
+            with self.subTest(text):
+                _, err = self.check(text + "[simulate]\nuntil = 1\n")
+                self.assertEqual(err.count(": error: "), 1, err)
 
     def test_one_is_told_once_and_what_follows_from_it_is_not(self):
         _, err = self.check(MANY)

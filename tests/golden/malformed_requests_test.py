@@ -89,11 +89,16 @@ class Settings(RequestTest):
 
 class CommandLine(RequestTest):
     CASES = {
-        ("sweep", "m.toml", "--over", "mu=1..5"): ["--over mu=1..5: expected values with commas between, or FROM:TO:NUMBER"],
-        ("sweep", "m.toml", "--over", "mu=[1,2]"): ["--over mu=[1,2]: expected values with commas", "--over k=1,2,4"],
-        ("sweep", "m.toml", "--over", "mu=1 2"): ["--over mu=1 2: expected values with commas"],
+        ("sweep", "m.toml", "--over", "mu=1..5"): ["--over mu=1..5: error: expected values with commas between, or FROM:TO:NUMBER"],
+        ("sweep", "m.toml", "--over", "mu=[1,2]"): ["--over mu=[1: error: expected values with commas", "--over k=1,2,4"],
+        ("sweep", "m.toml", "--over", "mu=1 2"): ["--over mu=1 2: error: expected values with commas"],
         ("sweep", "m.toml", "--over", "nu=1,2"): ["--over nu=1: error: ", "found 'nu'", "did you mean 'mu'?"],
         ("sweep", "m.toml", "--over", "mu=1,2"): ["--out is missing"],
+        ("sweep", "m.toml", "--over", "mu=1 + 2,1 - 0.5"): ["--out is missing"],
+        ("sweep", "m.toml", "--over", "simulate.inputs.u.file=../u.csv,u.csv"): ["../u.csv: error: there is no such file"],
+        ("options",): ["'options' is no command of saltus", "known: help, simulate"],
+        ("settings",): ["'settings' is no command of saltus", "known: help, simulate"],
+        ("solver",): ["'solver' is no command of saltus", "known: help, simulate"],
         ("simulat", "m.toml"): ["'simulat' is no command of saltus", "did you mean 'simulate'"],
         ("m.toml",): ["'m.toml' is no command of saltus", "did you mean `saltus simulate m.toml`?"],
         ("nonsense",): ["'nonsense' is no command of saltus", "known: help, simulate"],

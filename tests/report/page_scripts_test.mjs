@@ -217,11 +217,12 @@ test("a surface that moves is drawn at its times within the window", () => {
 
 test("of two hundred surfaces some are drawn, those with events first, and the others counted", () => {
   const drawn = Array.from({length: 200}, (_, i) => ({surface: {name: `s${i}`}}));
-  const result = {events: [{surfaces: ["s150"]}, {surfaces: ["s7", "s199"]}]};
-  const some = saltus.surfacesToDraw(result, {events: [0, 1]}, drawn).map(({surface}) => surface.name);
+  const result = {events: [{t: 1, surfaces: ["s150"]}, {t: 2, surfaces: ["s7", "s199"]}, {t: 3, surfaces: ["s8"]}]};
+  const view = {events: [0], window: [0, 2]};  // the mark of the second one is hidden
+  const some = saltus.surfacesToDraw(result, view, drawn).map(({surface}) => surface.name);
   assert.equal(some.length, saltus.mostSurfaces);
   assert.deepEqual(some.slice(0, 4), ["s7", "s150", "s199", "s0"]);
-  assert.equal(saltus.surfacesToDraw(result, {events: [0]}, drawn.slice(0, 9)).length, 9);
+  assert.equal(saltus.surfacesToDraw(result, view, drawn.slice(0, 9)).length, 9);
   assert.match(saltus.surfaceNote({leftOut: 160}, {t: 0}), /^160 more surfaces not drawn/);
 });
 

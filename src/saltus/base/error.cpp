@@ -4,8 +4,6 @@
 #include <cctype>
 #include <numeric>
 
-#include "saltus/base/other_words.hpp"
-
 namespace saltus {
 namespace {
 
@@ -86,7 +84,6 @@ std::string to_text(const Error& error) {
 }
 
 std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& known) {
-  if (auto meant = names_meant(name, known); !meant.empty()) return meant;
   std::vector<std::pair<std::size_t, std::string>> ranked;
   std::vector<std::string> longer_or_shorter;
   for (const auto& candidate : known) {
@@ -110,7 +107,10 @@ std::vector<std::string> nearest_names(const std::string& name, const std::vecto
 }
 
 std::string suggest(const std::string& name, const std::vector<std::string>& known) {
-  const auto nearest = nearest_names(name, known);
+  return suggestion(nearest_names(name, known), known);
+}
+
+std::string suggestion(const std::vector<std::string>& nearest, const std::vector<std::string>& known) {
   if (!nearest.empty()) return "did you mean " + joined(nearest, " or ", "'") + "?";
   return known.empty() ? "" : "known: " + joined(known, ", ", "");
 }

@@ -48,11 +48,13 @@ using Expected = tl::expected<T, Error>;
 [[nodiscard]] std::string to_text(const Error& error);
 
 /// Returns the known names nearest to `name` by edit distance, best first, at most three; for "did you mean" remedies.
-/// Where none is near, those that begin with it, or with which it begins. What a word of other programs stands for is
-/// nearer than all others.
+/// Where none is near, those that begin with it, or with which it begins. For names that a user gives; of words of
+/// ours see other_words.hpp.
 [[nodiscard]] std::vector<std::string> nearest_names(const std::string& name, const std::vector<std::string>& known);
 
 /// Returns "did you mean 'a' or 'b'?" or, if nothing is near, "known: a, b, c"; empty if nothing is known.
 [[nodiscard]] std::string suggest(const std::string& name, const std::vector<std::string>& known);
+/// Returns the same of names that are near.
+[[nodiscard]] std::string suggestion(const std::vector<std::string>& nearest, const std::vector<std::string>& known);
 
 }  // namespace saltus

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/error.hpp"
 #include "saltus/base/text.hpp"
 
 namespace saltus {
@@ -83,6 +84,17 @@ std::vector<std::string> names_meant(std::string_view word, const std::vector<st
   std::copy_if(known.begin(), known.end(), std::back_inserter(names),
                [&](const std::string& name) { return contains(meant, plain(name)) && plain(name) != theirs; });
   return names;
+}
+
+std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known) {
+  const auto is_same = [written = plain(word)](const std::string& name) { return plain(name) == written; };
+  const bool is_known = std::any_of(known.begin(), known.end(), is_same);
+  auto meant = is_known ? std::vector<std::string>() : names_meant(word, known);
+  return meant.empty() ? nearest_names(word, known) : meant;
+}
+
+std::string suggest_word(const std::string& word, const std::vector<std::string>& known) {
+  return suggestion(nearest_words(word, known), known);
 }
 
 }  // namespace saltus

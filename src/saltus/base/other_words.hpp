@@ -11,4 +11,10 @@ namespace saltus {
 /// name and tables before its last part are left out of account.
 [[nodiscard]] std::vector<std::string> names_meant(std::string_view word, const std::vector<std::string>& known);
 
+/// Does as nearest_names for options, keys and words of ours: one that is the same but for capitals is nearest, then
+/// those that a word of other programs stands for.
+[[nodiscard]] std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known);
+/// Does as suggest for options, keys and words of ours.
+[[nodiscard]] std::string suggest_word(const std::string& word, const std::vector<std::string>& known);
+
 }  // namespace saltus

@@ -1,7 +1,6 @@
 #include "saltus/base/told_together.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <string_view>
 
@@ -11,8 +10,6 @@ namespace {
 constexpr std::size_t fewest = 4;  // are told together
 constexpr std::size_t named = 3;   // of the others
 
-bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-
 /// The first name in quotes, with them; empty if there is none.
 std::string_view name_in(std::string_view text) {
   const auto begin = std::min(text.find('\''), text.size());
@@ -20,21 +17,15 @@ std::string_view name_in(std::string_view text) {
   return end == std::string_view::npos ? std::string_view() : text.substr(begin, end + 1 - begin);
 }
 
-/// Without numbers and names in quotes.
+/// Without its place, "model.toml:4: ", and without its first name in quotes; empty if it has none.
 std::string kind_of(std::string_view text) {
-  std::string kind;
-  while (!text.empty()) {
-    std::size_t left_out = 0;
-    if (text.front() == '\'') left_out = name_in(text).size();
-    while (left_out < text.size() && is_digit(text[left_out])) {
-      left_out = std::min(text.find_first_not_of("0123456789", left_out), text.size());
-      const auto next = std::min(text.find_first_not_of(".e+-", left_out), text.size());
-      if (next > left_out && next < text.size() && is_digit(text[next])) left_out = next;
-    }
-    kind += left_out > 0 ? '#' : text.front();
-    text.remove_prefix(std::max<std::size_t>(left_out, 1));
-  }
-  return kind;
+  const auto colon = std::min(text.find(": "), text.size());
+  const auto number = text.substr(0, colon).find_last_not_of("0123456789") + 1;  // npos + 1 is 0
+  if (number < colon && (number == 0 || text[number - 1] == ':')) text.remove_prefix(colon);
+  const auto name = name_in(text);
+  if (name.empty()) return {};
+  const auto begin = static_cast<std::size_t>(name.data() - text.data());
+  return std::string(text.substr(0, begin)) + '#' + std::string(text.substr(begin + name.size()));
 }
 
 struct Group {
@@ -46,10 +37,9 @@ std::string told(const Group& group) {
   const std::size_t others = group.texts.size() - 1;
   std::string names;
   for (std::size_t i = 1; i <= std::min(named, others); ++i) {
-    const auto name = name_in(group.texts[i]);
-    if (!name.empty()) names += (names.empty() ? ": " : ", ") + std::string(name);
+    names += (names.empty() ? ": " : ", ") + std::string(name_in(group.texts[i]));
   }
-  if (!names.empty() && others > named) names += ", …";
+  if (others > named) names += ", …";
   return group.texts.front() + " (and " + std::to_string(others) + " more like it" + names + ")";
 }
 
@@ -59,7 +49,8 @@ std::vector<std::string> told_together(const std::vector<std::string>& texts) {
   std::vector<Group> groups;
   for (const auto& text : texts) {
     auto kind = kind_of(text);
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& one) { return one.kind == kind; });
+    auto group =
+        std::find_if(groups.begin(), groups.end(), [&](const Group& one) { return !kind.empty() && one.kind == kind; });
     if (group == groups.end()) group = groups.insert(groups.end(), {std::move(kind), {}});
     group->texts.push_back(text);
   }

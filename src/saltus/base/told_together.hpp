@@ -6,8 +6,8 @@
 
 namespace saltus {
 
-/// Returns the texts. Of several that differ in numbers and names in quotes only there is the first one, with the count
-/// of the others: "parameter 'a' is never used (and 2 more like it: 'b', 'c')".
+/// Returns the texts. Of several that differ in places and first names in quotes there is the first one, with the count
+/// of the others: "parameter 'a' is never used (and 3 more like it: 'b', 'c', 'd')".
 [[nodiscard]] std::vector<std::string> told_together(const std::vector<std::string>& texts);
 
 }  // namespace saltus

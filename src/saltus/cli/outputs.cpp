@@ -12,6 +12,7 @@
 
 #include "saltus/base/contains.hpp"
 #include "saltus/base/docs_page.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/cli/interrupt.hpp"
 #include "saltus/cli/text/terminal.hpp"
 #include "saltus/frontend/catalogue.hpp"
@@ -84,7 +85,7 @@ Expected<void> check_standard_output(const OutputNames& names) {
   if (contains(known, "csv")) known.emplace_back("events.csv");
   if (contains(known, names.format)) return {};
   return tl::unexpected(refused("--format", names.format, fmt::format("expected {}", fmt::join(known, " or ")),
-                                suggest(names.format, known)));
+                                suggest_word(names.format, known)));
 }
 
 /// Passes pieces on, shows how many bytes there are, and takes no more after Ctrl-C.

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/cli/command_line_internal.hpp"
 #include "saltus/cli/commands.hpp"
 #include "saltus/cli/interrupt.hpp"
@@ -34,7 +35,7 @@ Expected<Keep> keep_named(const std::string& word) {
   if (const auto found = known.find(word); found != known.end()) return found->second;
   return tl::unexpected(Error{ErrorCode::invalid_option,
                               fmt::format("--keep {}: expected final, events or trajectory", word),
-                              suggest(word, {"final", "events", "trajectory"}),
+                              suggest_word(word, {"final", "events", "trajectory"}),
                               {},
                               {}});
 }

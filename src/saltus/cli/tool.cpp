@@ -35,7 +35,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
 /// The option of this command that was meant, or the command that has it.
 std::string about_option(const std::string& typed, const CLI::App& app, const CLI::App& reader) {
   const auto known = option_names(reader);
-  if (!nearest_names(typed, known).empty()) return suggest(typed, known);
+  if (!nearest_words(typed, known).empty()) return suggest_word(typed, known);
   for (const CLI::App* command : app.get_subcommands(nullptr)) {
     const auto names = option_names(*command);
     const auto meant = names_meant(typed, names);
@@ -51,7 +51,7 @@ std::string about_option(const std::string& typed, const CLI::App& app, const CL
     }
     return remedy;
   }
-  return suggest(typed, known);
+  return suggest_word(typed, known);
 }
 
 /// NAME=VALUE without its option: values of a sweep where there are several.

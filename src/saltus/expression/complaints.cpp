@@ -56,13 +56,18 @@ bool has_time_as_argument(const Tokens& tokens, std::size_t index) {
          tokens.list[index + 3].is(TokenKind::symbol, ")");
 }
 
+/// Names of the model come before those of other languages.
 std::string remedy_for_unknown_function(const Tokens& tokens, std::size_t index,
-                                        const std::vector<std::string>& extra_functions) {
+                                        const std::vector<std::string>& extra_functions,
+                                        const std::vector<std::string>& declared) {
   const std::string name(tokens.list[index].text);
-  if (const auto remedy = remedy_for_function(name); !remedy.empty()) return std::string(remedy);
-  std::vector<std::string> known = extra_functions;
-  for (const auto& function : functions()) known.emplace_back(function.name);
-  if (!nearest_names(name, known).empty()) return suggest(name, known);
+  if (!contains(declared, name)) {
+    if (!nearest_names(name, extra_functions).empty()) return suggest(name, extra_functions);
+    if (const auto remedy = remedy_for_function(name); !remedy.empty()) return std::string(remedy);
+    std::vector<std::string> known;
+    for (const auto& function : functions()) known.emplace_back(function.name);
+    if (!nearest_names(name, known).empty()) return suggest(name, known);
+  }
   const auto shown_name = name.substr(0, 40);
   if (has_time_as_argument(tokens, index)) return fmt::format("names stand without their time: write {}", shown_name);
   return fmt::format("for a product write {}*(…); the functions are: {}", shown_name, function_list(extra_functions));
@@ -153,10 +158,11 @@ std::nullopt_t Complaints::misplaced_not(const Token& token) {
   return failure(token, "'not' binds looser than what stands before it", "put it in parentheses: (not …)");
 }
 
-std::nullopt_t Complaints::unknown_function(std::size_t index, const std::vector<std::string>& extra_functions) {
+std::nullopt_t Complaints::unknown_function(std::size_t index, const std::vector<std::string>& extra_functions,
+                                            const std::vector<std::string>& declared) {
   const Token& name = tokens_.list[index];
   failure(name, fmt::format("unknown function {}", quoted(name.text)),
-          remedy_for_unknown_function(tokens_, index, extra_functions));
+          remedy_for_unknown_function(tokens_, index, extra_functions, declared));
   error_.code = ErrorCode::unknown_name;
   return std::nullopt;
 }

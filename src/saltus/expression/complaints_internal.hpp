@@ -35,7 +35,8 @@ class Complaints {
 
   std::nullopt_t chained_comparison(const Token& token, const Node& left, const Node& right);
   std::nullopt_t misplaced_not(const Token& token);
-  std::nullopt_t unknown_function(std::size_t index, const std::vector<std::string>& extra_functions);
+  std::nullopt_t unknown_function(std::size_t index, const std::vector<std::string>& extra_functions,
+                                  const std::vector<std::string>& declared);
   std::nullopt_t function_without_arguments(const Token& name);
   std::nullopt_t wrong_arguments(const Token& name, int expected, int found);
   std::nullopt_t too_nested(const Token& token);

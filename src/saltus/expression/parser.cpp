@@ -121,7 +121,7 @@ class Parser {
     const Token& token = take();
     const auto arguments = number_of_arguments(token.text);
     if (at_symbol("(")) {
-      if (!arguments) return complain_.unknown_function(position_ - 1, extra_functions_);
+      if (!arguments) return complain_.unknown_function(position_ - 1, extra_functions_, declared_);
       return parse_call(token, *arguments, level);
     }
     if (arguments && !contains(declared_, token.text)) return complain_.function_without_arguments(token);

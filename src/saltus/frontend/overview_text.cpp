@@ -200,8 +200,9 @@ std::string overview_text(const ModelOverview& overview, const std::string& path
 
 std::string warnings_text(const ModelOverview& overview) {
   std::string text = heading("warnings", overview.warnings.size());
-  for (const auto& warning : told_together(overview.warnings)) text += fmt::format("  {}\n", warning);
-  return text;
+  const auto told = told_together(overview.warnings);
+  for (const auto& warning : told) text += fmt::format("  {}\n", warning);
+  return text + (told.size() < overview.warnings.size() ? "  (--json shows all)\n" : "");
 }
 
 }  // namespace saltus::frontend

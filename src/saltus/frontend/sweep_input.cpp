@@ -30,7 +30,13 @@ Expected<ModelInput> input_of_run(const ModelInput& model, const SweepPlan& plan
   const auto values = plan.values(run);
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (auto done = apply_setting(input, plan.names()[k] + "=" + values[k]); !done) {
-      return tl::unexpected(told_as_swept(done.error(), plan));
+      auto error = told_as_swept(done.error(), plan);
+      if (is_list_of_others(values[k])) {
+        error.message = "expected values with commas between, or FROM:TO:NUMBER";
+        error.remedy = over_remedy;
+        error.location.line = error.location.column = 0;
+      }
+      return tl::unexpected(std::move(error));
     }
   }
   if (auto fits = io::check_options(input.file); !fits) return tl::unexpected(fits.error());

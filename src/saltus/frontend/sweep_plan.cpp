@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/base/text.hpp"
 #include "saltus/pipeline/random_numbers.hpp"
 
@@ -23,8 +24,6 @@ std::optional<double> number_in(std::string_view text) {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
-constexpr std::string_view over_remedy =
-    "for example --over mu=0.05:0.3:100 (100 values, both ends among them) or --over k=1,2,4";
 constexpr std::string_view sample_remedy = "for example --sample v=normal(3,0.1), uniform(0,1) or lognormal(0,0.5)";
 
 /// A:B:N as numbers, the ends exact.
@@ -52,19 +51,7 @@ Expected<std::vector<std::string>> range_values(const std::string& typed, std::s
   return values;
 }
 
-/// Values as other programs list them: 1..5, [1, 2], {1, 2}, 1 2 3.
-bool is_list_of_others(std::string_view text) {
-  const auto last = text.find_last_of(' ');
-  const bool has_blanks = last != std::string_view::npos && number_in(text.substr(0, text.find(' '))) &&
-                          number_in(text.substr(last)) && text.find(',') == std::string_view::npos;
-  return text.starts_with('[') || text.starts_with('{') || text.find("..") != std::string_view::npos || has_blanks;
-}
-
 Expected<std::vector<std::string>> listed_values(const std::string& typed, std::string_view text) {
-  if (is_list_of_others(text)) {
-    return refused_plan(fmt::format("--over {}: expected values with commas between, or FROM:TO:NUMBER", typed),
-                        std::string(over_remedy));
-  }
   std::vector<std::string> values;
   for (const auto piece : split(text, ',')) {
     const auto part = trimmed(piece);
@@ -88,6 +75,15 @@ Expected<std::pair<std::string, std::string_view>> name_and_rest(std::string_vie
 }
 
 }  // namespace
+
+bool is_list_of_others(std::string_view piece) {
+  if (piece.starts_with('[') || piece.starts_with('{') || piece.ends_with(']') || piece.ends_with('}')) return true;
+  const auto dots = piece.find("..");
+  if (dots != std::string_view::npos) return number_in(piece.substr(0, dots)) && number_in(piece.substr(dots + 2));
+  const auto numbers = split(piece, ' ');
+  return numbers.size() > 1 && std::all_of(numbers.begin(), numbers.end(),
+                                           [](std::string_view number) { return number.empty() || number_in(number); });
+}
 
 /// Fills a plan from what was typed.
 class PlanReader {
@@ -122,7 +118,7 @@ class PlanReader {
     const auto kind = kind_named(word);
     if (!kind) {
       return refused_plan(fmt::format("--sample {}: unknown distribution '{}'", typed, word),
-                          suggest(word, {"normal", "uniform", "lognormal"}));
+                          suggest_word(word, {"normal", "uniform", "lognormal"}));
     }
     if (!first || !second) {
       return refused_plan(fmt::format("--sample {}: {} has two numbers", typed, word), std::string(sample_remedy));

@@ -65,4 +65,11 @@ class SweepPlan {
   std::uint64_t seed_ = 1;
 };
 
+/// What --over takes.
+inline constexpr std::string_view over_remedy =
+    "for example --over mu=0.05:0.3:100 (100 values, both ends among them) or --over k=1,2,4";
+
+/// Returns whether a value of --over is a piece of how other programs list them: 1..5, [1, 2], {1, 2}, 1 2 3.
+[[nodiscard]] bool is_list_of_others(std::string_view piece);
+
 }  // namespace saltus::frontend

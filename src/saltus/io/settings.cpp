@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/optimize/toml_optimize_internal.hpp"
 #include "saltus/io/option_text.hpp"
@@ -128,7 +129,7 @@ Expected<void> set_model_key(model::Description& description, std::string_view f
     description.inclusion = *inclusion;
   } else {
     return refused_setting(full_key, ErrorCode::unknown_name, fmt::format("[model] has no key '{}'", key),
-                           suggest(std::string(key), {"name", "description", "inclusion"}));
+                           suggest_word(std::string(key), {"name", "description", "inclusion"}));
   }
   return {};
 }
@@ -165,7 +166,7 @@ tl::unexpected<Error> not_settable(std::string_view key, std::string_view table)
   std::vector<std::string> known{"simulate", "optimize", "time_freezing"};
   for (const auto& candidate : settable) known.emplace_back(candidate.name);
   return refused_setting(key, ErrorCode::unknown_name, fmt::format("'{}' is no table of a model file", table),
-                         suggest(std::string(table), known));
+                         suggest_word(std::string(table), known));
 }
 
 Expected<void> set_input_expression(model::Description& description, std::string_view name, std::string_view value) {
@@ -199,7 +200,7 @@ Expected<void> set_input(ModelFile& model, std::string_view path, std::string_vi
   if (source == "file" || source == "result") return set_samples(model, path.substr(0, dot), source, value);
   return refused_setting(fmt::format("simulate.inputs.{}", path), ErrorCode::unknown_name,
                          fmt::format("an input has no key '{}'", source),
-                         suggest(std::string(source), {"file", "result"}));
+                         suggest_word(std::string(source), {"file", "result"}));
 }
 
 /// A value may stand in quotes, as in a model file: no expression, option or file begins and ends with them.

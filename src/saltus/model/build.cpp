@@ -53,11 +53,11 @@ class Build {
   }
 
   /// Everything that can be told of it, one mistake or none beside another.
-  [[nodiscard]] std::vector<Error> mistakes() {
+  [[nodiscard]] std::vector<Error> mistakes(bool is_whole) {
     std::vector<Error> found;
-    scope_.collect_mistakes(found);
+    scope_.collect_mistakes(found, is_whole);
     if (auto error = state()) static_cast<void>(scope_.end_at(std::move(*error)));
-    tell_of_still_states(found);
+    if (is_whole) tell_of_still_states(found);
     if (scope_.has_mistakes()) return found;
     if (auto system = assemble(recognition_, statement_); !system) found.push_back(system.error());
     return found;
@@ -482,9 +482,9 @@ Expected<System> build(const Description& description, const std::vector<Overrid
   return system;
 }
 
-std::vector<Error> find_mistakes(const Description& description) {
+std::vector<Error> find_mistakes(const Description& description, bool is_whole) {
   try {
-    return Build(description, {}, nullptr).mistakes();
+    return Build(description, {}, nullptr).mistakes(is_whole);
   } catch (const std::exception& exception) {
     return {refused_by_casadi(description, exception)};
   }

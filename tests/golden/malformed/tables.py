@@ -3,6 +3,11 @@
 from malformed.base import after, with_line
 
 FILES = {
+    "set in square brackets": (after("[[jumps]]\nwhen = 'x < 0'\nset = [{ v = 0 }]\n"), 15, "write one table, without"),
+    "table of a table in double brackets": (after("[optimize]\nhorizon = 1\n[[optimize.mpcc]]\nsigma0 = 1\n"), 15,
+                                            "write [optimize.mpcc] in single brackets"),
+    "rates of a mode in square brackets": (after("[[modes]]\nwhen = 'x < 0'\ndynamics = [{ v = 0 }]\n"), 15,
+                                           "write one table, without"),
     "table without values": (after("[tables.road]\nx = [0, 1]\n"), 13, "table 'road' has no y", "x = [0, 1, 2]"),
     "table without points": (after("[tables.road]\nkind = 'linear'\n"), 13, "table 'road' has no points"),
     "table with points and file": (after("[tables.road]\nx = [0]\ny = [1]\nfile = 'r.csv'\n"), 13, "a file and points"),

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "saltus/base/other_words.hpp"
+#include "saltus/base/told_together.hpp"
+
 namespace saltus {
 namespace {
 
@@ -64,6 +67,36 @@ TEST(NearestNames, others_are_not) {
 TEST(NearestNames, at_most_three_best_first_ties_in_given_order) {
   EXPECT_EQ(nearest_names("state1", {"stage1", "state2", "state1", "state3", "state4"}),
             (Names{"state1", "stage1", "state2"}));
+}
+
+TEST(NearestNames, words_of_other_programs_stand_for_words_of_ours_only) {
+  EXPECT_EQ(nearest_names("Upper", {"on", "upper"}), Names{"upper"});
+  EXPECT_TRUE(nearest_names("upper", {"on", "off"}).empty());
+  EXPECT_EQ(nearest_words("upper", {"on", "off"}), Names{"on"});
+  EXPECT_EQ(nearest_words("Upper", {"on", "upper"}), Names{"upper"});
+  EXPECT_EQ(nearest_words("tolernace", {"tolerance", "until"}), Names{"tolerance"});
+  EXPECT_EQ(suggest_word("RK45", {"radau5", "dopri5"}), "did you mean 'dopri5'?");
+}
+
+TEST(ToldTogether, texts_that_differ_in_one_name_only) {
+  const auto unused = [](const std::string& line, const std::string& name) {
+    return "m.toml:" + line + ": parameter '" + name + "' is never used";
+  };
+  EXPECT_EQ(told_together({unused("4", "a"), unused("5", "b"), unused("16", "c"), unused("7", "d"), unused("8", "e")}),
+            Names{unused("4", "a") + " (and 4 more like it: 'b', 'c', 'd', …)"});
+  const Names never{
+      "3: event 'a' never happens: its 'when' is constant", "4: event 'b' never happens: its 'when' is constant",
+      "5: event 'c' never happens: its 'when' is constant", "6: event 'd' never happens: its 'when' is constant"};
+  EXPECT_EQ(told_together(never), Names{never.front() + " (and 3 more like it: 'b', 'c', 'd')"});
+}
+
+TEST(ToldTogether, texts_with_more_facts_stay_apart) {
+  const Names values{"'a' is 1, not 2", "'b' is 2, not 2", "'c' is 3, not 2", "'d' is 4, not 2"};
+  EXPECT_EQ(told_together(values), values);
+  const Names pairs{"'a' is 'b'", "'c' is 'd'", "'e' is 'f'", "'g' is 'h'"};
+  EXPECT_EQ(told_together(pairs), pairs);
+  const Names plain{"the same", "the same", "the same", "the same"};
+  EXPECT_EQ(told_together(plain), plain);
 }
 
 TEST(Suggest, wording) {

@@ -35,6 +35,17 @@ void expect_explained(std::initializer_list<Mistake> mistakes) {
   for (const auto& mistake : mistakes) expect_explained(mistake);
 }
 
+TEST(Mistakes, names_of_the_model_come_before_those_of_other_languages) {
+  const auto remedy = [](const std::string& text) {
+    const auto tree = parse(text, {"model.toml", 3, 1}, {"ramps"}, {"gap", "friction"});
+    return tree ? std::string() : tree.error().remedy;
+  };
+  EXPECT_EQ(remedy("ramp(x)"), "did you mean 'ramps'?");
+  EXPECT_TRUE(remedy("friction(1 + x)").starts_with("for a product write friction*(…)"));
+  EXPECT_EQ(remedy("gap(t)"), "names stand without their time: write gap");
+  EXPECT_NE(remedy("force(x)").find("what the gap is"), std::string::npos);
+}
+
 TEST(Mistakes, operators_of_other_languages) {
   expect_explained({{"x**2", 2, "'**'", "write '^'"},
                     {"a && b", 3, "'&&'", "write 'and'"},

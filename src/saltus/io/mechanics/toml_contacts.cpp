@@ -77,7 +77,9 @@ void read_contacts(TomlReader& reader, const TomlEntry& entry, ModelFile& model)
   for (const auto& value : reader.tables(entry.value, "contacts")) {
     const auto* table = reader.table(value, "a table with `name` and `gap`");
     if (table == nullptr) return;
-    model.description.contacts.push_back(ContactReader(reader, value.location).read(*table));
+    reader.begin_entry();
+    auto contact = ContactReader(reader, value.location).read(*table);
+    if (reader.is_understood()) model.description.contacts.push_back(std::move(contact));
   }
 }
 

@@ -46,7 +46,13 @@ void read_hysteresis(TomlReader& reader, const TomlEntry& entry, ModelFile& mode
   for (const auto& value : reader.tables(entry.value, "hysteresis")) {
     const auto* table = reader.table(value, "a table with `name`, `input`, `on` and `off`");
     if (table == nullptr) return;
-    model.description.hysteresis.push_back(read_hysteresis_entry(reader, *table, value.location));
+    reader.begin_entry();
+    auto hysteresis = read_hysteresis_entry(reader, *table, value.location);
+    if (reader.is_understood()) {
+      model.description.hysteresis.push_back(std::move(hysteresis));
+    } else {
+      model.is_whole = false;
+    }
   }
 }
 

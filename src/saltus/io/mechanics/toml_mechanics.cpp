@@ -149,7 +149,12 @@ class MechanicsReader {
 void read_mechanics(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* table = reader.table(entry.value, "the table [mechanics]");
   if (table == nullptr) return;
-  model.description.mechanics = MechanicsReader(reader, entry.location).read(*table);
+  auto mechanics = MechanicsReader(reader, entry.location).read(*table);
+  if (reader.is_understood()) {
+    model.description.mechanics = std::move(mechanics);
+  } else {
+    model.is_whole = false;
+  }
 }
 
 }  // namespace saltus::io

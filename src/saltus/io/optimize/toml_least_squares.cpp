@@ -28,7 +28,7 @@ class LeastSquaresReader {
 
   model::LeastSquaresDescription read(const TomlTable& table) {
     for (const auto& entry : table) read_key(entry);
-    if (part_.of.empty()) {
+    if (part_.of.empty() && !reader_.failed()) {
       fail("this table has no `of`", "write of = [\"q\", \"v\"]: the expressions that follow a reference",
            part_.location);
     }
@@ -221,6 +221,7 @@ class LeastSquaresReader {
 model::LeastSquaresDescription read_least_squares(TomlReader& reader, const TomlValue& value) {
   const auto* table = reader.table(value, "a table that begins with [[optimize.least_squares]]");
   if (table == nullptr) return {};
+  reader.begin_entry();
   return LeastSquaresReader(reader, value.location).read(*table);
 }
 

@@ -137,7 +137,9 @@ void read_jumps(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   for (const auto& value : reader.tables(entry.value, "jumps")) {
     const auto* table = reader.table(value, "a table with `when` and `set`");
     if (table == nullptr) return;
-    model.description.jumps.push_back(JumpReader(reader, value).read(*table));
+    reader.begin_entry();
+    auto jump = JumpReader(reader, value).read(*table);
+    if (reader.is_understood()) model.description.jumps.push_back(std::move(jump));
   }
 }
 

@@ -8,12 +8,15 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/base/same_place.hpp"
+#include "saltus/base/text.hpp"
 #include "saltus/io/atomic_file.hpp"
 #include "saltus/io/json/json_result.hpp"
 #include "saltus/io/sha256.hpp"
 #include "saltus/io/toml/other_formats.hpp"
 #include "saltus/io/toml/toml_sections_internal.hpp"
+#include "saltus/io/toml/toml_slips_internal.hpp"
 #include "saltus/model/mistakes.hpp"
 #include "saltus/pipeline/options/option_fields.hpp"
 
@@ -25,7 +28,8 @@ using SectionReader = void (*)(TomlReader&, const TomlEntry&, ModelFile&);
 /// A table of name = expression that goes into one member of the description.
 template <auto member>
 void read_into(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
-  read_expressions(reader, entry, model.description.*member);
+  read_expressions(reader, entry.value, fmt::format("the table [{}] of names and expressions", entry.key),
+                   model.description.*member);
 }
 
 struct Section {
@@ -95,7 +99,7 @@ void read_section(TomlReader& reader, const TomlEntry& entry, ModelFile& model) 
   reader.fail({ErrorCode::unknown_name,
                is_table ? fmt::format("unknown table [{}]", entry.key)
                         : fmt::format("unknown key '{}' outside of all tables", entry.key),
-               suggest(entry.key, known_tables()),
+               suggest_word(entry.key, known_tables()),
                entry.location,
                {}});
 }
@@ -158,8 +162,8 @@ std::vector<Error> read_document(const TomlTable& document, ModelFile& model, Af
 }
 
 /// Takes what is no TOML out of a line, so that the rest can be read: the value of its key, then the line. False if
-/// that cannot help.
-bool withdraw(std::string& text, int line, int attempt) {
+/// that cannot help. `is_whole` becomes false if the line has a name that cannot be read.
+bool withdraw(std::string& text, int line, int attempt, bool& is_whole) {
   std::size_t begin = 0;
   for (int i = 1; i < line && begin != std::string::npos; ++i) {
     begin = text.find('\n', begin);
@@ -173,13 +177,21 @@ bool withdraw(std::string& text, int line, int attempt) {
     return false;
   }
   // A date is no value of any key: whoever reads it complains, in a line of which that is known.
-  const std::string instead = attempt == 0 ? std::string(content.substr(0, equal + 1)) + " 0001-01-01" : std::string();
+  constexpr std::string_view date = " 0001-01-01";
+  std::string instead;
+  if (attempt == 0) {
+    instead = fmt::format("{}{}", content.substr(0, equal + 1), date);
+  } else if (!is_plain_name(trimmed(content.substr(0, equal), " \t"))) {
+    instead = fmt::format("line_{} ={}", line, date);
+    is_whole = false;
+  }
   text.replace(begin, end - begin, instead);
   return true;
 }
 
-/// The document, with the lines that are no TOML taken out; their errors go into `errors`.
-Expected<TomlTable> parse_in_parts(std::string text, const std::string& file, std::vector<Error>& errors) {
+/// The document, with the lines that are no TOML taken out; their errors go into the diagnosis.
+Expected<TomlTable> parse_in_parts(std::string text, const std::string& file, Diagnosis& diagnosis) {
+  auto& errors = diagnosis.errors;
   constexpr std::size_t most_errors = 20;
   auto document = parse_toml(text, file);
   int attempt = 0;
@@ -188,7 +200,7 @@ Expected<TomlTable> parse_in_parts(std::string text, const std::string& file, st
     const bool again = !errors.empty() && errors.back().location.line == error.location.line;
     attempt = again ? attempt + 1 : 0;
     if (!again) errors.push_back(error);
-    if (!withdraw(text, error.location.line, attempt)) break;
+    if (!withdraw(text, error.location.line, attempt, diagnosis.model.is_whole)) break;
     document = parse_toml(text, file);
   }
   return document;
@@ -219,7 +231,7 @@ Diagnosis diagnose_model(std::string_view text, const std::string& file) {
   auto& errors = diagnosis.errors;  // no structured binding: clang 14 takes none into a lambda
   model.description.file = file;
   model.sha256 = sha256(text);
-  const auto document = parse_in_parts(std::string(text), file, errors);
+  const auto document = parse_in_parts(std::string(text), file, diagnosis);
   if (!document) return diagnosis;
   const std::vector<Error> syntax = errors;
   const auto known = [&](const Error& error) {
@@ -233,7 +245,7 @@ Diagnosis diagnose_model(std::string_view text, const std::string& file) {
     }
   };
   add(read_document(*document, model, AfterMistake::read_on));
-  add(model::find_mistakes(model.description));
+  add(model::find_mistakes(model.description, model.is_whole));
   std::stable_sort(errors.begin(), errors.end(), is_before);
   return diagnosis;
 }

@@ -32,6 +32,7 @@ struct ModelFile {
   std::vector<std::pair<std::string, SourceLocation>> optimize_locations;
   /// Where each table begins, by its name.
   std::vector<std::pair<std::string, SourceLocation>> table_locations;
+  bool is_whole = true;  ///< false if some entry was left out, since it could not be understood
 };
 
 /// Reads a model file. Every error has file, line, column, what was expected and found, and a remedy; unknown tables

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/other_words.hpp"
 #include "saltus/base/same_place.hpp"
 #include "saltus/expression/parser.hpp"
 #include "saltus/io/toml/toml_reader_internal.hpp"
@@ -59,7 +60,7 @@ void TomlReader::unknown_key(const TomlEntry& entry, const std::vector<std::stri
   has_unknown_key_ = true;
   fail({ErrorCode::unknown_name,
         fmt::format("unknown key '{}'", entry.key),
-        suggest(entry.key, known),
+        suggest_word(entry.key, known),
         entry.location,
         {}});
 }
@@ -77,7 +78,11 @@ const TomlTable* TomlReader::table(const TomlValue& value, std::string_view expe
   const auto* list = std::get_if<TomlArray>(&value.value);
   const bool is_doubled = list != nullptr && !list->empty() && std::holds_alternative<TomlTable>(list->front().value);
   if (is_doubled) {
-    wrong_type(expected, value, fmt::format("write {} in single brackets, once", table_));
+    constexpr std::string_view has_name = "the table [";
+    const auto name = expected.substr(0, expected.find(']')).substr(std::min(has_name.size(), expected.size()));
+    wrong_type(expected, value,
+               expected.starts_with(has_name) ? fmt::format("write [{}] in single brackets, once", name)
+                                              : "write one table, without square brackets around it");
   } else if (table == nullptr) {
     wrong_type(expected, value);
   }

@@ -24,7 +24,7 @@ class TomlReader {
   [[nodiscard]] const std::string& file() const { return file_; }
   [[nodiscard]] std::vector<result::NamedFile>& files() { return *files_; }
   [[nodiscard]] const std::vector<Error>& errors() const { return errors_; }
-  /// Returns whether something of the table that was entered last is wrong.
+  /// Returns whether something of the entry that was begun last is wrong, or of the table without entries.
   [[nodiscard]] bool failed() const { return errors_.size() > errors_before_; }
 
   /// Sets the names of tables of the model, which expressions may call; set before the first expression is read.
@@ -37,9 +37,16 @@ class TomlReader {
   /// Sets the table that errors are in, as a context frame; empty for none.
   void enter(std::string table) {
     table_ = std::move(table);
+    begin_entry();
+  }
+
+  /// Sets that what follows is an entry of its own, like one of [[jumps]].
+  void begin_entry() {
     errors_before_ = errors_.size();
     has_unknown_key_ = false;
   }
+  /// Returns whether all keys of the entry are known; of another one it is not known what it states.
+  [[nodiscard]] bool is_understood() const { return !has_unknown_key_; }
 
   /// Keeps the error, with the table it is in; of several at one place the first.
   void fail(Error error);
@@ -51,6 +58,7 @@ class TomlReader {
   void not_available(const SourceLocation& location, std::string_view what);
 
   /// Reads the value as a table, or null and an error.
+  /// @param expected  "the table [name]", or what stands in braces
   const TomlTable* table(const TomlValue& value, std::string_view expected);
   /// Reads the value as tables that begin with [[name]], none and an error where it is not.
   const TomlArray& tables(const TomlValue& value, std::string_view name);
@@ -71,8 +79,8 @@ class TomlReader {
   std::string table_;
   std::vector<std::string> functions_, declared_;
   std::vector<Error> errors_;
-  std::size_t errors_before_ = 0;  ///< when the table was entered
-  bool has_unknown_key_ = false;   ///< in the table that was entered last
+  std::size_t errors_before_ = 0;  ///< when the entry was begun
+  bool has_unknown_key_ = false;   ///< in the entry that was begun last
 };
 
 /// Returns where a byte of a string stands in the file.

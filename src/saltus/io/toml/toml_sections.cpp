@@ -26,6 +26,7 @@ void read_caption(TomlReader& reader, const TomlEntry& field, result::Caption& c
 /// Reads `name = value` or `name = { initial = value }`, with more keys in the table.
 Quantity read_quantity(TomlReader& reader, const TomlEntry& entry, const std::vector<std::string>& known) {
   Quantity quantity;
+  reader.begin_entry();
   const auto* table = std::get_if<TomlTable>(&entry.value.value);
   if (std::holds_alternative<TomlArray>(entry.value.value)) {
     reader.fail({ErrorCode::parse_failure,
@@ -79,6 +80,7 @@ void require_initial(TomlReader& reader, const TomlEntry& entry, const Quantity&
 
 /// `name = "value"` or `name = { value = "value", unit = "unit", label = "label" }`.
 model::NamedExpression read_output(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
+  reader.begin_entry();
   result::Caption caption;
   model::NamedExpression output{entry.key, nullptr, entry.location};
   const auto* table = std::get_if<TomlTable>(&entry.value.value);
@@ -130,6 +132,7 @@ const std::vector<std::pair<std::string, model::Direction>> directions{
 void read_event(TomlReader& reader, const TomlValue& value, ModelFile& model) {
   const auto* table = reader.table(value, "a table with `when`");
   if (table == nullptr) return;
+  reader.begin_entry();
   model::UserEventDescription event;
   event.location = value.location;
   for (const auto& entry : *table) {
@@ -151,6 +154,7 @@ void read_event(TomlReader& reader, const TomlValue& value, ModelFile& model) {
       reader.unknown_key(entry, {"name", "when", "direction", "stop"});
     }
   }
+  if (!reader.is_understood()) return;
   if (event.when == nullptr) {
     reader.missing("this event has no `when`", "write when = \"expression\" (its zeros) or a condition (its edges)",
                    value.location);
@@ -162,6 +166,7 @@ void read_event(TomlReader& reader, const TomlValue& value, ModelFile& model) {
 void read_mode(TomlReader& reader, const TomlValue& value, ModelFile& model) {
   const auto* table = reader.table(value, "a table with `when` and `dynamics`");
   if (table == nullptr) return;
+  reader.begin_entry();
   model::ModeDescription mode;
   mode.location = value.location;
   bool has_dynamics = false;
@@ -176,7 +181,7 @@ void read_mode(TomlReader& reader, const TomlValue& value, ModelFile& model) {
       mode.name = reader.string(entry.value, "a name in quotes");
     } else if (entry.key == "dynamics") {
       has_dynamics = true;
-      read_expressions(reader, entry, mode.dynamics);
+      read_expressions(reader, entry.value, "a table of states and their right-hand sides", mode.dynamics);
     } else {
       reader.unknown_key(entry, {"when", "dynamics", "group", "indicator", "name"});
     }
@@ -185,7 +190,11 @@ void read_mode(TomlReader& reader, const TomlValue& value, ModelFile& model) {
     reader.missing("this mode has no `dynamics`", "write dynamics = { x = \"…\" }; states that are absent get 0",
                    value.location);
   }
-  model.description.modes.push_back(std::move(mode));
+  if (reader.is_understood()) {
+    model.description.modes.push_back(std::move(mode));
+  } else {
+    model.is_whole = false;
+  }
 }
 
 }  // namespace
@@ -218,8 +227,9 @@ void read_model_table(TomlReader& reader, const TomlEntry& entry, ModelFile& mod
   }
 }
 
-void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<model::NamedExpression>& expressions) {
-  const auto* table = reader.table(entry.value, fmt::format("the table [{}] of names and expressions", entry.key));
+void read_expressions(TomlReader& reader, const TomlValue& value, std::string_view expected,
+                      std::vector<model::NamedExpression>& expressions) {
+  const auto* table = reader.table(value, expected);
   if (table == nullptr) return;
   for (const auto& field : *table) {
     expressions.push_back({field.key, reader.expression(field.value), field.location});

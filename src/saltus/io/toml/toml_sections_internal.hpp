@@ -44,8 +44,9 @@ void read_listed_samples(TomlReader& reader, const TomlEntry& field, const TomlT
 /// Reads the value of an option: truth, number, word or list of numbers; nullopt and an error for anything else.
 [[nodiscard]] std::optional<result::OptionValue> read_option_value(TomlReader& reader, const TomlValue& value);
 
-/// Reads a table of name = expression.
-void read_expressions(TomlReader& reader, const TomlEntry& entry, std::vector<model::NamedExpression>& expressions);
+/// Reads a table of name = expression, which is called what is expected.
+void read_expressions(TomlReader& reader, const TomlValue& value, std::string_view expected,
+                      std::vector<model::NamedExpression>& expressions);
 
 /// Returns the inclusion a word names, or an error without location.
 [[nodiscard]] Expected<model::Inclusion> inclusion_named(const std::string& word);

@@ -12,6 +12,9 @@ struct Slip {
   std::string remedy;
 };
 
+/// Returns whether a key stands in TOML without quotes.
+[[nodiscard]] bool is_plain_name(std::string_view key);
+
 /// Returns what is wrong with a line, and what to write instead.
 /// @param column       where its reader stopped, in characters from 1
 /// @param description  what it said

@@ -109,6 +109,7 @@ void read_points(TomlReader& reader, const TomlEntry& entry, const StatedTable& 
 void read_one_table(TomlReader& reader, const TomlEntry& entry, ModelFile& model) {
   const auto* fields = reader.table(entry.value, fmt::format("the table [tables.{}] with x and y, or file", entry.key));
   if (fields == nullptr) return;
+  reader.begin_entry();
   StatedTable stated;
   for (const auto& field : *fields) {
     if (field.key == "x") {

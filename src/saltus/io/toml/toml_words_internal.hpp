@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/other_words.hpp"
 #include "saltus/io/toml/toml_reader_internal.hpp"
 
 namespace saltus::io {
@@ -29,7 +30,7 @@ Expected<Enum> enum_named(const std::string& word, const std::vector<std::pair<s
   return tl::unexpected(
       Error{ErrorCode::invalid_option,
             fmt::format("expected \"{}\", found the string \"{}\"", fmt::join(known, "\" or \""), word),
-            nearest_names(word, known).empty() ? "" : suggest(word, known),
+            nearest_words(word, known).empty() ? "" : suggest_word(word, known),
             {},
             {}});
 }

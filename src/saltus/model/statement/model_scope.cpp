@@ -86,7 +86,7 @@ bool ModelScope::is_shared(const std::string& name, const Meaning& meaning) cons
 
 std::optional<Error> ModelScope::end_at(Error error) {
   if (found_ == nullptr) return error;
-  if (error.message.empty()) {
+  if (error.message.empty() || (!is_whole_ && error.code == ErrorCode::unknown_name)) {
     follows_mistake_ = true;
   } else {
     found_->push_back(std::move(error));

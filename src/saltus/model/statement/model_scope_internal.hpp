@@ -28,7 +28,11 @@ class ModelScope {
   ModelScope(const Description& description, Recognition& recognition, Statement& statement);
 
   /// Lets a mistake from now on not end the work: it goes into the list.
-  void collect_mistakes(std::vector<Error>& found) { found_ = &found; }
+  void collect_mistakes(std::vector<Error>& found, bool is_whole) {
+    found_ = &found;
+    follows_mistake_ = !is_whole;
+    is_whole_ = is_whole;
+  }
   /// Returns what a step says of a mistake: the error, which ends the work, or nothing, as it is in the list. Errors
   /// without message follow from others.
   [[nodiscard]] std::optional<Error> end_at(Error error);
@@ -105,7 +109,8 @@ class ModelScope {
   std::vector<std::shared_ptr<const CellTable>> tables_;  ///< null until used
   std::set<std::string> used_;
   std::vector<Error>* found_ = nullptr;  ///< null: the first mistake ends the work
-  bool follows_mistake_ = false;         ///< some error had no message
+  bool follows_mistake_ = false;         ///< some error had no message, or something was left out
+  bool is_whole_ = true;                 ///< else names that are unknown may be those left out
   std::set<std::string> given_up_;
 };
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "saltus/base/other_words.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
 namespace saltus::pipeline {
@@ -110,8 +111,11 @@ Expected<void> set_mpcc_option(SolveOptions& options, std::string_view key, cons
     if (field.key == key) return set_option(field, options, key, value);
     known.emplace_back(field.key);
   }
-  return tl::unexpected(Error{
-      ErrorCode::unknown_name, fmt::format("unknown option mpcc.{}", key), suggest(std::string(key), known), {}, {}});
+  return tl::unexpected(Error{ErrorCode::unknown_name,
+                              fmt::format("unknown option mpcc.{}", key),
+                              suggest_word(std::string(key), known),
+                              {},
+                              {}});
 }
 
 Expected<void> check_mpcc_options(const SolveOptions& options) {

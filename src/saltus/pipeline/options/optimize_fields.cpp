@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/pipeline/options/mpcc_options.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
@@ -181,13 +182,13 @@ Error unknown_optimize_key(std::string_view key) {
     error.remedy = remedy;
     return error;
   }
-  auto nearest = nearest_names(std::string(key), known);
+  auto nearest = nearest_words(std::string(key), known);
   const auto last = key.substr(key.rfind('.') + 1);
   for (const auto& candidate : known) {  // the right name in the wrong table: optimize.sigma_final
     const bool same = std::string_view(candidate).substr(candidate.rfind('.') + 1) == last;
     if (same && !contains(nearest, candidate)) nearest.push_back(candidate);
   }
-  error.remedy = nearest.empty() ? suggest(std::string(key), known)
+  error.remedy = nearest.empty() ? suggest_word(std::string(key), known)
                                  : fmt::format("did you mean 'optimize.{}'?", fmt::join(nearest, "' or 'optimize."));
   return error;
 }

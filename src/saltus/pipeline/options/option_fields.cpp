@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
 namespace saltus::pipeline {
@@ -49,7 +50,7 @@ constexpr Choices<Integrator, 7> integrators{
 void name_integrator(Error& error, const OptionValue& value) {
   const auto* word = std::get_if<std::string>(&value);
   if (word == nullptr || !error.remedy.empty()) return;
-  const auto meant = nearest_names(*word, {integrators.names.begin(), integrators.names.end()});
+  const auto meant = nearest_words(*word, {integrators.names.begin(), integrators.names.end()});
   if (!meant.empty()) error.remedy = fmt::format("did you mean the integrator {}?", meant.front());
 }
 
@@ -277,12 +278,12 @@ constexpr double most_rows = 2e7;
 Error unknown_key(std::string_view key) {
   const auto last = std::string(key.substr(key.rfind('.') + 1));
   Error error{ErrorCode::unknown_name, fmt::format("unknown option simulate.{}", key), "", {}, {}};
-  std::vector<std::string> nearest = nearest_names(std::string(key), simulate_keys());
+  std::vector<std::string> nearest = nearest_words(std::string(key), simulate_keys());
   for (const auto& known : simulate_keys()) {  // the right name in the wrong table: simulate.integrator
     const auto known_last = known.substr(known.rfind('.') + 1);
     if (known_last == last && !contains(nearest, known)) nearest.push_back(known);
   }
-  error.remedy = nearest.empty() ? suggest(std::string(key), simulate_keys())
+  error.remedy = nearest.empty() ? suggest_word(std::string(key), simulate_keys())
                                  : fmt::format("did you mean 'simulate.{}'?", fmt::join(nearest, "' or 'simulate."));
   return error;
 }

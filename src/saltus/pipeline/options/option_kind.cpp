@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "saltus/base/contains.hpp"
+#include "saltus/base/other_words.hpp"
 #include "saltus/pipeline/options/option_values_internal.hpp"
 
 namespace saltus::pipeline {
@@ -124,7 +125,7 @@ Expected<void> check(const OptionKind& kind, const OptionValue& value) {
       ErrorCode::invalid_option, fmt::format("expected {}, found {}", expected(kind), to_text(value)), "", {}, {}};
   if (const auto* word = std::get_if<std::string>(&value)) {
     const std::vector<std::string> known(kind.words.begin(), kind.words.end());
-    if (!nearest_names(*word, known).empty()) error.remedy = suggest(*word, known);
+    if (!nearest_words(*word, known).empty()) error.remedy = suggest_word(*word, known);
   }
   const auto* list = std::get_if<std::vector<double>>(&value);
   if (list != nullptr && !list->empty() && kind.list == ListOf::increasing_numbers) {

@@ -98,7 +98,9 @@ saltus.mostSurfaces = 40;
 /** Of too many surfaces those that events of the window lie on come first. */
 saltus.surfacesToDraw = (result, view, drawn) => {
   if (drawn.length <= saltus.mostSurfaces) return drawn;
-  const met = new Set(view.events.flatMap((i) => result.events[i].surfaces));
+  // Of all events: marks are thinned to the pixels, and some kinds may be hidden.
+  const inWindow = result.events.filter(({t}) => t >= view.window[0] && t <= view.window[1]);
+  const met = new Set(inWindow.flatMap(({surfaces}) => surfaces));
   const [first, others] = [true, false].map((is) => drawn.filter(({surface}) => met.has(surface.name) === is));
   return [...first, ...others].slice(0, saltus.mostSurfaces);
 };

@@ -172,6 +172,7 @@ saltus.phasePlane = (result, timeline, select, address) => {
   const draw = () => {
     const palette = saltus.palette();
     const view = saltus.phaseView(result, timeline, choice, sliding, 1500);
+    note.textContent = "";  // of what was drawn before
     if (view === null) return Plotly.purge(holder);
     const scales = {equal: equal.input.checked, logs: logs.map(({input}) => input.checked), resets};
     const surfaces = saltus.planeSurfaces(result, choice, view, palette, scales.logs);

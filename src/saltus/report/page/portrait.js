@@ -135,6 +135,7 @@ saltus.phasePortrait = (result, timeline, select, address) => {
     if (!possible || !visible) return null;
     const palette = saltus.palette();
     const view = saltus.phaseView(result, timeline, choice, sliding, 1500);
+    note.textContent = "";  // of what was drawn before
     if (view === null) return Plotly.purge(holder);
     const surfaces = saltus.portraitSurfaces(result, choice, view, palette);
     const absent = result.surfaces.filter((surface) => surface.affine === null && !saltus.isExact(surface, choice));
