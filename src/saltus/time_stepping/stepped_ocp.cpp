@@ -108,8 +108,9 @@ bool is_known(const Ocp& ocp, const std::vector<int>& used) {
     const auto role = system.switching[at(k)].role;
     return role != model::SwitchingRole::discrete && role != model::SwitchingRole::region;
   });
-  return has_gaps && are_steps && system.cells.empty() && ocp.least_squares.empty() && ocp.complementarities.empty() &&
-         ocp.stage_slacks.empty();
+  const auto is_measured = [](const auto& term) { return term.at == model::CostPoints::times; };
+  return has_gaps && are_steps && system.cells.empty() && ocp.complementarities.empty() && ocp.stage_slacks.empty() &&
+         std::none_of(ocp.least_squares.begin(), ocp.least_squares.end(), is_measured);
 }
 
 }  // namespace
@@ -142,10 +143,12 @@ class Builder {
     for (int k = 0; k < intervals_; ++k) {
       const SX u = controls(k);
       for (int j = 0; j < steps; ++j) x = step(k, j, x, u);
+      statement_.objective += horizon_ / intervals_ * squares(model::CostPoints::intervals, k);
       for (const auto& row : ocp_.path) constrain(row);
     }
     for (const auto& row : ocp_.terminal) constrain(row);
     if (ocp_.terminal_cost) statement_.objective += outputs_(*ocp_.terminal_cost);
+    statement_.objective += squares(model::CostPoints::end, intervals_ - 1);
     statement_.objective += ocp_.horizon.time_weight * horizon_;
     statement_.file_variables = static_cast<int>(statement_.symbols.size());
     made_->problem_ = foreign::make_problem(std::move(statement_));
@@ -224,7 +227,29 @@ class Builder {
     for (casadi_int i = 0; i < passed.numel(); ++i) select(passed(i), values[guards](i));
     equal(x - before - h * values[rates] - impulses(values) - values[switched]);
     if (ocp_.running_cost) statement_.objective += h * outputs_(*ocp_.running_cost);
+    statement_.objective += h * squares(model::CostPoints::stages, k);
     return x;
+  }
+
+  /// Least squares at the end of the last step, in interval k.
+  [[nodiscard]] SX squares(model::CostPoints points, int k) const {
+    SX sum = 0.0;
+    for (const auto& term : ocp_.least_squares) {
+      if (term.at != points) continue;
+      std::vector<SX> r;
+      for (std::size_t i = 0; i < term.of.size(); ++i) {
+        r.push_back(outputs_(term.of[i]));
+        if (!term.reference.empty()) r.back() -= outputs_(term.reference[i]);
+        if (term.samples_per_interval() > 0) r.back() -= term.samples(k, static_cast<linalg::Index>(i));
+      }
+      for (std::size_t i = 0; i < r.size(); ++i) {
+        for (std::size_t j = 0; j < r.size(); ++j) {
+          const double weight = term.weight(static_cast<linalg::Index>(i), static_cast<linalg::Index>(j));
+          if (weight != 0.0) sum += weight * r[i] * r[j];
+        }
+      }
+    }
+    return sum;
   }
 
   void select(const SX& alpha, const SX& psi) {

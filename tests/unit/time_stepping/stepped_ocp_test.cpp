@@ -142,6 +142,29 @@ TEST(SteppedOcp, AFreeHorizonCanBeHeldAtItsGuess) {
   }
 }
 
+/// At rest at x = 0, vx = 1, z = 0.2: sums over intervals and over steps are integrals, the end counts once.
+TEST(SteppedOcp, LeastSquaresAreSummedWhereTheyStand) {
+  const auto ocp = ocp_of(falling("") + R"toml(
+[[optimize.least_squares]]
+of = ["x", "vx"]
+reference = ["2", "0"]
+weight = [3, 5]
+[[optimize.least_squares]]
+of = ["z"]
+weight = [7]
+at = "stages"
+[[optimize.least_squares]]
+of = ["x"]
+reference = ["1"]
+weight = [11]
+at = "end"
+)toml");
+  const auto stepped = SteppedOcp::make(ocp, 4, resting(ocp, 4));
+  ASSERT_TRUE(stepped);
+  auto& problem = stepped->problem();
+  EXPECT_NEAR(problem.objective(problem.start()), 0.4 * (3 * 4 + 5 * 1) + 0.4 * 7 * 0.04 + 11, 1e-12);
+}
+
 TEST(SteppedOcp, StepsAreEquallyManyInEachInterval) {
   const auto fractions = ends_of_steps(4);
   EXPECT_EQ(fractions.size() % 4, 0U);
